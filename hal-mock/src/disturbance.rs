@@ -56,7 +56,7 @@ impl Disturbance {
         Self { start_s, seconds, force_m_s2: [30.0, 0.0, 0.0], ..Self::default() }
     }
 
-    /// Its effect at a time in s from the first sample; nothing outside its interval.
+    /// Effect of the disturbance at a time in s from the first sample; nothing outside its interval.
     pub fn at(&self, time_s: f64) -> Effect {
         let shape = self.shape(time_s - self.start_s);
         Effect {

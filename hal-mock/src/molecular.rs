@@ -19,7 +19,7 @@
 /// Dynamics of a molecular-electronic sensor; the default adds nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MolecularConfiguration {
-    /// Its g-sensitivity (`κ_M1`, `κ_M2`), rad/s² per g: by how much the shown rate grows in a second of
+    /// The sensor's g-sensitivity (`κ_M1`, `κ_M2`), rad/s² per g: by how much the shown rate grows in a second of
     /// specific force along the sensitive axis and 90° clockwise of it.
     pub force_rad_s2_g: [f64; 2],
     /// Corner of the high-pass, Hz, ≥ 0; zero for none.
@@ -112,13 +112,13 @@ impl Lag {
         Self { corner_rad_s, keep: libm::exp(-turn), from: whole - to, to, state: 0.0 }
     }
 
-    /// Its state after a period in which the input went from one value to another.
+    /// State of the sensor after a period in which the input went from one value to another.
     fn pass(&mut self, from: f64, to: f64) -> f64 {
         self.state = self.keep * self.state + self.from * from + self.to * to;
         self.state
     }
 
-    /// Its state under an input that has stood for ever; an integral begins at zero.
+    /// State of the sensor under an input that has stood for ever; an integral begins at zero.
     fn settle(&mut self, input: f64) -> f64 {
         self.state = if self.corner_rad_s > 0.0 { input / self.corner_rad_s } else { 0.0 };
         self.state

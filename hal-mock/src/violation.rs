@@ -34,7 +34,7 @@ pub enum Misuse {
 /// A forbidden access: what, where, when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// What was wrong.
+    /// The rule of the data sheet that was broken.
     pub misuse: Misuse,
     /// The register's address, or the command byte.
     pub address: u8,

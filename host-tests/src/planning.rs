@@ -31,11 +31,11 @@ pub enum Wanted {
 pub struct Request {
     /// The gyro's noise.
     pub noise: GyroNoise,
-    /// Where.
+    /// Latitude of the place.
     pub latitude: Latitude,
     /// Time of one rotation, s, whatever its angle.
     pub rotation: f64,
-    /// What is asked.
+    /// Time or accuracy that is wanted.
     pub wanted: Wanted,
 }
 
@@ -78,7 +78,7 @@ pub struct Optimum {
     pub sigma_deg: f64,
 }
 
-/// What was planned.
+/// A schedule with what it gives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planned {
     /// Burov's schedule, at the top of the object; none where his model cannot reach what is wanted.
@@ -114,7 +114,7 @@ pub enum Unplanned {
 }
 
 impl Request {
-    /// Plans.
+    /// Plans positions and dwells.
     ///
     /// # Errors
     /// Why there is no schedule.

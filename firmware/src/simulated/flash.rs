@@ -57,7 +57,7 @@ impl Flash {
         Self { bytes, is_written, left: None }
     }
 
-    /// What it holds.
+    /// Words that the memory holds.
     #[must_use]
     pub fn bytes(&self) -> &[u8; BYTES] {
         &self.bytes

@@ -34,7 +34,7 @@ const FORCE_HERTZ: f64 = 1000.0;
 pub const MOLECULAR_ELECTRONIC: GyroClass =
     GyroClass { n_deg_sqrt_h: 0.002, b_deg_h: 0.0, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 5.0 };
 
-/// Its dynamics: 17° ahead at 0.1 Hz and 9° at 0.2 Hz by its high-pass, about 1° behind by its lag, and a
+/// Dynamics of that sensor: 17° ahead at 0.1 Hz and 9° at 0.2 Hz by its high-pass, about 1° behind by its lag, and a
 /// g-sensitivity that at 0.1 Hz and 0.7° of tilt is a fifth of the horizontal Earth rate.
 pub const DYNAMICS: MolecularConfiguration =
     MolecularConfiguration { force_rad_s2_g: [4e-4, -2.5e-4], high_pass_hz: 0.03, lag_s: 0.02 };

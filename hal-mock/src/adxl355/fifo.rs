@@ -2,7 +2,7 @@
 
 use heapless::Deque;
 
-/// Values that fit.
+/// Number of values that fit into the buffer.
 const SIZE: usize = 96;
 
 /// Marks an x value.

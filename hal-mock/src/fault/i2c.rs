@@ -8,7 +8,7 @@ use super::When;
 /// A bus whose device is lost at some time.
 #[derive(Debug)]
 pub struct FaultyI2c<B> {
-    /// What it wraps.
+    /// The bus that is wrapped.
     bus: B,
     /// Whether the loss has shown, for one that shows once.
     lost: Option<When>,

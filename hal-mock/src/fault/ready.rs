@@ -13,11 +13,11 @@ const LATE: Duration = Duration::from_millis(4);
 /// brought, waits for the next edge. It may also fall late.
 #[derive(Debug)]
 pub struct FaultyReady<W> {
-    /// What it wraps.
+    /// The line that is wrapped.
     line: W,
     /// Whether an edge was lost, for a fault that shows once.
     when: Option<When>,
-    /// Whether one was.
+    /// Whether an edge was shown.
     shown: bool,
     /// Since when edges come late, if they do.
     late: Option<Instant>,

@@ -48,14 +48,14 @@ pub enum BusFault {
 pub struct FaultPlan {
     /// What is wrong with the bus.
     pub fault: BusFault,
-    /// When it shows.
+    /// When the fault shows.
     pub when: When,
 }
 
 /// A device on a bus that may fail.
 #[derive(Debug)]
 pub struct FaultySpi<S> {
-    /// What it wraps.
+    /// The device that is wrapped.
     device: S,
     /// What goes wrong, and when.
     plan: Option<FaultPlan>,

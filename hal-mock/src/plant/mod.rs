@@ -55,7 +55,7 @@ pub enum StageFault {
     },
     /// The encoder's magnet slips on its shaft.
     Slip {
-        /// When it slips.
+        /// When the encoder slips.
         at: Instant,
         /// What the encoder shows more from then on, rad.
         by_rad: f64,

@@ -17,7 +17,7 @@ impl Profile<'_> {
         }
     }
 
-    /// Its integral from zero to a time in s, ≥ 0: exact, as trapezia are.
+    /// Integral of the profile from zero to a time in s, ≥ 0: exact, as trapezia are.
     #[must_use]
     pub fn integral(&self, time_s: f64) -> f64 {
         let corners = self.0.iter().map(|(at_s, _)| *at_s);

@@ -94,7 +94,7 @@ impl Event {
 /// to 2 are the gyros about x, y and z, 3 and 4 the accelerometers along y and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorFault {
-    /// What goes wrong.
+    /// Failure of the sensor.
     pub failure: SensorFailure,
     /// Beginning of the fault, s from the start.
     pub from_s: f64,

@@ -47,11 +47,11 @@ pub struct Drive {
     pub speed_m_s: f64,
     /// Bends of the road: amplitude of the heading, °.
     pub winding_deg: f64,
-    /// Their period, s, > 0 where there are any.
+    /// Period of the bends, s, > 0 where there are any.
     pub winding_s: f64,
     /// Hills: amplitude of the slope, °.
     pub hills_deg: f64,
-    /// Their period, s, > 0 where there are any.
+    /// Period of the slopes, s, > 0 where there are any.
     pub hills_s: f64,
     /// How the body moves on its wheels.
     pub weaving: SwayConfiguration,

@@ -19,7 +19,7 @@ pub struct Record {
     phases: Vec<Vec<f64>>,
 }
 
-/// Which variance.
+/// The variances that are estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimator {
     /// The Allan variance from adjacent windows.

@@ -24,7 +24,7 @@ enum Motion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unseen {
     motion: Motion,
-    /// Its rate at the most, rad/s; infinite where the recording shows none.
+    /// Rate of the base at the most, rad/s; infinite where the recording shows none.
     rate: f64,
     /// By how much the azimuth is off over that, s.
     lever: f64,

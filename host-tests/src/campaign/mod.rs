@@ -54,7 +54,7 @@ pub struct Campaign {
 
 /// What a campaign gave, ready to be shown.
 pub struct Done {
-    /// Its JSON object but for the status.
+    /// JSON object of the campaign but for the status.
     pub object: Value,
     /// Text and page of the campaign.
     pub report: Report,

@@ -47,7 +47,7 @@ impl Answer {
 /// What many alignments amount to. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Precision {
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs that were refused; all were healthy.
     pub refused: usize,

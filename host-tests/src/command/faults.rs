@@ -11,7 +11,7 @@ use super::Answer;
 pub enum FaultChoice {
     /// The names of the platform's faults.
     List,
-    /// This fault.
+    /// One fault of the catalogue.
     One(Fault),
 }
 

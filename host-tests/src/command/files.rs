@@ -14,7 +14,7 @@ pub struct Written {
     pub option: &'static str,
     /// What is written.
     pub what: &'static str,
-    /// Where.
+    /// Path of the file.
     pub path: PathBuf,
 }
 

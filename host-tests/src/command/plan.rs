@@ -104,7 +104,7 @@ struct Found {
     planned: Planned,
 }
 
-/// Plans.
+/// Plans positions and dwells, and shows them.
 pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, String> {
     let request = Request::from(options);
     let planned = match request.plan() {

@@ -16,7 +16,7 @@ const STACK_MARGIN: u64 = 2;
 /// A figure and its limit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// What it is.
+    /// What was counted or measured.
     pub what: &'static str,
     /// The figure.
     pub count: u64,
@@ -37,15 +37,15 @@ impl Check {
 /// What was taken in each run.
 #[derive(Clone, Debug)]
 pub struct Runs {
-    /// The usual one.
+    /// Figures of the usual run.
     pub figures: Figures,
-    /// The one at the highest sample rate.
+    /// Figures of a brief run at the highest sample rate.
     pub brief: Figures,
-    /// The one that learns its gyro's noise and plans by it.
+    /// Figures of a run that learns its gyro's noise and plans by it.
     pub survey: Figures,
-    /// The one on a platform that turns all the time, at the highest sample rate.
+    /// Figures of a brief run on a platform that turns all the time, at the highest sample rate.
     pub turning: Figures,
-    /// The one in a vehicle that goes from stop to stop.
+    /// Figures of a run in a vehicle that goes from stop to stop.
     pub stops: Figures,
 }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
-    /// Under which heading.
+    /// Heading of the table in which it stands.
     pub heading: String,
     /// What was counted.
     pub what: String,

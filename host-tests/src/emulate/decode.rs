@@ -11,7 +11,7 @@ pub struct Line {
     pub time: String,
     /// Level; none for a line that is printed at every level.
     pub level: Option<&'static str>,
-    /// The words.
+    /// Words of the line.
     pub words: String,
 }
 

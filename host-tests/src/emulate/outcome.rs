@@ -160,9 +160,9 @@ impl Outcome {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{what}: {} in the emulator, {} on the host", values[0], values[1])]
 pub struct Difference {
-    /// What it is.
+    /// Name of the number that differs.
     pub what: String,
-    /// What it is in the emulated run, then on the host.
+    /// Value in the emulated run, then on the host.
     pub values: [String; 2],
 }
 

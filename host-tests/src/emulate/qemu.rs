@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// The emulator.
 pub const PROGRAM: &str = "qemu-system-arm";
 
-/// Its options before the image, as the runner in `.cargo/config.toml` has them: flash and RAM where
+/// Options of the emulator before the image, as the runner in `.cargo/config.toml` has them: flash and RAM where
 /// the board has them, semihosting to standard output, 2⁵ ns of virtual time for each instruction.
 pub const OPTIONS: &str = "-machine netduinoplus2 -nographic -monitor none -serial none \
     -semihosting-config enable=on,target=native -icount shift=5,align=off,sleep=off -kernel";

@@ -37,11 +37,15 @@ pub trait Finished {
     }
 
     /// Lines and tables beyond those that every method has.
-    fn parts(&self, outcome: &Outcome) -> Vec<ReportPart>;
+    fn parts(&self, _outcome: &Outcome) -> Vec<ReportPart> {
+        Vec::new()
+    }
 
     /// Figures of the page. The truth is for errors alone; `body` holds the rows that were analysed, where
     /// there are any.
-    fn figures(&self, outcome: &Outcome, truth: &Truth, body: Option<&Body>) -> Vec<ReportPart>;
+    fn figures(&self, _outcome: &Outcome, _truth: &Truth, _body: Option<&Body>) -> Vec<ReportPart> {
+        Vec::new()
+    }
 
     /// The attitude after each sample, of a method that keeps one.
     fn attitude(&self) -> Option<&[Moment]> {
@@ -201,7 +205,7 @@ pub struct Excluded {
     /// Number of the stop, from one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop: Option<usize>,
-    /// Why.
+    /// Why it took no part.
     pub reason: String,
 }
 

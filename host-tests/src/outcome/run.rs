@@ -12,7 +12,7 @@ use super::{Finished, NoDetails, Outcome};
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
-use crate::recording::{Body, Truth};
+use crate::recording::Truth;
 use crate::report::{self, Figure, Lines, Part, Series, Style};
 
 /// What only a simulated run has.
@@ -225,14 +225,6 @@ impl Finished for KeptAzimuth {
 
     fn titles(&self) -> [&'static str; 2] {
         ["Azimuth kept in", "No azimuth kept in"]
-    }
-
-    fn parts(&self, _: &Outcome) -> Vec<Part> {
-        Vec::new()
-    }
-
-    fn figures(&self, _: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        Vec::new()
     }
 }
 

@@ -124,9 +124,9 @@ pub enum TimeProblem {
     /// The time here is not later than the one before.
     #[error("{} s does not come after {} s of line {before_line}", Short(*time_s), Short(*before_s))]
     NotLater {
-        /// The time here.
+        /// Time of this row, s.
         time_s: f64,
-        /// The time before.
+        /// Time of the row before, s.
         before_s: f64,
         /// The line of the time before.
         before_line: u64,

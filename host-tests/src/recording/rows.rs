@@ -178,7 +178,7 @@ pub(super) trait Row: Sized {
     /// The columns that the kind knows; [`Values`] has their numbers at the same places.
     const COLUMNS: &'static [Column];
     /// The place of the column whose numbers must increase.
-    const TIME: usize;
+    const TIME: usize = 0;
 
     /// The row that has these numbers.
     fn from_values(values: &Values) -> Self;
@@ -202,7 +202,6 @@ impl Row for StageRow {
         sometimes(BASE[4], FORCE),
         sometimes(BASE[5], FORCE),
     ];
-    const TIME: usize = 0;
 
     fn from_values(values: &Values) -> Self {
         Self {
@@ -234,7 +233,6 @@ impl Row for RotatingRow {
         Column { name: "a_across_m_s2", need: Need::Optional, range: FORCE },
         NEW_FORCE,
     ];
-    const TIME: usize = 0;
 
     fn from_values(values: &Values) -> Self {
         Self {
@@ -296,7 +294,6 @@ impl Row for (ImuRow, Option<TrueAttitude>) {
         Column { name: "moving", need: Need::Optional, range: FLAG },
         NEW_FORCE,
     ];
-    const TIME: usize = 0;
 
     fn from_values(values: &Values) -> Self {
         let row = ImuRow {
@@ -335,7 +332,6 @@ impl Row for (SpinRow, Option<f64>) {
         Column { name: ACROSS[0], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
         Column { name: ACROSS[1], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
     ];
-    const TIME: usize = 0;
 
     fn from_values(values: &Values) -> Self {
         let row = SpinRow {
@@ -360,7 +356,6 @@ impl Row for StaticRow {
         Column { name: IMU[4], need: Need::AnyOf(&IMU), range: FORCE },
         Column { name: IMU[5], need: Need::AnyOf(&IMU), range: FORCE },
     ];
-    const TIME: usize = 0;
 
     fn from_values(values: &Values) -> Self {
         Self {

@@ -13,7 +13,7 @@ pub(super) const MOST: usize = 20;
 pub struct Warning {
     /// The line, from 1.
     pub line: u64,
-    /// What stands there.
+    /// What stands in the line.
     pub about: About,
 }
 

@@ -84,7 +84,7 @@ pub struct Figure {
 pub struct Axis {
     /// The quantity.
     pub label: String,
-    /// Its unit; empty where it has none.
+    /// Unit of the axis; empty where it has none.
     pub unit: String,
     /// How values are laid along it.
     pub scale: Scale,
@@ -106,7 +106,7 @@ pub struct Series {
     pub name: String,
     /// How it is drawn.
     pub style: Style,
-    /// Its points, in the order in which a line joins them.
+    /// Points of the series, in the order in which a line joins them.
     pub points: Vec<Point>,
 }
 

@@ -98,7 +98,7 @@ fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
     channels
 }
 
-/// Samples without end.
+/// Task that acquires samples for ever.
 #[embassy_executor::task]
 async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
     acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;

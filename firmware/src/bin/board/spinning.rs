@@ -32,7 +32,7 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
-/// Samples without end.
+/// Task that acquires samples for ever.
 #[embassy_executor::task]
 async fn acquisition(
     mut sensors: Spinning,

@@ -42,7 +42,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
-/// Samples without end.
+/// Task that acquires samples for ever.
 #[embassy_executor::task]
 async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, InertialSample>) {
     let configuration = configuration::vehicle();

@@ -37,7 +37,7 @@ pub enum Platform {
 use Platform::{Spin, Stage, Turntable, TwoFrame, Vehicle};
 
 impl Platform {
-    /// Every platform.
+    /// The platforms of the catalogue.
     pub const ALL: [Self; 5] = [Stage, TwoFrame, Turntable, Vehicle, Spin];
 
     /// The name of the platform on the command line.
@@ -100,7 +100,7 @@ const AXIS_FAULTS: [(AxisFault, [&str; 2], Notice); 7] = [
 ];
 
 impl AxisFault {
-    /// Its names on a stage and on a frame, and what must be noticed.
+    /// Names of the fault on a stage and on a frame, and what must be noticed.
     fn entry(self) -> ([&'static str; 2], Notice) {
         let found = AXIS_FAULTS.iter().find(|(entry, ..)| *entry == self);
         found.map_or(([""; 2], Notice::Nothing), |(_, names, notice)| (*names, *notice))
@@ -225,7 +225,7 @@ impl Fault {
         }
     }
 
-    /// Its name and what must be noticed, of a fault of neither a chip nor an axis.
+    /// Name of the fault and what must be noticed, of one of neither a chip nor an axis.
     fn entry(self) -> (&'static str, Notice) {
         let found = OTHERS.iter().find(|(entry, ..)| *entry == self);
         found.map_or(("", Notice::Nothing), |(_, name, _, notice)| (*name, *notice))

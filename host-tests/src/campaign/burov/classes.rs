@@ -37,7 +37,7 @@ pub(crate) enum Way {
 /// A class of the paper's Table 1, and the gyro that is to meet it.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Class {
-    /// The class.
+    /// Name of the class.
     #[serde(rename = "class")]
     pub name: &'static str,
     /// Azimuth that is wanted, °, 3σ.
@@ -51,7 +51,7 @@ pub struct Class {
     pub(crate) level_deg: f64,
     /// The gyro in words.
     pub gyro: &'static str,
-    /// The gyro.
+    /// Gyro of the class.
     pub grade: Grade,
     #[serde(skip)]
     pub(crate) way: Way,
@@ -129,7 +129,7 @@ pub struct Row {
     pub three_limit_deg: f64,
     /// Per cent of errors within 1, 2 and 3 σ.
     pub coverage_percent: [f64; 3],
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs that were refused.
     pub refused: usize,

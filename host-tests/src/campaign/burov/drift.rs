@@ -23,7 +23,7 @@ pub const GYROS: [Grade; 2] = [
 /// A schedule under drift, over many runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The gyro.
+    /// Gyro of the row.
     pub gyro: Grade,
     /// The order of positions.
     pub order: &'static str,

@@ -99,7 +99,7 @@ impl fmt::Display for Grade {
 /// An alignment to simulate: a gyro, a plan for it and how the stage turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// The gyro.
+    /// Gyro that is planned for.
     pub grade: Grade,
     /// The plan.
     pub plan: Plan,

@@ -53,7 +53,7 @@ impl Platform {
     }
 }
 
-/// Every platform.
+/// The platforms that are drawn.
 pub const PLATFORMS: [Platform; 4] =
     [stage::PLATFORM, turning::PLATFORM, vehicle::PLATFORM, spin::PLATFORM];
 
@@ -91,7 +91,7 @@ pub struct Row {
     /// The class's fault.
     #[serde(flatten)]
     pub fault: Fault,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs that were answered with the fault.
     pub answered: usize,

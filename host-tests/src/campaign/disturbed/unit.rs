@@ -221,7 +221,7 @@ pub(super) trait Rig: Subject + 'static {
         self.unit().instruments.gyro.white_sigma_rad_s(Self::RATE_HZ)
     }
 
-    /// Its drift and its gyro's column at work.
+    /// Drift of the gyro and its column at work.
     fn at_work(&self) -> (Drifting, Column) {
         let walk = Generator::stream(self.seed(), Self::FAULT + 1);
         let drifting = Drifting::new(Self::RATE_HZ, walk);

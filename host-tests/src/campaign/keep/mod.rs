@@ -68,7 +68,7 @@ pub struct Growth {
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The class.
+    /// Name of the class.
     pub class: &'static str,
     /// What its azimuth may be off after the half hour, 1σ, °.
     pub wanted_azimuth_deg: f64,
@@ -76,15 +76,15 @@ pub struct Row {
     pub wanted_level_deg: f64,
     /// The gyro in words.
     pub gyro: &'static str,
-    /// The gyro.
+    /// Gyros of the unit.
     pub grade: Grade,
-    /// How it sits.
+    /// How the unit is mounted.
     pub mount: String,
     /// 1σ of the accelerometers' biases.
     pub force_bias_m_s2: f64,
     /// How it came to its azimuth.
     pub way: String,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs in which the azimuth was lost.
     pub lost: usize,

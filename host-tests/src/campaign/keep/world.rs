@@ -95,7 +95,7 @@ pub struct Fitting {
     pub bias_deg_h: f64,
     /// 1σ of its scale factor.
     pub scale_sigma: f64,
-    /// How it sits.
+    /// How the unit is mounted.
     pub mount: Mount,
     /// 1σ of the biases of the accelerometers, m/s².
     pub force_bias_m_s2: f64,

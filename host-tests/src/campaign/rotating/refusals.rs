@@ -33,7 +33,7 @@ struct Case {
 pub struct Row {
     /// What went wrong.
     pub case: &'static str,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs that were refused.
     pub refused: usize,

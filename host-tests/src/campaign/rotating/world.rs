@@ -31,7 +31,7 @@ pub const UNEVENNESS: f64 = 0.002;
 const MODULATED_TURNS: f64 = 12.0;
 /// Time in which the platform takes on another rate, s.
 const RAMP_SECONDS: f64 = 3.0;
-/// Its depth, relative, and its frequency in turns.
+/// Depth of the rate modulation, relative, and its frequency in turns.
 const MODULATION: (f64, f64) = (0.25, 0.83);
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
@@ -106,7 +106,7 @@ pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
 /// A molecular-electronic sensor by what it does at a speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Integrating {
-    /// Its integrated g-sensitivity times the tilt, over speed and horizontal Earth rate: ρ.
+    /// Integrated g-sensitivity times the tilt, over speed and horizontal Earth rate: ρ.
     pub ratio: f64,
     /// Direction of that g-sensitivity from the sensitive axis, clockwise, °.
     pub toward_deg: f64,

@@ -186,7 +186,7 @@ pub struct Row {
 /// The table of one turn. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
-    /// The turn.
+    /// Arc or circle that the schedule turns through.
     pub schedule: &'static str,
     /// One row for each criterion.
     pub rows: Vec<Row>,
@@ -207,7 +207,7 @@ pub struct StopRow {
     pub median_step: usize,
     /// Runs in which all positions are reached.
     pub all_positions: usize,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
 }
 
@@ -216,7 +216,7 @@ pub struct StopRow {
 pub struct AlphaRow {
     /// α, °/h.
     pub alpha_deg_h: f64,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs in which nothing is accepted.
     pub nothing: usize,
@@ -343,7 +343,7 @@ fn covers_quarter(accepted: Accepted) -> bool {
 /// How maximum likelihood does over many azimuths, and what fixed point costs it. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct FixedPoint {
-    /// The turn.
+    /// Arc or circle that the schedule turns through.
     pub schedule: &'static str,
     /// Errors through fixed point against limit and σ.
     #[serde(flatten)]

@@ -40,7 +40,7 @@ impl Point {
 /// How a method went through samples.
 #[derive(Clone, Debug)]
 pub struct Track {
-    /// The method.
+    /// Method that made the track.
     pub method: Method,
     /// The roll at each sample, rad.
     pub rolls_rad: Vec<f64>,

@@ -26,9 +26,9 @@ const LONGER: f64 = 1.25;
 /// An end of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Where it begins.
+    /// The end where the recording begins.
     First,
-    /// Where it ends.
+    /// The end where the recording stops.
     Last,
 }
 
@@ -42,7 +42,7 @@ pub enum Late {
         way = .0.way()
     )]
     Gyro(End, f64),
-    /// The stage's.
+    /// The angle of the stage is late or early.
     #[error(
         "column stage_rad: the {0} dwell lasts {1:.1} s longer than the others, and the rate is not the same all \
          through it: the column is {way} by as long, or the platform moved; record again",

@@ -28,7 +28,7 @@ const REPETITIONS: usize = 20;
 /// The floor of a spectrum, two-sided.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Floor {
-    /// Its white part, unit²·s: of a rate, N².
+    /// White part of the spectrum, unit²·s: of a rate, N².
     pub white: f64,
     /// 1σ of the root of [`Self::white`], relative.
     pub relative_sigma: f64,
@@ -46,9 +46,9 @@ pub struct Spectrum {
 /// Values of neighbouring frequencies.
 #[derive(Clone, Copy, Debug)]
 struct Group {
-    /// What white noise of the integral of variance one makes at their middle, s⁻¹.
+    /// What white noise of the integral of variance one makes at the middle of the frequencies, s⁻¹.
     rise: f64,
-    /// Their level: that of the exponential distribution which has their median.
+    /// Level of the values: that of the exponential distribution which has their median.
     level: f64,
     /// 1σ of the level, relative.
     sigma: f64,

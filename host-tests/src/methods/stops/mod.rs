@@ -68,7 +68,7 @@ impl Method {
 /// A finished replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    /// The method.
+    /// Method of the replay.
     pub method: Method,
     /// The session, with its conclusion.
     pub session: Session,

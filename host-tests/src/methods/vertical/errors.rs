@@ -13,7 +13,7 @@ use crate::output::{azimuth_error, degrees};
 /// The errors of one moment, °.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
-    /// When, s.
+    /// Time of the moment, s.
     pub time_s: f64,
     /// Angle between the true vertical and the kept one.
     pub inclination_deg: f64,

@@ -137,7 +137,7 @@ fn known(header: &Header, gyro: Gyro) -> Gyro {
     }
 }
 
-/// Its noise as the header knows it; what is stated beside an N that is not counts all the same.
+/// Noise of the gyros as the header knows it; what is stated beside an N that is not counts all the same.
 fn known_noise(header: &Header, assumed: GyroNoise) -> GyroNoise {
     let stated = noise(header);
     if header.gyro_n_deg_sqrt_h.is_some() {

@@ -76,7 +76,7 @@ pub struct Session {
     setting: Setting,
     /// Procedure.
     procedure: Procedure,
-    /// Turns so far.
+    /// Accumulator of the turns that have been made.
     turn_accumulator: TurnAccumulator,
     /// State of the session.
     phase: Phase,

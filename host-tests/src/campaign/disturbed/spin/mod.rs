@@ -43,7 +43,7 @@ struct Flight {
 }
 
 impl Flight {
-    /// A healthy flight.
+    /// Draws a healthy flight.
     fn drawn(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
         let (seconds, rate_hz) =
@@ -156,7 +156,7 @@ impl Recorded {
 impl Subject for Recorded {
     const FAULT: u64 = 2_032;
 
-    /// A healthy flight.
+    /// Draws a healthy flight.
     fn drawn(seed: u64) -> Self {
         Flight::drawn(seed).recorded()
     }

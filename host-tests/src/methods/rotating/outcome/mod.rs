@@ -64,7 +64,7 @@ pub struct MisalignmentDetails {
 pub struct SpeedDetails {
     /// Turns a second.
     pub speed_hz: f64,
-    /// What it showed.
+    /// The axis misalignment that its turns showed.
     #[serde(flatten)]
     pub misalignment: MisalignmentDetails,
 }
@@ -106,7 +106,7 @@ pub struct TurnDetails {
     pub sense: String,
     /// Turns a second.
     pub speed_hz: f64,
-    /// Its middle since the stretch began, s.
+    /// Middle of the turn since the stretch began, s.
     pub middle_s: f64,
     /// Length of the turn, s.
     pub seconds: f64,

@@ -26,7 +26,7 @@ pub struct StopsDetails {
     /// 1σ of the azimuth at the beginning, °; only with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_sigma_deg: Option<f64>,
-    /// Its error, °, where the truth is known; only with `ok`.
+    /// Error of the azimuth at the beginning, °, where the truth is known; only with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_error_deg: Option<f64>,
     /// Biases of the gyros forward, right, down, °/h, where they could be distinguished from the Earth rate.
