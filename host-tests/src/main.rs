@@ -20,7 +20,7 @@ use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
 use crate::command::stated::Stated;
-use crate::command::{Failure, print};
+use crate::command::{Answer, Failure, Output, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
@@ -164,12 +164,11 @@ fn one_line(text: &str) -> String {
 /// Says why there is no result, as JSON too where that was asked for.
 fn failed(Failure { reason, warnings, .. }: &Failure, as_json: bool) -> ExitCode {
     if as_json {
-        let mut object = serde_json::json!({ "status": "failed", "reason": reason });
-        if !warnings.is_empty() {
-            object["warnings"] = serde_json::json!(warnings);
-        }
+        let output = Output::Object(serde_json::json!({}));
+        let refusal = Some(reason.clone());
+        let nothing = Answer { found: false, output, refusal, warnings: warnings.clone() };
         // The reason goes to standard error all the same.
-        let _ = print(&object.to_string());
+        let _ = print(&nothing.printed());
     }
     warn(warnings);
     say(&one_line(&format!("meridian: {reason}")));

@@ -29,7 +29,7 @@ impl Driver for ThreadClock {
 
 embassy_time_driver::time_driver_impl!(static CLOCK_OF_THREAD: ThreadClock = ThreadClock);
 
-/// Whether somebody was woken.
+/// Whether a task was woken.
 struct Flag(AtomicBool);
 
 impl Wake for Flag {

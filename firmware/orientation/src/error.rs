@@ -134,7 +134,7 @@ pub enum Refusal {
         after: f64,
     },
     /// Dwells at the beginning or at the end are inconsistent with the others.
-    EndAstray {
+    EndDisagrees {
         /// Number of inconsistent dwells.
         dwells: usize,
         /// Time that separates the inconsistent dwells from the others, s.
@@ -146,7 +146,7 @@ pub enum Refusal {
         seconds: f64,
     },
     /// The accelerometer's readings do not turn with the stage angle that the encoder shows.
-    AccelerometerAstray {
+    AccelerometerDisagrees {
         /// RMS of the readings that no constant tilt explains, mg.
         scatter: f64,
     },
@@ -186,7 +186,7 @@ pub enum Refusal {
         turns: u32,
     },
     /// Turns of the platform at the beginning or end of a stretch are inconsistent with the others.
-    TurnsAstray {
+    TurnsDisagree {
         /// Number of inconsistent turns.
         turns: u32,
     },
@@ -374,7 +374,7 @@ crate::words! { Refusal:
     Self::NotInHalf =>
         "no azimuth of the stated half fits: it lies in the other one, or too near the axis between them";
     Self::AzimuthUnobservable =>
-        "the positions cannot tell the azimuth: turn the stage over a longer arc";
+        "the positions do not show the azimuth: turn the stage over a longer arc";
     Self::BudgetNotMet { sigma, required, source } =>
         "σ would be {}°, above the accepted {}°; {} contributes most",
         Rounded::<3>(sigma), Rounded::<3>(required), source;
@@ -394,14 +394,14 @@ crate::words! { Refusal:
     Self::ResidualsCorrelated { correlation } =>
         "residuals are not white: neighbours correlate by {}", Rounded::<2>(correlation);
     Self::TrendNotSeparable =>
-        "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle";
+        "the rate drifts, and these positions do not separate it from the Earth rate: turn a full circle";
     Self::HeadingStepped { angle, after } =>
         "the heading steps by {}° after {} s: the encoder slipped, or the base was turned",
         Rounded::<2>(angle), Rounded::<1>(after);
     Self::TiltStepped { change, after } =>
         "the tilt steps by {} mg after {} s: the encoder slipped, or the platform was moved",
         Rounded::<2>(change), Rounded::<1>(after);
-    Self::EndAstray { dwells, after } =>
+    Self::EndDisagrees { dwells, after } =>
         "{} dwell(s) at the beginning or the end do not fit the others: after {} s the encoder slipped, the base was turned, or the gyro settled",
         dwells, Rounded::<1>(after);
     Self::GyroLags { seconds } =>
@@ -410,8 +410,8 @@ crate::words! { Refusal:
     Self::AccelerometerImplausible { ratio } =>
         "the accelerometer feels {} of gravity: check its axes, signs and units",
         Rounded::<3>(ratio);
-    Self::AccelerometerAstray { scatter } =>
-        "the accelerometer strays by {} mg from any tilt: check which way the encoder counts, the axes, its noise, and \
+    Self::AccelerometerDisagrees { scatter } =>
+        "the accelerometer is off by {} mg from any tilt: check which way the encoder counts, the axes, its noise, and \
          whether it warms up",
         Rounded::<1>(scatter);
     Self::EarthRateMismatch { ratio, sigma } =>
@@ -426,7 +426,7 @@ crate::words! { Refusal:
         "the dwells were disturbed, and the coarse IMU is missing that would measure the base's sway: check its wiring";
     Self::TurnsDisturbed { disturbed, turns } =>
         "{} of {} turns were disturbed: keep the base still, let the sensor settle", disturbed, turns;
-    Self::TurnsAstray { turns } =>
+    Self::TurnsDisagree { turns } =>
         "{} turn(s) at the beginning or the end of a stretch do not fit the others: the encoder slipped, the base was turned, or the gyro settles late",
         turns;
     Self::StageNotThere { target, actual } =>
@@ -436,7 +436,7 @@ crate::words! { Refusal:
         "this criterion needs equal steps that are a multiple of 10″, none left out";
     Self::NothingAccepted => "no azimuth of the table lies within the bound";
     Self::EverythingAccepted =>
-        "every azimuth of the table lies within the bound: it cannot tell";
+        "every azimuth of the table lies within the bound: it excludes none";
     Self::TurnsTooFew { sense, turns } =>
         "{} whole even turn(s) {}: two are needed in either sense", turns, sense;
     Self::SpeedsUnequal { clockwise, counter } =>
@@ -465,7 +465,7 @@ crate::words! { Refusal:
         "the Earth rate's direction drifts from turn to turn by {} σ: the encoder slips, or the base turns",
         Rounded::<1>(sigmas);
     Self::PhaseAmbiguous { phase } =>
-        "the sensor lags by {}°: north cannot be told from south", Rounded::<0>(phase);
+        "the sensor lags by {}°: north looks like south", Rounded::<0>(phase);
     Self::MolecularTooGreat { ratio } =>
         "g-sensitivity makes {} of what turns with the platform: level it, or turn faster",
         Rounded::<2>(ratio);

@@ -152,7 +152,7 @@ impl Ads1262 {
         }
     }
 
-    /// Ends conversions and forgets their results.
+    /// Ends conversions and discards their results.
     fn clear(&mut self) {
         self.running = None;
         self.holding = Holding::default();

@@ -174,8 +174,8 @@ impl Tmc5160 {
         chip
     }
 
-    /// Makes the chip sick, or well again; flags of errors that have been raised stay until they are
-    /// cleared. A loss of supply does not heal it.
+    /// Injects a fault into the chip, or ends it; flags of errors that have been raised stay until they are
+    /// cleared. A loss of supply does not end it.
     pub fn inject(&mut self, chip_fault: ChipFault) {
         self.chip_fault = chip_fault;
         self.catch_errors();

@@ -25,7 +25,7 @@ pub struct Comparison {
     pub difference: f64,
 }
 
-/// Runs both.
+/// Runs the streaming and the batch estimator on a record, and times them.
 #[must_use]
 pub fn compare(rest: &Rest) -> Comparison {
     let rates: Vec<AngularRate> =

@@ -120,7 +120,7 @@ fn is_scattered(refusal: &Refusal) -> bool {
         refusal,
         Refusal::ResidualsNotWhite { .. }
             | Refusal::TurnsDisturbed { .. }
-            | Refusal::TurnsAstray { .. }
+            | Refusal::TurnsDisagree { .. }
             | Refusal::BudgetNotMet { .. }
     )
 }

@@ -28,7 +28,7 @@ struct Found {
 /// azimuth where `is_reversed`, does not clearly explain them better.
 pub fn of(session: &Session, refusal: &Refusal, is_reversed: bool) -> Option<String> {
     let is_of_forces =
-        matches!(refusal, Refusal::AccelerometerAstray { .. } | Refusal::TiltStepped { .. });
+        matches!(refusal, Refusal::AccelerometerDisagrees { .. } | Refusal::TiltStepped { .. });
     let (dwells, gravity) = (session.dwells(), session.setting().latitude.gravity());
     let steady = fit(dwells, gravity, 1.0, Column::Absent)?;
     let drifting = fit(dwells, gravity, 1.0, Column::Free)?;

@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use firmware::simulated::fault::Platform;
 use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::output::progress::Progress;
 
-use super::{Answer, faults as of_run, files, whole};
+use super::{Answer, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
 pub struct CampaignOptions {
     /// Which campaign.
-    #[arg(value_name = "NAME", value_parser = campaigns(), default_value = CAMPAIGNS[0].name)]
+    #[arg(value_name = "NAME", value_parser = registered(&CAMPAIGNS, |of| [of.name, of.meaning]), default_value = CAMPAIGNS[0].name)]
     campaign: &'static Campaign,
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
     /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
@@ -31,14 +30,6 @@ pub struct CampaignOptions {
     /// The only class to run, of disturbed.
     #[arg(long, value_name = "NAME")]
     class: Option<String>,
-}
-
-/// Takes the names of the registry.
-fn campaigns() -> impl TypedValueParser<Value = &'static Campaign> {
-    let values = CAMPAIGNS.each_ref().map(|of| PossibleValue::new(of.name).help(of.meaning));
-    PossibleValuesParser::new(values).try_map(|name| {
-        CAMPAIGNS.iter().find(|campaign| campaign.name == name).ok_or("there is none of this name")
-    })
 }
 
 impl CampaignOptions {

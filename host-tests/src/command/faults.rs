@@ -48,11 +48,8 @@ pub fn platform(text: &str) -> Result<Platform, String> {
 /// Refuses a fault that cannot happen on a platform.
 ///
 /// # Errors
-/// The platforms that have the fault, or that the coarse IMU which it needs is left out.
-pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), String> {
-    if no_base_imu && FaultChoice::One(fault).is_of_base_imu() {
-        return Err("--fault: --no-base-imu leaves out what it happens to".to_owned());
-    }
+/// The platforms that have the fault.
+pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
     let having: Vec<_> = fault.platforms().map(Platform::name).collect();
     if having.contains(&platform.name()) {
         return Ok(());

@@ -14,6 +14,7 @@ use std::io::Write;
 use std::path::Path;
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::outcome::{self, Finished, Outcome};
 use host::recording::{Body, Truth};
 use host::report::Report;
@@ -90,18 +91,21 @@ impl Answer {
         }
     }
 
-    /// The object with a status that is that of the exit code, its reason, and the warnings.
+    /// The object with its version, a status that is that of the exit code, its reason, and the warnings.
     fn agreeing(&self, mut object: Value) -> Value {
         let says_ok = object["status"] == "ok";
-        if !object.is_object() || (self.found && says_ok && self.warnings.is_empty()) {
+        if !object.is_object() {
             return object;
+        }
+        if object.get("schema").is_none() {
+            object["schema"] = outcome::SCHEMA.into();
         }
         if self.found {
             object["status"] = "ok".into();
-        } else if says_ok || object["status"].is_null() {
+        } else if says_ok || object.get("status").is_none() {
             object["status"] = "failed".into();
         }
-        if let Some(reason) = self.refusal.as_ref().filter(|_| object["reason"].is_null()) {
+        if let Some(reason) = self.refusal.as_ref().filter(|_| object.get("reason").is_none()) {
             object["reason"] = reason.as_str().into();
         }
         if !self.warnings.is_empty() {
@@ -189,6 +193,18 @@ impl From<Half> for setting::Half {
             Half::West => Self::West,
         }
     }
+}
+
+/// Takes the names of a registry's entries, and shows them with their meanings.
+fn registered<T: Sync>(
+    entries: &'static [T],
+    named: fn(&T) -> [&'static str; 2],
+) -> impl TypedValueParser<Value = &'static T> {
+    let values = entries.iter().map(named);
+    let values = values.map(|[name, meaning]| PossibleValue::new(name).help(meaning));
+    PossibleValuesParser::new(values).try_map(move |name| {
+        entries.iter().find(|entry| named(entry)[0] == name).ok_or("there is none of this name")
+    })
 }
 
 /// A latitude in degrees.

@@ -14,7 +14,7 @@ use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
 use super::stated::{Stated, long};
-use super::{Answer, Failure, Half, Shown, explained, files, latitude, sigma};
+use super::{Answer, Failure, Half, Shown, explained, files, latitude, registered, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -22,7 +22,7 @@ pub struct ReplayOptions {
     /// The recording, CSV, also gzip-compressed.
     file: PathBuf,
     /// Method; the default follows from the kind.
-    #[arg(long, value_parser = method)]
+    #[arg(long, value_parser = registered(&METHODS, |of| [of.name, of.meaning]))]
     method: Option<&'static Method>,
     /// Latitude in degrees, north positive, instead of the recording's.
     #[arg(long, value_name = "DEGREES", value_parser = latitude)]
@@ -58,19 +58,11 @@ fn displacements(text: &str) -> Result<Displacements, String> {
     recording::displacements(text).map(Displacements).map_err(|problem| problem.to_string())
 }
 
-/// Takes the names of the registry.
-fn method(text: &str) -> Result<&'static Method, String> {
-    methods::named(text).ok_or_else(|| {
-        let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
-        format!("not one of {}", names.join(", "))
-    })
-}
-
 impl ReplayOptions {
-    /// What the user asks of this method.
-    fn asked(&self, method: &Method) -> Asked {
+    /// What the user asks.
+    fn asked(&self) -> Asked {
         Asked {
-            method: Some(method.name),
+            method: self.method.map(|method| method.name),
             latitude: self.latitude,
             criterion: self.criterion,
             half: self.half.map(Into::into),
@@ -133,12 +125,14 @@ fn replay(
 ) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, truth) = recording.into_parts();
-    let (asked, progress) = (options.asked(method), Progress::new(0, "positions"));
+    let (asked, progress) = (options.asked(), Progress::new(0, "positions"));
     let finished = (method.replay)(&header, &body, &asked, &|session| progress.session(session))
         .map_err(|error| format!("{name}: {error}"))?;
     progress.finish();
     let outcome = finished.outcome(&truth);
-    let cause = outcome.reason.as_ref().and_then(|_| finished.cause(&header, &body, &asked));
+    // A run gives its own reason.
+    let is_caused = outcome.reason.is_some() && header.session.is_none();
+    let cause = is_caused.then(|| finished.cause(&header, &body, &asked)).flatten();
     let reason = outcome.reason.map(|reason| match cause {
         Some(cause) => explained(&reason, &cause),
         None => reason,

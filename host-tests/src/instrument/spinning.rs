@@ -74,8 +74,8 @@ pub fn follow_spin<W: Observer>(
         plant.truth_at(embassy_time::Instant::from_micros(time.0))
     };
     let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
-    let (start, flown) = (at(&fresh, time(kept.0.first())), &board.borrow().plant);
-    let rolls_rad = kept.0.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
-    let truth = at(flown, time(kept.0.last()));
-    Ok(SpinRun { run, samples: kept.0, rolls_rad, start, truth })
+    let (start, flown) = (at(&fresh, time(kept.taken.first())), &board.borrow().plant);
+    let rolls_rad = kept.taken.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
+    let truth = at(flown, time(kept.taken.last()));
+    Ok(SpinRun { run, samples: kept.taken, rolls_rad, start, truth })
 }

@@ -4,6 +4,7 @@
 //! the JSON object, the text and the page; text and page are one [`Report`], whose figures only the page
 //! shows.
 
+pub mod kept;
 pub mod run;
 
 use std::any::Any;
@@ -285,7 +286,9 @@ impl Outcome {
     /// The outcome with its status: refused where there is a reason.
     #[must_use]
     pub fn settled(self, reason: Option<String>) -> Self {
-        Self { status: if reason.is_none() { "ok" } else { "refused" }, reason, ..self }
+        let status = if reason.is_none() { "ok" } else { "refused" };
+        // A sum of nothing is −0.
+        Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
 
     /// What the method added, where it is of this type.

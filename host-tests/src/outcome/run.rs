@@ -8,11 +8,9 @@ use firmware::storage::Remembered;
 use orientation::keep::Realigned;
 use serde::Serialize;
 
-use super::{Finished, NoDetails, Outcome};
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
-use crate::recording::Truth;
 use crate::report::{self, Figure, Lines, Part, Series, Style};
 
 /// What only a simulated run has.
@@ -210,37 +208,6 @@ impl KeptDetails {
             lines.add("realigned", format!("{} time(s)", self.realigned));
         }
         lines
-    }
-}
-
-/// A run whose azimuth is kept while no alignment's conclusion stands: it came from outside, or the session was begun
-/// anew at a stop. The azimuth is the one that is kept at the end.
-#[derive(Clone, Copy, Debug)]
-pub struct KeptAzimuth;
-
-impl Finished for KeptAzimuth {
-    fn outcome(&self, _: &Truth) -> Outcome {
-        Outcome::new("kept", NoDetails {})
-    }
-
-    fn titles(&self) -> [&'static str; 2] {
-        ["Azimuth kept in", "No azimuth kept in"]
-    }
-}
-
-impl Outcome {
-    /// The outcome with what only a run has; what was kept stands for an alignment where there is none.
-    #[must_use]
-    pub fn of_run(self, seed: u64, run: RunDetails) -> Self {
-        let this = Self { source: Some(super::Source::Seed(seed)), ..self };
-        if this.details::<NoDetails>().is_none() {
-            return Self { run: Some(run), ..this };
-        }
-        let kept = run.kept.as_ref();
-        let (azimuth_deg, sigma_deg) =
-            (kept.and_then(|kept| kept.azimuth_deg), kept.and_then(|kept| kept.sigma_deg));
-        let reason = azimuth_deg.is_none().then(|| "the azimuth is not known any more".to_owned());
-        Self { azimuth_deg, sigma_deg, run: Some(run), ..this }.settled(reason)
     }
 }
 

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use super::degrees_per_hour;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
+use crate::outcome::SCHEMA;
 use crate::planning::Suggestion;
 use crate::recording::Gap;
 use crate::report::{Lines, Report};
@@ -131,7 +132,8 @@ impl Shown<'_> {
         let mut object = Map::new();
         let mut set =
             |values: Value| object.extend(values.as_object().cloned().unwrap_or_default());
-        set(json!({ "status": if reason.is_none() { "ok" } else { "refused" } }));
+        let status = if reason.is_none() { "ok" } else { "refused" };
+        set(json!({ "schema": SCHEMA, "file": self.name, "status": status }));
         if let Some(reason) = reason {
             set(json!({ "reason": reason }));
         }

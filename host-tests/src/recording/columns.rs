@@ -25,11 +25,11 @@ const QUATERNION: [&str; 4] = ["truth_qw", "truth_qx", "truth_qy", "truth_qz"];
 /// When a column must be there.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Need {
-    /// Always.
+    /// In every recording.
     Always,
-    /// Never.
+    /// In no recording: the column may be there.
     Optional,
-    /// Never, and where it is, its fields may be empty.
+    /// In no recording: the column may be there, and its fields may be empty.
     Sometimes,
     /// When any of these is: they come together.
     AnyOf(&'static [&'static str]),

@@ -7,6 +7,7 @@
 use std::io::{self, Write};
 
 use orientation::error::Refusal;
+use orientation::units::AngularRate;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -58,13 +59,20 @@ impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
     }
 }
 
-impl<S: Serialize, P: Serialize> Given<S, P> {
+/// A rate as a board had it: at its lower limit it stands in a recording a step above, where the column's range ends.
+pub(crate) fn rate(rad_s: f64) -> AngularRate {
+    let rate = AngularRate::from_rad_per_s(rad_s);
+    if rate.0 == -i32::MAX { AngularRate(i32::MIN) } else { rate }
+}
+
+impl<S: Serialize + DeserializeOwned, P: Serialize + DeserializeOwned> Given<S, P> {
     /// Writes the lines of a header, and this as its last one.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or holds a number that JSON does not have.
     pub fn write(&self, to: &mut impl Write, lines: &[u8]) -> io::Result<()> {
         let (lines, text) = (String::from_utf8_lossy(lines), serde_json::to_string(self)?);
+        serde_json::from_str::<Self>(&text)?;
         let keys = lines.lines().filter_map(header::key_and_value);
         writeln!(to, "{lines}# {SESSION}: {} {text}", header::checksum(keys, &text))
     }

@@ -192,7 +192,10 @@ impl Collector {
             Some(before) if before.value == value => return Ok(()),
             Some(before) => return Err(contradiction(line, before, value)),
             None if entries.len() < MAX_TRUTH_KEYS => {}
-            None => return Err(too_many_keys(line)),
+            None => {
+                let most = SourceProblem::TooMany(MAX_TRUTH_KEYS as u64, "truth_ keys");
+                return Err(Fault::line(line, most));
+            }
         }
         entries.push(Entry { line, key: key.to_owned(), value: value.to_owned() });
         Ok(())
@@ -275,11 +278,6 @@ impl Collector {
 fn contradiction(line: u64, before: &Entry, value: &str) -> Fault {
     let problem = HeaderProblem::Contradiction(value.to_owned(), before.value.clone(), before.line);
     Fault::key(line, &before.key, problem)
-}
-
-/// More keys than memory should be spent on.
-fn too_many_keys(line: u64) -> Fault {
-    Fault::line(line, SourceProblem::TooMany(MAX_TRUTH_KEYS as u64, "truth_ keys"))
 }
 
 /// Two numbers with a comma.

@@ -34,6 +34,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 pub use error::{Place, ReadError};
+pub(crate) use given::rate;
 pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
@@ -97,19 +98,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// The rows of a platform that turns all the time; none of another kind.
-    #[must_use]
-    pub fn rotating(&self) -> &[RotatingRow] {
-        if let Self::Rotating(rows) = self { rows } else { &[] }
-    }
-
-    /// The rows of a spinning body; none of another kind.
-    #[must_use]
-    pub fn spin(&self) -> &[SpinRow] {
-        if let Self::Spin(rows) = self { rows } else { &[] }
-    }
-
-    /// The kind of its recording.
+    /// The kind of the recording that holds the rows.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {

@@ -13,7 +13,7 @@ const RUNS: [usize; 2] = [400, 200];
 
 #[test]
 fn stops_make_the_azimuth_better_than_averaging_did_and_rest_rates_better_still() {
-    let rows = drives::rows(FEW, || {});
+    let rows: Vec<_> = (0..drives::COUNT).map(|case| drives::row(case, FEW, &|| {})).collect();
     assert_eq!(rows.len(), drives::COUNT);
     for row in rows.iter().filter(|row| !row.case.contains("found")) {
         println!("{row:?}");
@@ -30,7 +30,7 @@ fn stops_make_the_azimuth_better_than_averaging_did_and_rest_rates_better_still(
 
 #[test]
 fn sway_turns_averaging_by_degrees_and_the_inertial_frame_hardly() {
-    let rows = parked::rows(FEW, || {});
+    let rows: Vec<_> = (0..parked::COUNT).map(|case| parked::row(case, FEW, &|| {})).collect();
     assert_eq!(rows.len(), parked::COUNT);
     let [_, quiet, swaying, slammed] = &rows[..] else { panic!("four rows") };
     assert!(quiet.averaging_rms_deg < 1.0, "{}", quiet.averaging_rms_deg);

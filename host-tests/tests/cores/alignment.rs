@@ -277,7 +277,7 @@ fn blocks(generator: &mut Generator, samples: u32, add: impl Fn(u32) -> f64) -> 
     for index in 0..samples {
         blocks.push((1000.0 * (generator.gaussian() + add(index))).round() as i32);
     }
-    Dwell { quietness: blocks.quietness(0.01), samples, ..Dwell::default() }
+    Dwell { statistics: blocks.statistics(0.01), samples, ..Dwell::default() }
 }
 
 /// N for one µrad/s a sample at 100 Hz.

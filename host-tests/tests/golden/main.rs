@@ -65,7 +65,7 @@ fn without_times(text: &str) -> String {
     text.lines().flat_map(|line| [masked(line), "\n"]).collect()
 }
 
-/// The same of a JSON object, a key a line.
+/// The exit code and the JSON object on standard output, a key a line, without the times that a clock on the wall gave.
 fn printed_object(output: &Output) -> String {
     let code = output.status.code().expect("no signal ended it");
     let mut object: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
@@ -236,6 +236,22 @@ fn listed() -> [BTreeSet<String>; 2] {
     [of_objects, held].map(|keys| keys.into_iter().flatten().collect())
 }
 
+/// The keys without an asterisk that an object of a method has.
+fn needed(method: &str) -> Vec<String> {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let text = fs::read_to_string(readme).expect("the list is there");
+    let sections: Vec<&str> = text.split("\n## ").collect();
+    let of_all = sections[0].lines().map(|row| (row, true));
+    let of_methods = sections[1].lines().map(|row| {
+        let methods = row.split('|').nth(2).unwrap_or_default();
+        (row, methods.split(',').any(|named| named.trim() == method))
+    });
+    let cells = of_all.chain(of_methods).filter(|(row, is_its)| *is_its && row.starts_with("| `"));
+    let cells = cells.filter_map(|(row, _)| row.split('|').nth(1));
+    let plain = cells.filter(|cell| !cell.contains('*'));
+    plain.flat_map(|cell| cell.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+}
+
 /// All keys of a value, those of what it holds too.
 fn keys(value: &Value, into: &mut BTreeSet<String>) {
     match value {
@@ -263,6 +279,7 @@ fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
         keys(&object, &mut found);
         let is_ok = object["status"] == "ok";
         assert_eq!(is_ok, exit == "exit 0", "{name}");
+        assert!(!is_ok || !name.ends_with("refused"), "{name}");
         assert_eq!(is_ok, object.get("reason").is_none(), "{name}: a refusal has a reason");
         if object["status"] == "failed" {
             continue;
@@ -270,6 +287,9 @@ fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
         assert_eq!(object["schema"], 1, "{name}");
         assert!(object["file"].is_string() != object["seed"].is_u64(), "{name}: one of both");
         assert!(is_ok || object.get("azimuth_deg").is_none(), "{name}: none where refused");
+        let method = object["method"].as_str().expect("it has a method");
+        let needed = needed(method).into_iter().filter(|key| is_ok && object.get(key).is_none());
+        assert_eq!(needed.collect::<Vec<_>>(), [""; 0], "{name} lacks keys of README.md");
         let sigma = object.get("sigma_deg").and_then(Value::as_f64);
         assert!(!is_ok || sigma.is_some_and(|sigma| sigma > 0.0), "{name}: a result has its σ");
     }

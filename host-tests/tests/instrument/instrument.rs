@@ -78,7 +78,7 @@ fn a_recorded_run_replays_to_the_same_azimuth_without_what_its_session_was_given
         let path = PathBuf::from(scratch.path("recorded.csv"));
         let mut samples = Samples::default();
         let run = instrument::align(&scenario, None, &mut samples, &()).expect("it is possible");
-        recorder::write(&path, &scenario, &run, &samples.0).expect("the folder is ours");
+        recorder::write(&path, &scenario, &run, &samples.taken).expect("the folder is ours");
         let (header, body, truth) = recording::read(&path).expect("it is well-formed").into_parts();
         assert_eq!(truth.azimuth_deg, Some(scenario.azimuth_deg));
         let header = Header { session: None, ..header };

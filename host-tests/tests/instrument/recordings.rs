@@ -89,7 +89,7 @@ fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let run = align(scenario, fault, &mut samples, &()).expect("it is possible");
-    compare_stage(&plain, scenario, &run, &run, &samples.0);
+    compare_stage(&plain, scenario, &run, &run, &samples.taken);
 }
 
 fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
@@ -98,7 +98,7 @@ fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let frames = align_frames(scenario, fault, &mut samples, &()).expect("it is possible");
-    compare_stage(&plain.run, scenario, &frames, &frames.run, &samples.0);
+    compare_stage(&plain.run, scenario, &frames, &frames.run, &samples.taken);
 }
 
 fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
@@ -113,7 +113,7 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let mut samples = Samples::default();
     let run = align_turning(scenario, fault, &mut samples, &()).expect("it is possible");
     assert_eq!(of_run(&plain.run), of_run(&run.run));
-    let Some((header, body)) = read_back(scenario, &run, &samples.0) else { return };
+    let Some((header, body)) = read_back(scenario, &run, &samples.taken) else { return };
     let again = rotating::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(reported(&again, &again.session.conclusion()), of_run(&run.run));
@@ -129,7 +129,7 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
     let mut samples = Samples::default();
     let found = align_stops(scenario, fault, &mut samples, &()).expect("it is possible");
     assert_eq!(reported(&plain.run.replay), reported(&found.run.replay));
-    let Some((header, body)) = read_back(scenario, &found, &samples.0) else { return };
+    let Some((header, body)) = read_back(scenario, &found, &samples.taken) else { return };
     let again = stops::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(reported(&again.session), reported(&found.run.replay));
@@ -251,12 +251,12 @@ fn a_recording_on_a_base_with_sensors_holds_what_they_showed() {
     let scenario = Scenario { sway_deg: 0.2, has_base_imu: true, ..stage(1) };
     let mut samples = Samples::default();
     let run = align(&scenario, None, &mut samples, &()).expect("it is possible");
-    let read = read_back(&scenario, &run, &samples.0);
+    let read = read_back(&scenario, &run, &samples.taken);
     let Some((_, Body::Stage(rows))) = read else { panic!("it is a stage") };
     let shown: Vec<f64> =
         rows.iter().filter_map(|row| row.base).map(|base| base.rates_rad_s[0]).collect();
-    let from = samples.0.first().expect("there are samples").time.0;
-    let until = samples.0.last().expect("there are samples").time.0;
+    let from = samples.taken.first().expect("there are samples").time.0;
+    let until = samples.taken.last().expect("there are samples").time.0;
     let within = run.base.iter().filter(|(at, _)| (from..=until).contains(&at.as_micros()));
     let given: Vec<f64> = within.map(|(_, reading)| reading.rate[0].rad_per_s()).collect();
     assert!(shown.len() > 1000 && shown.len().abs_diff(given.len()) <= 1, "{}", shown.len());

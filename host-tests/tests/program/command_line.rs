@@ -188,7 +188,7 @@ fn sound() -> String {
     recording
 }
 
-/// The same with one thing changed.
+/// A sound recording with one thing changed.
 fn changed(from: &str, to: &str) -> String {
     let text = sound();
     assert!(text.contains(from), "{from}");

@@ -7,7 +7,7 @@ use crate::support::files::Scratch;
 use crate::support::program::{code, meridian, object, reason, text};
 
 /// Short runs of every platform, with every option that a session is given beside its samples.
-const RUNS: [&[&str]; 12] = [
+const RUNS: [&[&str]; 16] = [
     &["stage", "--rate=50", "--dwell=2"],
     &["stage", "--rate=50", "--dwell=2", "--hold=9", "--sway=0.1"],
     &["stage", "--rate=50", "--sigma=0.5"],
@@ -15,6 +15,11 @@ const RUNS: [&[&str]; 12] = [
     &["stage", "--rate=50", "--seconds=60", "--survey=60"],
     &["stage", "--rate=50", "--dwell=20", "--positions=2", "--half=west", "--gyro=mems"],
     &["stage", "--rate=50", "--dwell=2", "--fault=base-nudge"],
+    // A sway that was not measured, one that takes the gyro to its lower limit, and a gyro that stays at it.
+    &["stage", "--rate=50", "--dwell=2", "--fault=coarse-imu-identity"],
+    &["stage", "--rate=50", "--dwell=2", "--sway=2", "--sway-hertz=5"],
+    &["stage", "--rate=50", "--dwell=2", "--fault=saturation-always"],
+    &["turntable", "--rate=50", "--turns=4", "--fault=saturation-always"],
     &["two-frame", "--rate=50", "--passes=2", "--dwell=2"],
     &["two-frame", "--rate=50", "--sigma=0.5"],
     &["turntable", "--rate=50", "--turns=4"],
@@ -25,7 +30,7 @@ const RUNS: [&[&str]; 12] = [
 /// What is found: all keys that no other kind of source changes.
 fn found(mut object: Value) -> Value {
     let keys = object.as_object_mut().expect("it is an object");
-    let of_the_source = ["seed", "file", "simulated_seconds", "health", "kept", "stored", "reason"];
+    let of_the_source = ["seed", "file", "simulated_seconds", "health", "kept", "stored"];
     let of_the_mechanism = ["truth_off_vertical_deg", "recalled"];
     keys.retain(|key, _| !of_the_source.iter().chain(&of_the_mechanism).any(|other| key == other));
     object
@@ -94,4 +99,28 @@ fn a_run_that_ends_before_its_first_sample_says_that_there_is_nothing_to_record(
     assert_eq!(code(&output), 1);
     let why = text(&output.stderr);
     assert!(why.contains("ended before its session got a sample"), "{why}");
+}
+
+#[test]
+fn displacements_that_the_forces_of_a_recorded_drive_contradict_are_refused() {
+    let scratch = Scratch::new("displaced");
+    let path = scratch.path("run.csv");
+    answered(&["run", "vehicle", "--rate=50", "--stops=2", "--stop-seconds=30", "--record", &path]);
+    for wrong in ["0,0;-12000,-9000", "0,0;0,0", "0,0;-2.672,-2.023"] {
+        let refused = answered(&["replay", &path, "--displacements", wrong]);
+        assert_ne!(refused["status"], "ok", "{wrong}");
+    }
+    let right = answered(&["replay", &path, "--displacements", "0,0;-2672,-2023"]);
+    assert_eq!(right["status"], "ok");
+}
+
+#[test]
+fn a_run_by_the_name_of_its_method_is_that_of_its_platform() {
+    let spin = ["--flight-seconds=0.6", "--json"];
+    let of_platform = meridian(&[&["run", "spin"], &spin[..]].concat());
+    for by_method in [&["--method", "spin"][..], &["--method=spin"]] {
+        let of_method = meridian(&[&["run"], by_method, &spin].concat());
+        assert_eq!(object(&of_method), object(&of_platform));
+    }
+    assert_eq!(code(&meridian(&["run", "--method", "vertical"])), 2);
 }

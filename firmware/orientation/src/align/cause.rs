@@ -53,8 +53,8 @@ fn is_stuck(dwells: &[Dwell]) -> bool {
 /// Factor of the configured noise power by which the dwells scatter; `None` where they do not
 /// scatter alike and white.
 fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
-    let quiet = || dwells.iter().filter_map(|dwell| dwell.quietness.as_ref());
-    let ratios = || quiet().map(|quietness| power(quietness) / stated(setting, quietness));
+    let quiet = || dwells.iter().filter_map(|dwell| dwell.statistics.as_ref());
+    let ratios = || quiet().map(|statistics| power(statistics) / stated(setting, statistics));
     let usual = median_of(ratios());
     let is_alike = |ratio: &f64| (usual / ALIKE..usual * ALIKE).contains(ratio);
     let alike = ratios().filter(is_alike).count() as f64;
@@ -65,20 +65,20 @@ fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
 }
 
 /// Configured noise power plus the remainder of sway compensation, (rad/s)²·s.
-fn stated(setting: &Setting, quietness: &BlockStatistics) -> f64 {
-    let (walk, seconds) = (setting.noise.angle_random_walk, quietness.block_seconds);
+fn stated(setting: &Setting, statistics: &BlockStatistics) -> f64 {
+    let (walk, seconds) = (setting.noise.angle_random_walk, statistics.block_seconds);
     walk * walk + setting.sway.mean_variance(seconds) * seconds
 }
 
 /// Noise power of a dwell's block means, (rad/s)²·s.
-fn power(quietness: &BlockStatistics) -> f64 {
-    quietness.scatter / (quietness.count() - 2.0) * quietness.block_seconds
+fn power(statistics: &BlockStatistics) -> f64 {
+    statistics.scatter / (statistics.count() - 2.0) * statistics.block_seconds
 }
 
 /// Noise power of neighbouring blocks over that of all blocks: one for white noise.
-fn neighbours(quietness: &BlockStatistics) -> f64 {
-    let of_neighbours = quietness.neighbour_squares / (2.0 * (quietness.count() - 1.0));
-    of_neighbours * quietness.block_seconds / power(quietness)
+fn neighbours(statistics: &BlockStatistics) -> f64 {
+    let of_neighbours = statistics.neighbour_squares / (2.0 * (statistics.count() - 1.0));
+    of_neighbours * statistics.block_seconds / power(statistics)
 }
 
 /// Noise power of the dwell means about a sinusoid of the stage angle, over the power within the
@@ -87,7 +87,7 @@ fn means(dwells: &[Dwell]) -> Option<f64> {
     let mut regression = Regression::<3>::default();
     for dwell in dwells {
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
-        let deviation = libm::sqrt(power(dwell.quietness.as_ref()?) / dwell.seconds);
+        let deviation = libm::sqrt(power(dwell.statistics.as_ref()?) / dwell.seconds);
         let columns = [cosine, sine, 1.0].map(|column| column / deviation);
         regression.push(&columns, dwell.rate / deviation);
     }

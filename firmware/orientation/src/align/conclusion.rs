@@ -218,15 +218,15 @@ impl Conclusion {
     /// Refuses where the inconsistent dwells begin or end the session: then they were not
     /// disturbed, but the heading or the encoder changed.
     fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), Refusal> {
-        let first = astray(self.disturbances.iter());
-        let last = astray(self.disturbances.iter().rev());
+        let first = inconsistent(self.disturbances.iter());
+        let last = inconsistent(self.disturbances.iter().rev());
         let at = match (first, last) {
             (0, 0) => return Ok(()),
             (first, 0) => first,
             (_, last) => dwells.len() - last,
         };
         let after = dwells.get(at.max(1) - 1).map_or(0.0, Dwell::end);
-        Err(Refusal::EndAstray { dwells: first.max(last), after })
+        Err(Refusal::EndDisagrees { dwells: first.max(last), after })
     }
 
     /// The dwells that take part, with their indices.
@@ -328,7 +328,7 @@ impl Conclusion {
         let Tilt { counter, scatter, .. } = self.tilt;
         if counter > 0.0 || scatter > FORCE_TOLERANCE {
             let scatter = if counter > 0.0 { counter } else { scatter };
-            return Err(Refusal::AccelerometerAstray { scatter: scatter * 1e3 });
+            return Err(Refusal::AccelerometerDisagrees { scatter: scatter * 1e3 });
         }
         Ok(())
     }
@@ -431,7 +431,7 @@ fn excess(fit: &Fit) -> f64 {
 
 /// Number of inconsistent dwells at an end. A single dwell that was disturbed within itself may
 /// have been hit by a shock and does not count.
-fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
+fn inconsistent<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
     use Disturbance::{Drift, NonStationary, Step};
     let run = from.map_while(|why| why.filter(|why| !matches!(why, Disturbance::Samples(_))));
     let (mut count, mut within) = (0, 0);
@@ -445,9 +445,9 @@ fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
 /// Noise power N² from the scatter within the dwells, each weighted by its degrees of freedom.
 fn white_of(kept: &[&Dwell]) -> f64 {
     let (mut power, mut freedom) = (0.0, 0.0);
-    for quietness in kept.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
-        power += quietness.scatter * quietness.block_seconds;
-        freedom += quietness.count() - 2.0;
+    for statistics in kept.iter().filter_map(|dwell| dwell.statistics.as_ref()) {
+        power += statistics.scatter * statistics.block_seconds;
+        freedom += statistics.count() - 2.0;
     }
     if freedom > 0.0 { power / freedom } else { 0.0 }
 }

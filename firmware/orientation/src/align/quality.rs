@@ -114,27 +114,27 @@ impl ExpectedScatter {
         if let Some(fault) = dwell.fault {
             return Some(Disturbance::Samples(fault));
         }
-        let quietness = dwell.quietness.as_ref()?;
+        let statistics = dwell.statistics.as_ref()?;
         if self.white <= 0.0 {
             return None;
         }
-        self.unquiet(quietness)
-            .or_else(|| self.step(quietness))
-            .or_else(|| self.drift(quietness))
+        self.non_stationary(statistics)
+            .or_else(|| self.step(statistics))
+            .or_else(|| self.drift(statistics))
             .or_else(|| self.driving(dwell))
     }
 
     /// Variance of one block mean about the dwell's line, (rad/s)²: white noise, and the part of
     /// the drift that a line does not follow.
-    fn block_variance(&self, quietness: &BlockStatistics) -> f64 {
-        let seconds = quietness.count() * quietness.block_seconds;
-        self.own_variance(quietness) + self.walk * seconds / 15.0 + 2.0 * self.flicker
+    fn block_variance(&self, statistics: &BlockStatistics) -> f64 {
+        let seconds = statistics.count() * statistics.block_seconds;
+        self.own_variance(statistics) + self.walk * seconds / 15.0 + 2.0 * self.flicker
     }
 
     /// Variance of one block mean that is independent of others, (rad/s)²: white noise, and the
     /// remainder of sway compensation.
-    fn own_variance(&self, quietness: &BlockStatistics) -> f64 {
-        let seconds = quietness.block_seconds;
+    fn own_variance(&self, statistics: &BlockStatistics) -> f64 {
+        let seconds = statistics.block_seconds;
         self.white / seconds + self.sway.mean_variance(seconds)
     }
 
@@ -143,9 +143,9 @@ impl ExpectedScatter {
     #[must_use]
     pub fn observed_white(&self, dwells: &[Dwell]) -> f64 {
         let (mut found, mut expected) = (0.0, 0.0);
-        for quietness in dwells.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
-            found += quietness.scatter;
-            expected += (quietness.count() - 2.0) * self.block_variance(quietness);
+        for statistics in dwells.iter().filter_map(|dwell| dwell.statistics.as_ref()) {
+            found += statistics.scatter;
+            expected += (statistics.count() - 2.0) * self.block_variance(statistics);
         }
         if expected > 0.0 { self.white * found / expected } else { self.white }
     }
@@ -164,32 +164,32 @@ impl ExpectedScatter {
     }
 
     /// Chi-square test of the block means' scatter.
-    fn unquiet(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
-        let degrees = quietness.count() - 2.0;
-        let chi_square = quietness.scatter / self.block_variance(quietness);
+    fn non_stationary(&self, statistics: &BlockStatistics) -> Option<Disturbance> {
+        let degrees = statistics.count() - 2.0;
+        let chi_square = statistics.scatter / self.block_variance(statistics);
         (chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY)
             .then_some(Disturbance::NonStationary(chi_square / degrees))
     }
 
     /// Test of the largest step.
-    fn step(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
-        let step = quietness.largest_step / libm::sqrt(self.block_variance(quietness));
+    fn step(&self, statistics: &BlockStatistics) -> Option<Disturbance> {
+        let step = statistics.largest_step / libm::sqrt(self.block_variance(statistics));
         (step > STEP_BOUND).then_some(Disturbance::Step(step))
     }
 
     /// Test of the slope. A random walk over T has a slope of variance 6K²/(5T); flicker one of
     /// about 6B²/(πT²).
-    fn drift(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
+    fn drift(&self, statistics: &BlockStatistics) -> Option<Disturbance> {
         let slope =
-            (quietness.slope - self.slope).abs() / libm::sqrt(self.slope_variance(quietness));
+            (statistics.slope - self.slope).abs() / libm::sqrt(self.slope_variance(statistics));
         (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
     }
 
     /// Variance of a dwell's slope about the shared one, (rad/s²)².
-    fn slope_variance(&self, quietness: &BlockStatistics) -> f64 {
-        let seconds = quietness.count() * quietness.block_seconds;
-        let unit = quietness.slope_unit();
-        self.own_variance(quietness) * unit * unit
+    fn slope_variance(&self, statistics: &BlockStatistics) -> f64 {
+        let seconds = statistics.count() * statistics.block_seconds;
+        let unit = statistics.slope_unit();
+        self.own_variance(statistics) * unit * unit
             + 1.2 * self.walk / seconds
             + 6.0 * self.flicker / (seconds * seconds)
             + self.slope_variance
@@ -377,13 +377,13 @@ fn slopes<'a>(
             Other::Before => &pair[1],
             Other::After => &pair[0],
         };
-        let quietness = dwell.quietness.as_ref()?;
-        let sigma = libm::sqrt(norm.slope_variance(quietness));
+        let statistics = dwell.statistics.as_ref()?;
+        let sigma = libm::sqrt(norm.slope_variance(statistics));
         if sigma <= 0.0 || !marks.iter().flatten().all(is_asked) {
             return None;
         }
         let per_second = 6.0 * (pair[1].rate - pair[0].rate) / (dwell.seconds * dwell.seconds);
-        Some([per_second / sigma, (quietness.slope - norm.slope) / sigma])
+        Some([per_second / sigma, (statistics.slope - norm.slope) / sigma])
     })
 }
 
@@ -405,26 +405,26 @@ fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Ti
 /// dwells from their neighbouring blocks, to which a slow disturbance contributes little.
 fn white_median(dwells: &[Dwell]) -> f64 {
     let few = dwells.len() < 3;
-    let estimate = |quietness: &BlockStatistics| {
-        let blocks = quietness.count();
+    let estimate = |statistics: &BlockStatistics| {
+        let blocks = statistics.count();
         let variance = if few {
-            quietness.neighbour_squares / (2.0 * (blocks - 1.0))
+            statistics.neighbour_squares / (2.0 * (blocks - 1.0))
         } else {
-            quietness.scatter / (blocks - 2.0)
+            statistics.scatter / (blocks - 2.0)
         };
-        variance * quietness.block_seconds
+        variance * statistics.block_seconds
     };
-    median_of(dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)))
+    median_of(dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(estimate)))
 }
 
 /// Variance of the shared slope for white noise of density one: the median of n values has π/2
 /// times the variance of their mean.
 fn slope_density(dwells: &[Dwell]) -> f64 {
-    let density = |quietness: &BlockStatistics| {
-        quietness.slope_unit() * quietness.slope_unit() / quietness.block_seconds
+    let density = |statistics: &BlockStatistics| {
+        statistics.slope_unit() * statistics.slope_unit() / statistics.block_seconds
     };
     let mut values: heapless::Vec<f64, CAPACITY> =
-        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(density)).collect();
+        dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(density)).collect();
     if values.len() < 3 {
         return 0.0;
     }
@@ -434,6 +434,6 @@ fn slope_density(dwells: &[Dwell]) -> f64 {
 /// Slope that the dwells share, rad/s²; zero with fewer than three dwells.
 fn slope_median(dwells: &[Dwell]) -> f64 {
     let mut slopes: heapless::Vec<f64, CAPACITY> =
-        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(|q| q.slope)).collect();
+        dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(|q| q.slope)).collect();
     if slopes.len() < 3 { 0.0 } else { median(&mut slopes) }
 }

@@ -72,7 +72,7 @@ pub enum RecallRefusal {
         sigmas: f64,
     },
     /// The gyros cannot determine whether the body was turned.
-    CannotTell {
+    TurnUnobservable {
         /// Standard deviation with which they could, 1σ, °.
         sigma: f64,
     },
@@ -82,8 +82,8 @@ crate::words! { RecallRefusal:
     Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds);
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
-    Self::CannotTell { sigma } =>
-        "a turn about the vertical could be told to {}° only: the gyros' biases differ from start to start",
+    Self::TurnUnobservable { sigma } =>
+        "a turn about the vertical shows to {}° only: the gyros' biases differ from start to start",
         Rounded::<2>(sigma);
 }
 
@@ -112,7 +112,7 @@ pub(super) fn check(
     }
     let sigma = rotation_sigma(before, setting, &sigmas);
     if sigma > DETERMINED || sigma.is_nan() {
-        return Err(RecallRefusal::CannotTell { sigma: sigma * DEGREES });
+        return Err(RecallRefusal::TurnUnobservable { sigma: sigma * DEGREES });
     }
     Ok(())
 }

@@ -76,7 +76,7 @@ impl Blocks {
     /// Statistics of the full blocks, for a sample period in seconds; `None` with fewer than four
     /// blocks. The samples of the incomplete block count as part of the last one.
     #[must_use]
-    pub fn quietness(&self, sample_seconds: f64) -> Option<BlockStatistics> {
+    pub fn statistics(&self, sample_seconds: f64) -> Option<BlockStatistics> {
         let blocks = NonZero::new(self.full as u32).filter(|blocks| blocks.get() >= 4)?;
         let scale = 1e-9 / f64::from(self.length);
         let mut means = [0.0; BLOCKS];

@@ -35,7 +35,7 @@ pub struct Dwell {
     /// noise model.
     pub stated_variance: Optional,
     /// Block statistics; none with too few samples for four blocks.
-    pub quietness: Option<BlockStatistics>,
+    pub statistics: Option<BlockStatistics>,
     /// Mean specific force on the accelerometer's axes, m/s²; none where it was not measured.
     pub force: Option<[f64; 3]>,
     /// Mean temperature, °C; none where it was not measured.
@@ -301,7 +301,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             rate: (f64::from(self.origin.0) + self.deviation() / weight) * 1e-9,
             taper: power * count / (weight * weight),
             stated_variance: Optional::NONE,
-            quietness: self.blocks.quietness(sample_seconds),
+            statistics: self.blocks.statistics(sample_seconds),
             force: self.force(),
             temperature: self.temperature.get(1e-3).map(|[temperature]| temperature).into(),
             fault: self.fault(sample_seconds),

@@ -247,7 +247,7 @@ pub struct Products {
     rows: u32,
     /// Whether a rate was saturated or too far from the reference, so that its products were
     /// clamped.
-    pub is_astray: bool,
+    pub is_clamped: bool,
 }
 
 /// Number of products of two signals, without the square of the rate, which no fit needs.
@@ -260,7 +260,7 @@ impl Products {
         let rate = i64::from(block.rate) - i64::from(reference.rate);
         let turning = block.turning - reference.turning;
         let is_far = rate.abs() > FURTHEST || turning.abs().max(quickening.abs()) > FASTEST;
-        self.is_astray |= block.is_saturated || is_far;
+        self.is_clamped |= block.is_saturated || is_far;
         let milliseconds = block.time.saturating_sub(reference.time) / 1000;
         let row = [
             1,

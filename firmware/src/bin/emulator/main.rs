@@ -46,7 +46,7 @@ enum Failure {
     /// The core's peripherals were taken before.
     NoTimer,
     /// The host requested no valid job.
-    NoOrder,
+    NoJob,
     /// The task of the instrument could not be started.
     NotStarted,
     /// Every task waits for an event that no passage of time brings.
@@ -84,7 +84,7 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs results and costs.
 fn run() -> Result<(), Failure> {
-    let job = Job::from_host().ok_or(Failure::NoOrder)?;
+    let job = Job::from_host().ok_or(Failure::NoJob)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let harness: &'static Harness = HARNESS.init(Harness {
         meter: Meter::new(Counter::start(peripherals.SYST)),

@@ -106,19 +106,45 @@ pub struct Row {
     pub is_met: bool,
 }
 
-/// All rows over `runs` runs each; `tick` after each run.
-#[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
-}
-
-/// One of the rows alone; those that are to be met come first.
+/// One of the rows; those that are to be met come first.
 ///
 /// # Panics
 /// Where the index is not below [`COUNT`].
 #[must_use]
 pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-    CASES[case].row(runs, tick)
+    let case = &CASES[case];
+    let class = &CLASSES[case.class];
+    let (way, azimuth_sigma_deg) = start(class);
+    let fitting = case.fitting(class, azimuth_sigma_deg);
+    // No row shares its draws with another.
+    let first = (case.class as u64 * 2 + u64::from(case.is_wanted)) << 32;
+    let days = over(runs, tick, |seed| fitting.live(first + seed));
+    let last = || days.iter().filter_map(|day| day.last());
+    let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
+    let (azimuth, level) = (azimuths(last()), levels(on_way));
+    let driving = days.iter().filter_map(|day| day.iter().nth_back(1));
+    let lost = last().filter(|mark| mark.azimuth.is_none()).count();
+    let is_good = azimuth.rms_deg <= class.stored_deg && level.rms_deg <= class.level_deg;
+    Row {
+        class: class.name,
+        wanted_azimuth_deg: class.stored_deg,
+        wanted_level_deg: class.level_deg,
+        gyro: class.gyro,
+        grade: class.grade,
+        mount: case.mount.to_string(),
+        force_bias_m_s2: case.force_bias_m_s2,
+        way,
+        runs,
+        lost,
+        azimuth,
+        azimuth_driving: azimuths(driving),
+        azimuth_limit_deg: limit_deg(&fitting),
+        level_at_rest: levels(last()),
+        level,
+        growth: growth(&days),
+        is_wanted: case.is_wanted,
+        is_met: lost == 0 && is_good,
+    }
 }
 
 /// Errors of the azimuths.
@@ -140,41 +166,6 @@ impl Case {
         force_bias_m_s2: f64,
     ) -> Self {
         Self { class, mount, bias_deg_h, scale_sigma, force_bias_m_s2, is_wanted: true }
-    }
-
-    fn row(&self, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-        let class = &CLASSES[self.class];
-        let (way, azimuth_sigma_deg) = start(class);
-        let fitting = self.fitting(class, azimuth_sigma_deg);
-        // No row shares its draws with another.
-        let first = (self.class as u64 * 2 + u64::from(self.is_wanted)) << 32;
-        let days = over(runs, tick, |seed| fitting.live(first + seed));
-        let last = || days.iter().filter_map(|day| day.last());
-        let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
-        let (azimuth, level) = (azimuths(last()), levels(on_way));
-        let driving = days.iter().filter_map(|day| day.iter().nth_back(1));
-        let lost = last().filter(|mark| mark.azimuth.is_none()).count();
-        let is_good = azimuth.rms_deg <= class.stored_deg && level.rms_deg <= class.level_deg;
-        Row {
-            class: class.name,
-            wanted_azimuth_deg: class.stored_deg,
-            wanted_level_deg: class.level_deg,
-            gyro: class.gyro,
-            grade: class.grade,
-            mount: self.mount.to_string(),
-            force_bias_m_s2: self.force_bias_m_s2,
-            way,
-            runs,
-            lost,
-            azimuth,
-            azimuth_driving: azimuths(driving),
-            azimuth_limit_deg: limit_deg(&fitting),
-            level_at_rest: levels(last()),
-            level,
-            growth: growth(&days),
-            is_wanted: self.is_wanted,
-            is_met: lost == 0 && is_good,
-        }
     }
 
     fn fitting(&self, class: &Class, azimuth_sigma_deg: f64) -> Fitting {

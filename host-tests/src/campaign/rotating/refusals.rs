@@ -41,7 +41,7 @@ pub struct Row {
     pub wrong: usize,
     /// The reason that was given most often.
     pub reason: Option<String>,
-    /// How often.
+    /// How often that reason was given.
     pub reason_given: usize,
 }
 

@@ -105,11 +105,6 @@ struct One {
     scale: Option<[f64; 2]>,
 }
 
-/// All rows; `tick` is called after every flight.
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
-}
-
 /// One row.
 ///
 /// # Panics

@@ -83,12 +83,6 @@ struct Run {
     answer: Result<Answer, Refusal>,
 }
 
-/// Drives each case with seeds 1 to `runs`; `tick` after each.
-#[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
-}
-
 /// One of the cases alone.
 ///
 /// # Panics

@@ -59,12 +59,6 @@ pub struct Row {
     pub precision: Precision,
 }
 
-/// Parks each case with seeds 1 to `runs`; `tick` after each.
-#[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
-}
-
 /// One of the cases alone.
 ///
 /// # Panics

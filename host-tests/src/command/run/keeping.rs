@@ -16,7 +16,7 @@ const HANDED: f64 = 20.0;
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
-    /// with --realign 1800; with --fault or --sigma 0).
+    /// with --realign 1800; 0 with --fault, and where an accuracy is asked for).
     #[arg(long, value_name = "SECONDS", value_parser = seconds::<0, 14_400>)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
@@ -41,11 +41,8 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 impl KeepingOptions {
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
     pub fn hold(&self, is_plain: bool) -> Hold {
-        let usual = match (is_plain, self.realign) {
-            (true, _) => 0.0,
-            (false, true) => REALIGNING,
-            (false, false) => USUAL,
-        };
+        let usual = if self.realign { REALIGNING } else { USUAL };
+        let usual = if is_plain { 0.0 } else { usual };
         Hold {
             realigns: self.realign,
             handover: self.handover.map(|handover| (handover, HANDED)),

@@ -69,11 +69,6 @@ trait Simulated {
         Vec::new()
     }
 
-    /// Whether the coarse IMU on the base is left out.
-    fn lacks_base_imu(&self) -> bool {
-        false
-    }
-
     /// Runs the board.
     ///
     /// # Errors
@@ -111,9 +106,7 @@ impl RunOptions {
                     Err(format!("{}: --fault list runs nothing", stated::long(option)))
                 });
             }
-            Some(FaultChoice::One(fault)) => {
-                faults::check(fault, platform, options.lacks_base_imu())?;
-            }
+            Some(FaultChoice::One(fault)) => faults::check(fault, platform)?,
             None => {}
         }
         options.check(stated)?;

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
-use firmware::ports::Recorder;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
-use host::instrument::recorder::{self, Carrier};
+use host::instrument::recorder::{self, Carrier, Samples};
 use host::unwritten;
 
 use crate::command::faults::{self, FaultChoice};
@@ -30,31 +29,10 @@ pub struct Common {
     pub report: Option<PathBuf>,
 }
 
-/// The samples of a session, kept only where they are to be recorded: a long run has a hundred million.
-pub struct Wanted<S> {
-    is_recorded: bool,
-    samples: Vec<S>,
-}
-
-impl<S: Copy> Recorder<S> for &mut Wanted<S> {
-    async fn record(&mut self, sample: &S) {
-        if self.is_recorded {
-            self.samples.push(*sample);
-        }
-    }
-}
-
-impl<S> Wanted<S> {
-    /// Samples recorded so far; none where none are asked for.
-    pub fn samples(&self) -> &[S] {
-        &self.samples
-    }
-}
-
 impl Common {
     /// A place for the samples of a session.
-    pub fn wanted<S>(&self) -> Wanted<S> {
-        Wanted { is_recorded: self.record.is_some(), samples: Vec::new() }
+    pub fn wanted<S>(&self) -> Samples<S> {
+        Samples { taken: Vec::new(), is_idle: self.record.is_none() }
     }
 
     /// Writes the recording of a finished run, where one is asked for.

@@ -8,7 +8,8 @@ use firmware::simulated::scenario::{Aim, Scenario};
 use host::instrument::kept::KeptPlan;
 use host::instrument::{self, FramesRun, Run};
 use host::outcome::Finished;
-use host::outcome::run::{KeptAzimuth, RunDetails};
+use host::outcome::kept::KeptAzimuth;
+use host::outcome::run::RunDetails;
 use host::output::degrees;
 use host::recording::Truth;
 
@@ -143,6 +144,9 @@ impl BaseOptions {
         scenario: &Scenario,
         aligning: &[&'static str],
     ) -> Result<(), String> {
+        if self.no_base_imu && self.common.fault.is_some_and(FaultChoice::is_of_base_imu) {
+            return Err("--fault: --no-base-imu leaves out what it happens to".to_owned());
+        }
         let asked = stated.first(&["realign", "handover"]);
         let keeps = asked.is_some() || stated.has("hold") && scenario.hold.seconds > 0.0;
         if keeps && self.no_base_imu {
@@ -167,10 +171,6 @@ impl Simulated for StageOptions {
         &self.base.common
     }
 
-    fn lacks_base_imu(&self) -> bool {
-        self.base.no_base_imu
-    }
-
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let scenario = self.scenario();
         // A stage keeps its azimuth by the coarse gyros alone.
@@ -184,7 +184,7 @@ impl Simulated for StageOptions {
         let (run, wall) = Terminal::watching("positions", |watch| {
             instrument::align_and_keep(&scenario, &KeptPlan::of(fault), &mut wanted, watch, ())
         })?;
-        let written = self.base.common.write(&scenario, &run, wanted.samples());
+        let written = self.base.common.write(&scenario, &run, &wanted.taken);
         let details = RunDetails::of(&run, scenario.sample_rate_hz, wall);
         Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
     }
@@ -206,10 +206,6 @@ impl Simulated for FramesOptions {
         &self.base.common
     }
 
-    fn lacks_base_imu(&self) -> bool {
-        self.base.no_base_imu
-    }
-
     fn check(&self, stated: &Stated) -> Result<(), String> {
         self.base.check(stated, &self.scenario().base, &ALIGNING)
     }
@@ -220,7 +216,7 @@ impl Simulated for FramesOptions {
         let (run, wall) = Terminal::watching("positions", |watch| {
             instrument::align_frames(&scenario, fault, &mut wanted, watch)
         })?;
-        let written = self.base.common.write(&scenario, &run, wanted.samples());
+        let written = self.base.common.write(&scenario, &run, &wanted.taken);
         let FramesRun { run, axis: [forward, right, down] } = run;
         let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
         let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);

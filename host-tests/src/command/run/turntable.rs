@@ -158,7 +158,7 @@ impl Simulated for TurntableOptions {
         let (run, wall) = Terminal::watching("turns", |watch| {
             align_turning_again(&scenario, fault, &mut recorder, watch, keeping.as_mut())
         })?;
-        let recorded = self.common.write(&scenario, &run, &recorder.0);
+        let recorded = self.common.write(&scenario, &run, &recorder.taken);
         let written = self.put_away(keeping).and(recorded);
         let TurntableRun { run, .. } = run;
         let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
@@ -169,7 +169,7 @@ impl Simulated for TurntableOptions {
             finished: Box::new(finished),
             truth: Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() },
             details,
-            body: Some(Body::Rotating(turning_rows(&recorder.0))),
+            body: Some(Body::Rotating(turning_rows(&recorder.taken))),
             written,
         })
     }

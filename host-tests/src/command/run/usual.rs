@@ -2,6 +2,8 @@
 
 use std::ffi::OsString;
 
+use host::methods;
+
 /// The arguments, without the program's name, with the platform of a run in its place; without a command it is a run.
 #[must_use]
 pub fn named(mut arguments: Vec<OsString>) -> Vec<OsString> {
@@ -11,6 +13,9 @@ pub fn named(mut arguments: Vec<OsString>) -> Vec<OsString> {
         arguments.extend(["run", "stage"].map(OsString::from).into_iter().filter(|_| is_plain));
         return arguments;
     };
+    if arguments[place] == "run" {
+        name_method(&mut arguments, place + 1);
+    }
     let first = arguments[place + 1..].iter().find(|argument| *argument != "--json");
     let names =
         |argument: &OsString| !is_option(argument) || argument == "--help" || argument == "-h";
@@ -18,4 +23,21 @@ pub fn named(mut arguments: Vec<OsString>) -> Vec<OsString> {
         arguments.insert(place + 1, "stage".into());
     }
     arguments
+}
+
+/// Puts the platform of a method into its place before the other arguments of a run, for `--method NAME`: so platforms
+/// were chosen before they had names of their own.
+fn name_method(arguments: &mut Vec<OsString>, place: usize) {
+    let texts: Vec<_> = arguments.iter().map(|text| text.to_string_lossy().into_owned()).collect();
+    let found =
+        texts.iter().enumerate().find_map(|(at, text)| match text.strip_prefix("--method")? {
+            "" => Some((at..at + 2, texts.get(at + 1)?.as_str())),
+            name => Some((at..at + 1, name.strip_prefix('=')?)),
+        });
+    if let Some((there, name)) = found
+        && let Some(platform) = methods::named(name).and_then(|method| method.platform)
+    {
+        arguments.drain(there);
+        arguments.insert(place, platform.into());
+    }
 }

@@ -6,16 +6,18 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::{self, VehicleScenario};
 use host::instrument::align_stops;
+use host::instrument::recorder::Samples;
 use host::methods::stops::{Method, Replay, Watched};
 use host::outcome::Finished;
-use host::outcome::run::{KeptAzimuth, RunDetails};
+use host::outcome::kept::KeptAzimuth;
+use host::outcome::run::RunDetails;
 use host::output::degrees;
 use host::recording::{GIVEN, Truth};
 use orientation::session::stops::Session;
 use orientation::signal::InertialSample;
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Place, Wanted, seconds};
+use super::options::{Common, Place, seconds};
 use super::{Ran, Simulated, Terminal};
 use crate::command::stated::Stated;
 use crate::command::whole;
@@ -62,7 +64,7 @@ impl VehicleOptions {
 /// What the session is seen to get: the stop criteria on the way, and the samples where they are recorded.
 struct Seen {
     watched: Watched,
-    wanted: Wanted<InertialSample>,
+    wanted: Samples<InertialSample>,
 }
 
 impl Recorder<InertialSample> for &mut Seen {
@@ -90,7 +92,7 @@ impl Simulated for VehicleOptions {
         let mut seen = Seen { watched, wanted: self.common.wanted() };
         let (run, wall) =
             Terminal::watching("stops", |watch| align_stops(&scenario, fault, &mut seen, watch))?;
-        let written = self.common.write(&scenario, &run, seen.wanted.samples());
+        let written = self.common.write(&scenario, &run, &seen.wanted.taken);
         let azimuth_rad = run.azimuth_rad();
         let run = run.run;
         let truth = Truth {

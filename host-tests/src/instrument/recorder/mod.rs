@@ -18,7 +18,7 @@ use firmware::simulated::scenario::Scenario;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use orientation::align::setting::Setting;
-use orientation::units::{AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
+use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 
 pub use turntable::turning_rows;
 
@@ -26,11 +26,18 @@ use crate::recording::Kind;
 
 /// The samples that a session was given, in order: the recorder of every carrier.
 #[derive(Clone, Debug, Default)]
-pub struct Samples<S>(pub Vec<S>);
+pub struct Samples<S> {
+    /// The samples so far.
+    pub taken: Vec<S>,
+    /// Whether none is kept: a long run has a hundred million.
+    pub is_idle: bool,
+}
 
 impl<S: Copy> Recorder<S> for &mut Samples<S> {
     async fn record(&mut self, sample: &S) {
-        self.0.push(*sample);
+        if !self.is_idle {
+            self.taken.push(*sample);
+        }
     }
 }
 
@@ -62,7 +69,7 @@ pub fn write<C: Carrier>(
         return Err(io::Error::other("the run ended before its session got a sample"));
     }
     let mut to = BufWriter::new(File::create(path)?);
-    if path.extension().is_some_and(|extension| extension == "gz") {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz")) {
         let mut packed = GzEncoder::new(to, Compression::default());
         carrier.write(&mut packed, run, samples)?;
         to = packed.finish()?;
@@ -101,9 +108,14 @@ fn seconds(time: Instant) -> f64 {
     time.0 as f64 / 1e6
 }
 
-/// A rate, rad/s; one at either limit of its range stands at the upper one, which a recording can hold.
+/// A rate, rad/s; at its lower limit the least that a recording can hold.
 fn rate(rate: AngularRate) -> f64 {
-    f64::from(if rate.is_saturated() { i32::MAX } else { rate.0 }) / 1e9
+    f64::from(rate.0.max(-i32::MAX)) / 1e9
+}
+
+/// What turned in a period, s, as a rate, rad/s; at a limit of the gyro's range this greatest one.
+fn mean_rate(turned: AngleIncrement, period_s: f64, greatest: f64) -> f64 {
+    if turned.is_saturated() { greatest } else { turned.rad() / period_s }
 }
 
 /// Forces, m/s².

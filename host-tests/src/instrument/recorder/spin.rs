@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use orientation::signal::SpinSample;
-use orientation::units::{AngleIncrement, SpinForce};
+use orientation::units::SpinForce;
 
-use super::{Carrier, row, seconds};
+use super::{Carrier, mean_rate, row, seconds};
 use crate::instrument::spinning::SpinRun;
 use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
 
@@ -24,15 +24,12 @@ impl Carrier for SpinScenario {
         Given::new(self.setting(), (), run.run.ended()).write(to, &head)?;
         writeln!(to, "{COLUMNS}")?;
         of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
-            let [x, y, z] = sample.turned.map(mean_rate);
+            let [x, y, z] = sample
+                .turned
+                .map(|turned| mean_rate(turned, 1.0 / SAMPLE_RATE, GREATEST_SPIN_RATE));
             let force = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);
             let [up, right] = force.map(|force| f64::from(force.0) / 1e5);
             row(to, &[seconds(sample.time), x, y, z, up, right, *roll])
         })
     }
-}
-
-/// What turned in a period as a rate, rad/s; at a limit of the gyro's range the greatest that there is.
-fn mean_rate(turned: AngleIncrement) -> f64 {
-    if turned.is_saturated() { GREATEST_SPIN_RATE } else { turned.rad() * SAMPLE_RATE }
 }

@@ -1,14 +1,13 @@
 //! The recording of a vehicle, kind `imu`. Rates are what turned in a sample, over its nominal period.
 
-use std::f64::consts::TAU;
 use std::io::{self, Write};
 
 use firmware::simulated::vehicle::VehicleScenario;
 use orientation::signal::InertialSample;
-use orientation::units::AngleIncrement;
 
-use super::{Carrier, forces, header, row, seconds};
+use super::{Carrier, forces, header, mean_rate, row, seconds};
 use crate::instrument::VehicleRun;
+use crate::output::degrees;
 use crate::recording::{GREATEST_BODY_RATE, Given, Kind};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,force_is_new";
@@ -32,24 +31,21 @@ impl Carrier for VehicleScenario {
         writeln!(head, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
         stops(&mut head, run)?;
         Given::new(setting, procedure, ended).write(to, &head)?;
-        let azimuth = run.azimuth_rad().rem_euclid(TAU).to_degrees();
+        let azimuth = degrees(run.azimuth_rad()).rem_euclid(360.0);
         writeln!(to, "# truth_azimuth_deg: {azimuth}")?;
         writeln!(to, "# truth_start_azimuth_deg: {}", self.base.azimuth_deg)?;
         writeln!(to, "{COLUMNS}")?;
         let mut force = [0.0; 3];
         of.iter().try_for_each(|sample| {
             force = sample.force.map_or(force, forces);
-            let ([x, y, z], [ahead, right, down]) =
-                (sample.turned.map(|turned| mean_rate(turned, period_s)), force);
+            let ([x, y, z], [ahead, right, down]) = (
+                sample.turned.map(|turned| mean_rate(turned, period_s, GREATEST_BODY_RATE)),
+                force,
+            );
             let is_new = f64::from(sample.force.is_some());
             row(to, &[seconds(sample.time), x, y, z, ahead, right, down, is_new])
         })
     }
-}
-
-/// What turned in a period, s, as a rate, rad/s; at a limit of the gyro's range the greatest that there is.
-fn mean_rate(turned: AngleIncrement, period_s: f64) -> f64 {
-    if turned.is_saturated() { GREATEST_BODY_RATE } else { turned.rad() / period_s }
 }
 
 /// Writes where the vehicle stood, and what the board was given of how far from the first stop that was.

@@ -106,7 +106,8 @@ fn again(
     asked.change(&mut setting.common);
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     for row in rows {
-        session.handle(Event::Sample(&sample(row, 0.0)));
+        let rate = recording::rate(row.rate_rad_s);
+        session.handle(Event::Sample(&Sample { rate, ..sample(row, 0.0) }));
     }
     session.handle(ended.map_or(Event::End, Event::Failed));
     Ok(Replay { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] })

@@ -45,7 +45,7 @@ impl Errors {
         let turns: Vec<f64> =
             settled().map(|((whole, wrapped), _)| ((whole - wrapped) / TURN).round()).collect();
         let settled: Vec<f64> = settled().map(|((_, wrapped), _)| *wrapped).collect();
-        // Which turn is the first is anybody's choice.
+        // Turns are counted from any one.
         let first = turns.first().copied().unwrap_or_default();
         let turns_lost = turns.iter().fold(0.0, |most, turn| f64::max(most, (turn - first).abs()));
         let rms_rad = (!settled.is_empty()).then(|| rms(&settled));

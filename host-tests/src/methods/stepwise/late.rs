@@ -35,7 +35,7 @@ pub enum End {
 /// A column that is not of the same moment as the others, by so many seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Late {
-    /// The gyro's.
+    /// The rate of the gyro is late or early.
     #[error(
         "column g_rad_s: the {0} value again and again for {1:.1} s, a whole dwell: the column is {way} by as long, or \
          the gyro did not measure; record again",

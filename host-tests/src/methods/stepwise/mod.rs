@@ -26,7 +26,7 @@ use super::stops::samples::dead_accelerometer;
 use crate::assumptions;
 use crate::median::median;
 use crate::recording::period::period_s;
-use crate::recording::{Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
+use crate::recording::{self, Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
 use crate::setting::Described;
 
 /// Name on the command line of an alignment in positions.
@@ -122,8 +122,11 @@ fn again(
     }
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let end = ended.map_or(Event::End, Event::Failed);
-    drive(&mut session, rows.iter().map(|row| sample(row, 0.0)), end, progress);
-    let method = if is_mounted { POSITIONS } else { name_of(&session) };
+    let given =
+        |row: &StageRow| Sample { rate: recording::rate(row.rate_rad_s), ..sample(row, 0.0) };
+    drive(&mut session, rows.iter().map(given), end, progress);
+    let shown = if is_mounted { POSITIONS } else { name_of(&session) };
+    let method = asked.method.unwrap_or(shown);
     let assumed = given_with(session.setting().half);
     Ok(Replay { method, setting: *session.setting(), session, assumed })
 }
@@ -237,7 +240,7 @@ const FEWEST_SAMPLES: u32 = 10;
 /// Shortest dwell, s: a stage that creeps at the ends of a rotation seems to stand for less.
 const SHORTEST_SECONDS: f64 = 0.1;
 
-/// How far the encoder may stray in a standstill, rad: most samples of a recording stand still.
+/// How far the encoder may move in a standstill, rad: most samples of a recording stand still.
 fn still(rows: &[StageRow]) -> f64 {
     let mut changes: Vec<f64> =
         rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs()).collect();

@@ -43,14 +43,15 @@ pub enum Method {
 }
 
 impl Method {
-    /// That of a recording for which none was asked; none of a kind without three gyros and three accelerometers.
+    /// The method of a recording for which none was asked; none of a kind without three gyros and three
+    /// accelerometers.
     #[must_use]
     pub fn of(header: &Header, body: &Body) -> Option<Self> {
         let rows = samples::rows(body)?;
         Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
     }
 
-    /// That of a name on the command line.
+    /// The method of a name on the command line.
     fn named(name: &str) -> Option<Self> {
         [Self::Siap, Self::Static].into_iter().find(|method| method.name() == name)
     }
@@ -94,15 +95,23 @@ impl Replay {
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
-    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    if asked.method != Some(Method::Static.name())
-        && let Some(given) = Given::of(header).map_err(ReplayError::Session)?
-    {
-        return again(given, header, &rows, asked);
+    let replay = run(header, body, asked)?;
+    // What a board was given it went by; what a user states has to agree with the forces.
+    if header.session.is_some() && asked.displacements_m.is_none() {
+        return Ok(replay);
     }
-    let replay = follow(header, body, asked)?;
     check_kilometres(header, body, asked, &replay)?;
     check_way(body, header, replay)
+}
+
+/// Replays the rows, as a run where they come from one.
+fn run(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
+    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
+    let given = Given::of(header).map_err(ReplayError::Session)?;
+    match given.filter(|_| asked.method != Some(Method::Static.name())) {
+        Some(given) => again(given, header, &rows, asked),
+        None => follow(header, body, &rows, asked),
+    }
 }
 
 /// Replays a run by giving its session what the board's was given.
@@ -166,21 +175,25 @@ fn check_kilometres(
     }
     let displacements_m =
         Some(list.iter().map(|place| place.map(|part| KILOMETRE * part)).collect());
-    let farther = follow(header, body, &Asked { displacements_m, ..asked.clone() })?;
+    let farther = run(header, body, &Asked { displacements_m, ..asked.clone() })?;
     if is_answered(&farther) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
 }
 
 /// Drives the session with the rows.
-fn follow(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
-    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
+fn follow(
+    header: &Header,
+    body: &Body,
+    rows: &[ImuRow],
+    asked: &Asked,
+) -> Result<Replay, ReplayError> {
     asked.latitude(header, body)?;
-    let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
-    check_rate(header.rate_hz, &rows)?;
-    check_stuck(&rows, period_s)?;
-    check_unit(header, &rows, period_s)?;
-    let zero_s = samples::begin(&rows, period_s);
+    let period_s = period_s(header.rate_hz, rows, |row| row.time_s);
+    check_rate(header.rate_hz, rows)?;
+    check_stuck(rows, period_s)?;
+    check_unit(header, rows, period_s)?;
+    let zero_s = samples::begin(rows, period_s);
     let stated = asked.method.and_then(Method::named);
-    let method = stated.unwrap_or_else(|| usual(header, &rows, period_s));
+    let method = stated.unwrap_or_else(|| usual(header, rows, period_s));
     let rests = rests(header, method, zero_s)?;
     let displacements = displacements(header, asked)?;
     let mut substituted = Vec::new();
@@ -188,12 +201,14 @@ fn follow(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayE
     let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
     assumed.append(&mut substituted);
     assumed.push(assumptions::AXES_OF_A_VEHICLE.to_owned());
-    common.scale_sigma = common.scale_sigma.hypot(astray(header.rate_hz, period_s));
-    let setting = setting(header, common, &rows, period_s, method, &mut assumed)?;
+    // Within what is accepted, the difference of a stated rate from the times is a scale error of every rotation.
+    let rate_error = header.rate_hz.map_or(0.0, |rate| rate * period_s - 1.0);
+    common.scale_sigma = common.scale_sigma.hypot(rate_error);
+    let setting = setting(header, common, rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let mut watched = Watched::new(session);
-    samples::samples(&rows, period_s).for_each(|sample| watched.push(&sample));
+    samples::samples(rows, period_s).for_each(|sample| watched.push(&sample));
     let Watched { mut session, criteria } = watched;
     session.handle(Event::End);
     check_displacements(&session)?;
@@ -280,11 +295,6 @@ fn check_displacements(session: &Session) -> Result<(), ReplayError> {
     } else {
         Err(ReplayError::Displacements { stated, stops })
     }
-}
-
-/// By how much a stated rate misses the times, relative, where they show it.
-fn astray(rate_hz: Option<f64>, period_s: f64) -> f64 {
-    rate_hz.map_or(0.0, |rate| (rate * period_s - 1.0).abs())
 }
 
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.

@@ -49,7 +49,7 @@ impl Made {
         (0..=count).filter(kept).map(row).collect()
     }
 
-    /// The same through blocks of so many periods.
+    /// Products of these samples through blocks of so many periods.
     fn sums(&self, rows: &[(f64, [f64; COLUMNS], f64)], periods: u32) -> (Sums, Reference) {
         let mut blocks = Blocks::of(periods);
         let samples = rows.iter().map(|(time, _, rate)| Sample {
@@ -68,7 +68,7 @@ impl Made {
                 let seconds = block.seconds + 0.5 * (before.seconds + next.seconds);
                 products.push(block, (next.turning - before.turning) / seconds, &reference);
             }
-            assert!(!products.is_astray);
+            assert!(!products.is_clamped);
             sums.absorb(&products);
         }
         (sums, reference)
@@ -198,7 +198,7 @@ fn the_products_hold_four_thousand_blocks_of_the_greatest_values() {
     let mut products = Products::default();
     // Overflow panics in this profile.
     all.iter().take(4096).for_each(|block| products.push(block, 10.0, &reference));
-    assert!(products.is_astray);
+    assert!(products.is_clamped);
     let mut sums = Sums::default();
     sums.absorb(&products);
     assert_eq!(sums.rows(), 4096);

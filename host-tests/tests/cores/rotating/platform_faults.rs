@@ -151,7 +151,7 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
         "TiltChanged",
         "DirectionDrifts",
         "HeadingStepped",
-        "TurnsAstray",
+        "TurnsDisagree",
         "TurnsDisturbed",
         "SpeedsUnequal",
         "ResidualsNotWhite",
@@ -194,7 +194,7 @@ fn a_base_that_turned_is_refused_or_stood_where_the_azimuth_says() {
         "DirectionDrifts",
         "HeadingStepped",
         "ResidualsNotWhite",
-        "TurnsAstray",
+        "TurnsDisagree",
         "TurnsDisturbed",
         "SensesDisagree",
     ];

@@ -105,7 +105,7 @@ impl Case {
         self.conclude_as(&self.configuration(), seed)
     }
 
-    /// The same of another configuration, a fault in it perhaps.
+    /// What the session makes of another configuration, a fault in it perhaps.
     pub fn conclude_as(&self, configuration: &TurntableConfiguration, seed: u64) -> Conclusion {
         let period = 1.0 / self.instruments.rate_hz;
         replayed(&self.setting, period, self.is_by_encoder, Turntable::new(configuration, seed))

@@ -98,7 +98,7 @@ fn a_molecular_sensor_that_is_declared_a_gyro_is_refused_or_right() {
         "SensesDisagree",
         "HeadingStepped",
         "TurnsDisturbed",
-        "TurnsAstray",
+        "TurnsDisagree",
         "ResidualsNotWhite",
         "EarthRateMismatch",
     ];
@@ -175,7 +175,7 @@ fn without_a_modulated_turn_or_a_stored_misalignment_the_sigma_says_so() {
 #[test]
 fn an_encoder_that_counts_the_other_way_is_refused() {
     assert_refused(
-        &["AccelerometerAstray", "EarthRateMismatch", "SensesDisagree"],
+        &["AccelerometerDisagrees", "EarthRateMismatch", "SensesDisagree"],
         |seed, case| {
             edited(seed, &case, |samples| {
                 for sample in samples {
@@ -192,7 +192,7 @@ fn an_accelerometer_with_a_wrong_axis_is_refused() {
     let wrong: [fn([f64; 3]) -> [f64; 3]; 3] =
         [|[x, y, z]| [-x, y, z], |[x, y, z]| [y, x, z], |[x, y, z]| [x, -y, z]];
     for axes in wrong {
-        assert_refused(&["AccelerometerAstray"], |seed, case| {
+        assert_refused(&["AccelerometerDisagrees"], |seed, case| {
             edited(seed, &case, |samples| {
                 for sample in samples {
                     sample.force_m_s2 = axes(sample.force_m_s2);

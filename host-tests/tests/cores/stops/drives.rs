@@ -68,7 +68,7 @@ impl Figures {
         );
     }
 
-    /// Errors as σ says; the RMS of all may stray by `tolerance`.
+    /// Errors as σ says; the RMS of all may differ by `tolerance`.
     #[track_caller]
     fn assert_calibrated(&self, name: &str, extent: Extent, tolerance: f64) {
         let tolerance = extent.rms(tolerance, self.outcomes.len());
@@ -104,12 +104,12 @@ pub fn three(seed: u64) -> Day {
     Day::new(Scenario::stops(seed, 3, 60.0, 240.0), seed)
 }
 
-/// The same day with gyros a hundred times better, so that the rest shows.
+/// A day with gyros a hundred times better, so that the rest shows.
 pub fn quiet(day: Day) -> Day {
     with_gyros(day, 0.001, 0.005)
 }
 
-/// The same day with gyros of this N, °/√h, and 1σ of bias, °/h.
+/// A day with gyros of this N, °/√h, and 1σ of bias, °/h.
 pub fn with_gyros(mut day: Day, n: f64, bias: f64) -> Day {
     for gyro in &mut day.scenario.vehicle.gyros {
         (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (n, bias);

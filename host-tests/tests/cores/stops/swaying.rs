@@ -177,7 +177,7 @@ fn a_sway_that_long_blocks_hide_is_in_sigma() {
     assert!(ratios.iter().all(|ratio| ratio.abs() < 5.0), "{ratios:?}");
 }
 
-/// The same of a sway that comes back to where it was in nearly every second, so that its seconds hide it.
+/// A sway that comes back to where it was in nearly every second, so that its seconds hide it.
 fn hidden_by_seconds(seed: u64) -> Day {
     let mut draw = Generator::stream(seed, 18);
     let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();

@@ -75,7 +75,7 @@ impl Outcome {
         [apart(found.start.angle, self.azimuths[0]), apart(found.azimuth.angle, self.azimuths[1])]
     }
 
-    /// The same over their σ.
+    /// Errors of the azimuth at the start and at the end over their σ.
     pub fn ratios(&self) -> [f64; 2] {
         let found = self.found();
         let [start, end] = self.errors();
@@ -126,12 +126,12 @@ impl Day {
         self.run_through(|_| true)
     }
 
-    /// The same with samples that something changes, or that are lost where it says false.
+    /// Drives with samples that something changes, or that are lost where it says false.
     pub fn run_through(&self, change: impl FnMut(&mut VehicleSample) -> bool) -> Outcome {
         self.watch(change, |_, _| ())
     }
 
-    /// The same, looking at the session after every sample, with its time, s.
+    /// Drives and looks at the session after every sample, with its time, s.
     pub fn watch(
         &self,
         mut change: impl FnMut(&mut VehicleSample) -> bool,

@@ -108,7 +108,7 @@ fn gyros_that_cannot_tell_a_turn_recall_nothing() {
     let before = first(8.0, GyroClass::FIBRE_OPTIC, &mut store);
     let after = second(&before, [0.0, 0.0], GyroClass::FIBRE_OPTIC, &mut store);
     assert!(
-        matches!(refusal(&after), Some(RecallRefusal::CannotTell { .. })),
+        matches!(refusal(&after), Some(RecallRefusal::TurnUnobservable { .. })),
         "{:?}",
         refusal(&after)
     );

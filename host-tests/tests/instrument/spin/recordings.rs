@@ -73,7 +73,9 @@ fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
 #[test]
 fn another_kind_or_a_single_sample_is_refused() {
     let (header, body, _) = recording("spin-100rps").into_parts();
-    let one = Body::Spin(body.spin()[..1].to_vec());
+    let Body::Spin(mut rows) = body else { panic!("it is a spinning body") };
+    rows.truncate(1);
+    let one = Body::Spin(rows);
     let refused = replay(&header, &one, &Asked::default()).map(|_| ());
     assert_eq!(refused, Err(ReplayError::TooFewSamples(1)));
     let (header, body, _) = recording("stepwise-bumped").into_parts();
@@ -84,7 +86,7 @@ fn another_kind_or_a_single_sample_is_refused() {
 #[test]
 fn a_body_without_lift_has_no_roll() {
     let (header, body, _) = recording("spin-100rps").into_parts();
-    let mut rows = body.spin().to_vec();
+    let Body::Spin(mut rows) = body else { panic!("it is a spinning body") };
     for row in &mut rows {
         // What is left is the square of the rate, and a little of noise that repeats after 997 samples.
         let noise = ((row.line * 7919) % 997) as f64 / 997.0 - 0.5;

@@ -216,7 +216,7 @@ const APART: [(&str, &str); 41] = [
     ("spin --fault blocked", "blocked"),
     ("stage --fault lift-fades", "a fault of spin"),
     ("--fault never-drives", "a fault of vehicle"),
-    ("--method rotating", "--method"),
+    ("--method vertical", "--method"),
 ];
 
 #[test]

@@ -268,7 +268,7 @@ fn dwells(count: usize, azimuth_deg: f64) -> (String, f64) {
 /// angle.
 type Disturbing = fn(f64, f64) -> [f64; 2];
 
-/// The same, disturbed.
+/// Averaged dwells of a circle while something is disturbed.
 fn dwells_with(count: usize, azimuth_deg: f64, disturbed: Disturbing) -> (String, f64) {
     let sigma = 0.001_f64.to_radians() / 60.0 / 10.0_f64.sqrt();
     let horizontal = 15.041_067_f64.to_radians() / 3600.0 * 55.75_f64.to_radians().cos();

@@ -32,7 +32,8 @@ struct Recorded {
 fn recorded(name: &str) -> Recorded {
     let (header, body, truth) = recording(name).into_parts();
     let truth_deg = truth.azimuth_deg.expect("it carries a truth");
-    Recorded { header, rows: body.rotating().to_vec(), truth_deg }
+    let Body::Rotating(rows) = body else { panic!("it is a platform that turns") };
+    Recorded { header, rows, truth_deg }
 }
 
 impl Recorded {
@@ -53,7 +54,7 @@ impl Recorded {
     }
 }
 
-/// The same with an encoder whose zero is stated to be exact, as nothing is otherwise.
+/// A recording with an encoder whose zero is stated to be exact, as nothing is otherwise.
 fn with_exact_zero(recorded: Recorded) -> Recorded {
     let header = Header { encoder_zero_sigma_deg: Some(0.0), ..recorded.header };
     Recorded { header, ..recorded }

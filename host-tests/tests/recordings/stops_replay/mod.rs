@@ -57,7 +57,7 @@ impl Recorded {
         off(azimuth, self.truth.azimuth_deg)
     }
 
-    /// The same at the start.
+    /// Error of the azimuth at the start, and its σ.
     fn start_error(&self, conclusion: &Conclusion) -> [f64; 2] {
         off(found(conclusion).start, self.truth.start_azimuth_deg)
     }

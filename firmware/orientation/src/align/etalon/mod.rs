@@ -12,7 +12,7 @@
 //! exhaustive search in exact integers over the stored table with the lowest index on a tie, comes
 //! from a few exact evaluations: a continuous form of the objective and a rigorous bound on table
 //! rounding determine which indices can win (asserted against the exhaustive search in
-//! `host-tests/tests/etalon.rs`).
+//! `host-tests/tests/cores/etalon.rs`).
 //!
 //! * *Azimuth index* k, 0 to 129 599: the azimuth of the sensitive axis **at the first position**
 //!   is k · 10″, clockwise from north. The paper reports the n-th position: add (n − 1) Δ.

@@ -35,7 +35,7 @@ const SMALL_SLIP: f64 = 4.0;
 /// Part of such a slip by which the azimuth is off, 1σ: it belongs to the turns before or after it.
 const OF_SLIP: f64 = 0.6;
 /// Number of turns at an end of a stretch that may be excluded.
-const FEW_ASTRAY: u16 = 1;
+const FEW_DISAGREEING: u16 = 1;
 /// Difference that is not chance, in σ.
 const DIFFERENT: f64 = 5.0;
 /// Additional tolerance for the difference of the senses of a flat sensor, relative to the Earth
@@ -252,10 +252,10 @@ impl Conclusion {
         }
         // A sensor that is not flat may still settle in the first turns of a stretch.
         let from = usize::from(!setting.sensor.is_flat);
-        let astray = averages().flat_map(|average| average.ends.into_iter().skip(from));
-        let astray = astray.max().unwrap_or(0);
-        if astray > FEW_ASTRAY {
-            return Err(Refusal::TurnsAstray { turns: u32::from(astray) });
+        let disagreeing = averages().flat_map(|average| average.ends.into_iter().skip(from));
+        let disagreeing = disagreeing.max().unwrap_or(0);
+        if disagreeing > FEW_DISAGREEING {
+            return Err(Refusal::TurnsDisagree { turns: u32::from(disagreeing) });
         }
         Ok(())
     }
@@ -384,7 +384,7 @@ impl Conclusion {
             let difference = beside.size() / gravity;
             let allowed = different * 2.0 * sigma + AXES_TOLERANCE * average.force.size() / gravity;
             if average.across != Complex::default() && difference > allowed + TILT_TOLERANCE {
-                return Err(Refusal::AccelerometerAstray { scatter: difference * 1e3 });
+                return Err(Refusal::AccelerometerDisagrees { scatter: difference * 1e3 });
             }
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
@@ -470,7 +470,7 @@ fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
     if setting.sensor.molecular_sigma == 0.0 {
         return Ok(());
     }
-    let sigmas = fit.disagreement.max(fit.astray);
+    let sigmas = fit.disagreement.max(fit.lag_disagreement);
     if sigmas > DIFFERENT {
         return Err(Refusal::SpeedsDisagree { sigmas });
     }

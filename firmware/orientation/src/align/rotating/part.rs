@@ -102,7 +102,7 @@ impl Part {
     /// Whether the platform's rate was constant and the gyro's rate plausible.
     pub(super) fn is_even(&self) -> bool {
         let range = self.greatest - self.least;
-        !self.products.is_astray && range <= EVEN * self.speed().abs()
+        !self.products.is_clamped && range <= EVEN * self.speed().abs()
     }
 
     /// Whether the platform turned at `speed`, rad/s, within 2 %.

@@ -180,7 +180,7 @@ pub struct Fit {
     pub disagreement: f64,
     /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ; sensors of
     /// unknown lag only.
-    pub astray: f64,
+    pub lag_disagreement: f64,
     /// Phase of the sensor at each speed, rad; zero for a flat one.
     pub phases: [f64; SPEEDS],
     /// Squared difference of both senses over the variance of either part; flat sensors only.
@@ -366,7 +366,7 @@ impl Problem<'_> {
         fit.molecular = freed.ratio;
         fit.one_speed = freed.one_speed;
         fit.disagreement = freed.disagreement;
-        fit.astray = self.astray(&halves, &freed, self.misalignment_sigma(fit));
+        fit.lag_disagreement = self.lag_disagreement(&halves, &freed, self.misalignment_sigma(fit));
         let slowest = self.slowest()?.speed();
         for (phase, pair) in fit.phases.iter_mut().zip(self.pairs) {
             *phase += freed.ratio.re * slowest / pair.speed();
@@ -382,7 +382,7 @@ impl Problem<'_> {
     /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ: of their own
     /// lags, and of the azimuth change by the g-sensitivity that follows from these. A base that
     /// rotates between the stretches causes both.
-    fn astray(&self, halves: &[Halves], freed: &Freed, misalignment_sigma: f64) -> f64 {
+    fn lag_disagreement(&self, halves: &[Halves], freed: &Freed, misalignment_sigma: f64) -> f64 {
         let [slow, quick] = halves else { return 0.0 };
         let (slow, quick) = if quick.speed < slow.speed { (quick, slow) } else { (slow, quick) };
         // The difference of a phase from the law's is −x, which falls as the speed grows.

@@ -401,7 +401,7 @@ impl TurnAccumulator {
     /// Adds an eighth to the rate-modulated stretch, unless the sensor settles or its rate is
     /// implausible.
     fn take_modulated(&mut self, part: &Part) {
-        if core::mem::take(&mut self.is_settling) || part.products.is_astray {
+        if core::mem::take(&mut self.is_settling) || part.products.is_clamped {
             return;
         }
         if let Some(modulated) = self.modulated_in_progress() {

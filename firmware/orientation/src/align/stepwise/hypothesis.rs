@@ -168,7 +168,7 @@ pub struct Protection {
     /// Level under the alternatives that may remain hidden in any session.
     pub always: f64,
     /// Level that also includes the alternatives that matter only where an anomaly shows.
-    pub astray: f64,
+    pub anomalous: f64,
 }
 
 /// Comparison of a hypothesis with the steady fit.
@@ -268,7 +268,7 @@ impl Problem<'_> {
         let used = best.map_or(Hypothesis::Steady, |best| best.model.hypothesis);
         let beyond = winding.as_ref().filter(|_| !is_winding);
         let beyond = beyond.map_or(0.0, |winding| winding.protection(azimuth, sigma));
-        fit.protection = Protection { always: beyond, astray: beyond };
+        fit.protection = Protection { always: beyond, anomalous: beyond };
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
             let is_lost = one.is_lost(steady);
@@ -276,7 +276,7 @@ impl Problem<'_> {
             let is_covered =
                 one.gain() >= one.model.hypothesis.least_covered(self.dwells.len(), is_far);
             if is_covered || !is_lost {
-                fit.protection.astray = fit.protection.astray.max(level);
+                fit.protection.anomalous = fit.protection.anomalous.max(level);
             }
             if is_covered {
                 fit.protection.always = fit.protection.always.max(level);

@@ -118,9 +118,9 @@ impl Problem<'_> {
 /// this factor.
 pub(super) const WRONG: f64 = 5.0;
 /// Probability of the residuals below which they count as an anomaly.
-const ASTRAY_PROBABILITY: f64 = 0.01;
+const ANOMALOUS_PROBABILITY: f64 = 0.01;
 /// Deviation of the Earth-rate ratio, in σ, that counts as an anomaly (p = 0.01).
-const ASTRAY_RATIO: f64 = 2.58;
+const ANOMALOUS_RATIO: f64 = 2.58;
 /// Number of rounds in the search for a drift that explains the residuals: each doubles or halves
 /// the step of its K.
 const DRIFT_ROUNDS: usize = 12;
@@ -131,10 +131,11 @@ impl Problem<'_> {
     /// alternatives that matter only then count too: a random walk, and another Earth rate.
     #[inline(never)]
     pub fn protect(&self, fit: &mut Fit, has_outliers: bool) {
-        let Protection { always, astray } = fit.protection;
-        let is_astray = has_outliers || fit.is_astray();
-        let mut level = self.tilting_protection(fit).max(if is_astray { astray } else { always });
-        if is_astray && self.dwells.len() >= FEWEST {
+        let Protection { always, anomalous } = fit.protection;
+        let is_anomalous = has_outliers || fit.is_anomalous();
+        let mut level =
+            self.tilting_protection(fit).max(if is_anomalous { anomalous } else { always });
+        if is_anomalous && self.dwells.len() >= FEWEST {
             let most = OBSERVABLE * fit.direction.variance;
             let trials = [self.drifting(fit), self.with_any_earth_rate(fit)].into_iter().flatten();
             for trial in trials.filter(|trial| trial.direction.variance < most) {
@@ -225,11 +226,11 @@ impl Fit {
     }
 
     /// Whether an anomaly shows in the residuals, the Earth rate or the model.
-    fn is_astray(&self) -> bool {
+    fn is_anomalous(&self) -> bool {
         self.model.time == Column::Free
             || self.model.hypothesis != Hypothesis::Steady
-            || self.probability() < ASTRAY_PROBABILITY
-            || (self.ratio - 1.0).abs() > ASTRAY_RATIO * self.ratio_sigma
+            || self.probability() < ANOMALOUS_PROBABILITY
+            || (self.ratio - 1.0).abs() > ANOMALOUS_RATIO * self.ratio_sigma
     }
 
     /// Probability of the residuals' chi-square.

@@ -380,16 +380,16 @@ impl Run<'_> {
     /// accelerometers' biases while driving, their noise, the direction of gravity along an unknown
     /// way, and the Earth's rotation of it.
     fn velocity_variance(&self, index: usize, driven: f64) -> f64 {
-        let astray = self.astray(index, driven);
-        let direction = self.path.gravity * self.path.place.per_metre()[0] * astray;
-        let turning = EARTH_RATE * astray;
+        let way_sigma = self.way_sigma(index, driven);
+        let direction = self.path.gravity * self.path.place.per_metre()[0] * way_sigma;
+        let turning = EARTH_RATE * way_sigma;
         (DRIVING * DRIVING + direction * direction) * driven * driven
             + turning * turning
             + self.density * driven
     }
 
     /// Deviation of the way to a stop, driven in this many seconds, from the assumed one, 1σ, m.
-    fn astray(&self, index: usize, driven: f64) -> f64 {
+    fn way_sigma(&self, index: usize, driven: f64) -> f64 {
         let stops = &self.path.stops;
         let is_known = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
         let speed = self.setting.speed_sigma;

@@ -10,7 +10,7 @@ use super::Complex;
 use super::fit::Fit;
 
 /// Fading of the averages at each evaluation.
-const FORGOTTEN: f32 = 1.0 / 1024.0;
+const FADING: f32 = 1.0 / 1024.0;
 /// Squared significance limit of one number.
 const ONE: f32 = 6.0;
 /// Squared significance limit of two numbers together.
@@ -34,7 +34,7 @@ impl Circle {
         let swell = fit.lift.against(fit.ripple.thrice()).scaled(inverse);
         let ellipse = (fit.ripple.against() * fit.lift).scaled(inverse) + swell.conjugate();
         let weight = 2.0 * fit.count / (noise * inverse);
-        self.weight += weight - FORGOTTEN * self.weight;
+        self.weight += weight - FADING * self.weight;
         let gain = weight / self.weight;
         self.lean += gain * (ellipse.im - self.lean);
         self.swell += (swell - self.swell).scaled(gain);

@@ -119,7 +119,7 @@ impl Filter {
         let mut filter = Self::default();
         for (axis, bias) in biases.into_iter().enumerate() {
             filter.reset(BIAS + axis, bias * bias);
-            filter.forget_axis(axis, expected.scale[axis]);
+            filter.reset_axis(axis, expected.scale[axis]);
         }
         filter.reset(0, ANY_ANGLE);
         filter.reset(1, ANY_ANGLE);
@@ -334,7 +334,7 @@ impl Filter {
     }
 
     /// Resets a gyro's scale and axis errors to the configured variance.
-    pub fn forget_axis(&mut self, axis: usize, scale: f32) {
+    pub fn reset_axis(&mut self, axis: usize, scale: f32) {
         for place in axes(axis) {
             self.reset(place, lasting(scale));
         }

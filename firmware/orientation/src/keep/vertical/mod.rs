@@ -331,7 +331,7 @@ impl Vertical {
         self.bias[2] = 0.0;
         self.axes[2] = [0.0; 3];
         self.filter.reset(Filter::bias(2), sigma * sigma);
-        self.filter.forget_axis(2, self.expected.scale[2]);
+        self.filter.reset_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
         self.rest.exchange(2, self.expected.walk[2]);
         self.window = Window::default();

@@ -6,7 +6,7 @@
 //! so far apart. Lags near the places where c has its corners are all taken; between them one stands
 //! for a block of up to half of the distance to the next corner, so that a pair costs some
 //! dozens of evaluations whatever its spans. On the estimator's grid the sum is right to 0.2 %, for
-//! terms one sample apart to 3 % (tests/allan/covariance.rs). A span must be a whole number of its
+//! terms one sample apart to 3 % (host-tests/tests/cores/allan/covariance.rs). A span must be a whole number of its
 //! stride, and the longer stride one of the shorter.
 
 use core::num::NonZeroU32;

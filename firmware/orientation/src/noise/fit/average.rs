@@ -7,7 +7,7 @@
 //! most of the weight; its value is their weighted mean, and its standard deviation includes how
 //! far they lie apart. A coefficient that is not found gets an upper limit from all choices that
 //! allow it, also those in which it came out as zero. The error rates are asserted in
-//! tests/allan/simulated.rs.
+//! host-tests/tests/cores/allan/simulated.rs.
 
 use super::Estimate;
 use super::regression::COLUMNS;

@@ -25,7 +25,7 @@ const OUTPUT_BITS: u32 = 28;
 
 /// The state of one filtered signal, order 2·`SECTIONS`.
 ///
-/// Figures, asserted in `host-tests/tests/butterworth.rs` for all orders and fc/fs of 10⁻⁵ to 1/4:
+/// Figures, asserted in `host-tests/tests/cores/butterworth.rs` for all orders and fc/fs of 10⁻⁵ to 1/4:
 /// a constant comes out exact; the error against the same filter in `f64` is at most 0.30 LSB RMS,
 /// of which rounding the output alone is 0.289. `cargo cost` counts the instructions of a sample.
 ///

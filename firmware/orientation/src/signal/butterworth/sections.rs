@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Eliminating E and L gives yₙ = −a₁yₙ₋₁ − a₂yₙ₋₂ + p (xₙ + 2xₙ₋₁ + xₙ₋₂)/4 with
-//! p = 1 + a₁ + a₂ = 8f² and 1 − a₂ = 2 − 4m − 4f² (asserted in `host-tests/tests/butterworth.rs`
+//! p = 1 + a₁ + a₂ = 8f² and 1 − a₂ = 2 − 4m − 4f² (asserted in `host-tests/tests/cores/butterworth.rs`
 //! against scipy's coefficients). Why this form:
 //!
 //! * A constant input can only rest at E = 0, L = x: the gain at zero frequency is 1 whatever the

@@ -20,13 +20,13 @@ impl SwayNoise {
     pub const NONE: Self = Self { angle_variance: 0.0, correlation: 0.0, residual_variance: 0.0 };
 
     /// Noise without compensation, zero, of a base whose sensors failed before they had observed
-    /// its sway. The endless correlation time distinguishes it from [`Self::NONE`].
-    pub const UNMEASURED: Self = Self { correlation: f64::INFINITY, ..Self::NONE };
+    /// its sway. The greatest correlation time distinguishes it from [`Self::NONE`].
+    pub const UNMEASURED: Self = Self { correlation: f64::MAX, ..Self::NONE };
 
     /// Whether the sensors failed that would have observed the sway.
     #[must_use]
     pub fn is_unmeasured(&self) -> bool {
-        self.correlation.is_infinite()
+        self.correlation >= f64::MAX
     }
 
     /// Variance that the error adds to a mean rate over `seconds` (> 0), (rad/s)²: that of the

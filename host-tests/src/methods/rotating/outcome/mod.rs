@@ -31,7 +31,7 @@ pub struct RotatingDetails {
     #[serde(flatten)]
     pub misalignment: Option<MisalignmentDetails>,
     /// Axis misalignment at each speed, in the order of the speeds.
-    pub axis_misalignments: Vec<SpeedDetails>,
+    pub axis_misalignments: Vec<MisalignmentDetails>,
     /// Tilt of the platform's axis, °.
     pub tilt_deg: Option<f64>,
     /// Integrated g-sensitivity over the Earth rate at the slower speed, ρ; of a molecular-electronic sensor.
@@ -57,16 +57,8 @@ pub struct MisalignmentDetails {
     pub sigma_deg: f64,
     /// By how much the sensor lags behind the encoder there, s.
     pub lag_s: f64,
-}
-
-/// The axis misalignment at a speed.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct SpeedDetails {
-    /// Turns a second.
+    /// Speed of these turns, turns a second.
     pub speed_hz: f64,
-    /// The axis misalignment that its turns showed.
-    #[serde(flatten)]
-    pub misalignment: MisalignmentDetails,
 }
 
 /// The azimuth after each stage of compensation, °.
@@ -206,12 +198,12 @@ impl Replay {
     fn details(&self, conclusion: &Conclusion) -> RotatingDetails {
         let fit = conclusion.fit.as_ref();
         let bounded = fit.filter(|_| self.noise_is_known());
-        let axis_misalignments: Vec<SpeedDetails> =
+        let axis_misalignments: Vec<MisalignmentDetails> =
             conclusion.misalignments.iter().map(Into::into).collect();
         RotatingDetails {
             sensor: if self.session.setting().sensor.is_flat { "gyro" } else { "met" },
             plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
-            misalignment: axis_misalignments.first().map(|speed| speed.misalignment),
+            misalignment: axis_misalignments.first().copied(),
             axis_misalignments,
             tilt_deg: fit.map(|fit| degrees(fit.tilt.size().min(1.0).asin())),
             met_ratio: fit.filter(|_| self.is_molecular()).map(|fit| fit.molecular.size()),
@@ -223,19 +215,18 @@ impl Replay {
     }
 }
 
-impl From<&AxisMisalignment> for SpeedDetails {
+impl From<&AxisMisalignment> for MisalignmentDetails {
     fn from(found: &AxisMisalignment) -> Self {
         let [angle_deg, sigma_deg] = [found.angle(), found.sine_sigma].map(degrees);
-        let misalignment = MisalignmentDetails { angle_deg, sigma_deg, lag_s: found.lag() };
-        Self { speed_hz: found.frequency / TAU, misalignment }
+        Self { angle_deg, sigma_deg, lag_s: found.lag(), speed_hz: found.frequency / TAU }
     }
 }
 
-impl SpeedDetails {
+impl MisalignmentDetails {
     /// The axis misalignment with its lag, in words.
     fn words(&self) -> String {
-        let Self { speed_hz, misalignment: of } = self;
-        let (angle, sigma, lag) = (of.angle_deg, of.sigma_deg, 1e3 * of.lag_s);
+        let Self { angle_deg: angle, sigma_deg: sigma, lag_s, speed_hz } = self;
+        let lag = 1e3 * lag_s;
         format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed_hz:.3} Hz")
     }
 }

@@ -2,7 +2,6 @@
 
 mod figures;
 
-use orientation::keep::spin::State;
 use orientation::units::TURN;
 use serde::Serialize;
 
@@ -86,24 +85,21 @@ impl MethodDetails {
     }
 }
 
-impl From<&(f64, State)> for StateDetails {
-    fn from((from_s, state): &(f64, State)) -> Self {
-        Self { from_s: *from_s, state: state.to_string() }
-    }
-}
-
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (answer, reason) = (self.answer(), self.refusal());
         let errors = Errors::of(answer, &truth.roll_rad);
         let (end, is_ok) = (&answer.end, reason.is_none());
         let bounds = self.bounds.as_deref();
+        let states = answer.states.iter();
+        let states =
+            states.map(|(from_s, of)| StateDetails { from_s: *from_s, state: of.to_string() });
         let details = SpinDetails {
             roll_rad_end: is_ok.then_some(end.roll_rad),
             scale_error: end.scale.map(|[scale, _]| scale),
             scale_sigma: end.scale.map(|[_, sigma]| sigma),
             state: end.state.to_string(),
-            states: answer.states.iter().map(Into::into).collect(),
+            states: states.collect(),
             lift: end.lift,
             rms_deg: errors.as_ref().and_then(|errors| errors.rms_rad).map(degrees),
             limit_rms_deg: bounds.and_then(|bounds| bound_rms(answer, bounds)).map(degrees),
