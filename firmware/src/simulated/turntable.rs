@@ -136,7 +136,7 @@ impl TurntableScenario {
         Procedure { modulated_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
     }
 
-    /// Both, checked; none where the latitude is none or the procedure impossible.
+    /// Setting and procedure, checked; none where the latitude is none or the procedure impossible.
     #[must_use]
     pub fn checked(&self) -> Option<(Setting, Procedure)> {
         let procedure = self.procedure();

@@ -14,7 +14,7 @@ pub(super) struct Felt {
 }
 
 impl Felt {
-    /// This, and `part` of another.
+    /// Sum of these motions and `part` of others.
     fn plus(&self, part: f64, other: &Self) -> Self {
         Self {
             rate_rad_s: [0, 1, 2].map(|i: usize| self.rate_rad_s[i] + part * other.rate_rad_s[i]),

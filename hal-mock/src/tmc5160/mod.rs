@@ -106,7 +106,7 @@ pub enum ChipFault {
 /// The chip.
 #[derive(Clone, Debug)]
 pub struct Tmc5160 {
-    /// What it counts time with.
+    /// Oscillator that the chip counts time with.
     oscillator: Oscillator,
     /// Microsteps per second in one unit of the ramp's velocity.
     per_second: f64,

@@ -143,7 +143,7 @@ impl SensorFault {
         if shown.abs() > full { libm::copysign(full, shown) } else { shown }
     }
 
-    /// Whether it acts at a time in s from the start.
+    /// Whether the failure acts at a time in s from the start.
     fn is_on(&self, time_s: f64) -> bool {
         (self.from_s..self.until_s).contains(&time_s)
     }

@@ -14,7 +14,7 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    /// Both together.
+    /// Squares of both, and how many they are.
     pub fn with(self, other: Self) -> Self {
         Self { squares: self.squares + other.squares, terms: self.terms + other.terms }
     }

@@ -38,7 +38,7 @@ pub type Tick<'a> = &'a (dyn Fn() + Sync);
 pub struct Campaign {
     /// Name of the campaign on the command line.
     pub name: &'static str,
-    /// What it runs, for the help.
+    /// What the campaign runs, for the help.
     pub meaning: &'static str,
     /// Runs where no number is asked for.
     pub runs: usize,

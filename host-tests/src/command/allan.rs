@@ -12,7 +12,7 @@ use orientation::noise::fit::FitError;
 
 use super::{Answer, Failure, files};
 
-/// Which recording, and what of it.
+/// The recording, and which of its columns is analysed.
 #[derive(Args)]
 pub struct AllanOptions {
     /// The recording of kind `static`, CSV, also gzip-compressed.

@@ -148,7 +148,7 @@ pub struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// As one object or as text, and as a page where `--report` asks for one.
+    /// The analysis as one object or as text, and as a page where `--report` asks for one.
     ///
     /// # Errors
     /// An object that cannot be serialised.

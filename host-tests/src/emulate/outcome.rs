@@ -52,7 +52,7 @@ const ABSENT: u64 = u64::MAX;
 /// The bits of the numbers of something.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// What they are of.
+    /// Kind of the row, which names its numbers.
     pub kind: &'static Kind,
     /// In the order of the kind's names; [`None`] where one is absent.
     pub bits: Vec<Option<u64>>,

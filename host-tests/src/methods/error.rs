@@ -79,9 +79,9 @@ pub enum ReplayError {
         100.0 * (stated_hz / found_hz - 1.0).abs()
     )]
     Rate {
-        /// As stated, Hz.
+        /// Rate that the header states, Hz.
         stated_hz: f64,
-        /// As the times have it, Hz.
+        /// Rate that the times have, Hz.
         found_hz: f64,
     },
     /// The gyros' rate at rest is so many times the Earth's: that of a degree in radians.

@@ -26,7 +26,7 @@ type Replays = fn(&Header, &Body, &Asked, Watch<'_>) -> Result<Box<dyn Finished>
 pub struct Method {
     /// Name of the method on the command line.
     pub name: &'static str,
-    /// What it does, for the help.
+    /// What the method does, for the help.
     pub meaning: &'static str,
     /// Options of `replay`, by their names without dashes, that it takes beside those that every method takes.
     pub takes: &'static [&'static str],

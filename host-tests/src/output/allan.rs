@@ -23,7 +23,7 @@ pub struct Shown<'a> {
     pub name: &'a str,
     /// The record.
     pub rest: &'a Rest,
-    /// What it says, or why it says nothing.
+    /// Noise that the record shows, or why it shows none.
     pub analysis: &'a Result<Analysis, FitError>,
     /// How both estimators did, where it says something.
     pub comparison: Option<Comparison>,

@@ -24,7 +24,9 @@ const PLAIN: i32 = 3;
 /// The reach of an axis, in places.
 #[derive(Clone)]
 pub(super) struct Span {
+    /// Least value of the axis.
     pub low: f64,
+    /// Greatest value of the axis.
     pub high: f64,
     /// Where a tick with its number stands.
     major: Vec<f64>,

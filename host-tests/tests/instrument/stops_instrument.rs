@@ -109,7 +109,7 @@ fn a_stop_is_levelled_as_the_ground_lies_there() {
 }
 
 #[test]
-fn a_displacement_that_nobody_knows_costs_accuracy_and_no_truth() {
+fn an_unknown_displacement_costs_accuracy_and_no_truth() {
     let sigma = |place| {
         let found = run(&VehicleScenario { place, ..VehicleScenario::usual(1) }, None);
         let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("{reason}"));

@@ -33,7 +33,7 @@ fn a_vehicle_finds_north_between_two_stops() {
 }
 
 #[test]
-fn a_displacement_that_nobody_tells_costs_accuracy() {
+fn a_displacement_that_is_not_given_costs_accuracy() {
     let (known, _) = short(&[]);
     let (unknown, _) = short(&["--no-displacement"]);
     assert!(unknown["stops"][1]["displacement_m"].is_null(), "{unknown}");

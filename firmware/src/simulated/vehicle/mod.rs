@@ -176,7 +176,7 @@ impl VehicleScenario {
         }
     }
 
-    /// Both, checked; none where the latitude is none or the procedure impossible.
+    /// Setting and procedure, checked; none where the latitude is none or the procedure impossible.
     #[must_use]
     pub fn checked(&self) -> Option<(Setting, Procedure)> {
         let procedure = self.procedure();

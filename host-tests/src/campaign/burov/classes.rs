@@ -28,7 +28,7 @@ const REST: f64 = 20.0;
 /// How a class comes to its azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Way {
-    /// It finds north itself.
+    /// The board finds north itself.
     Gyrocompassing,
     /// An azimuth is handed over with this 1σ, °, and stored.
     HandedOver(f64),

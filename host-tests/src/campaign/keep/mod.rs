@@ -82,7 +82,7 @@ pub struct Row {
     pub mount: String,
     /// 1σ of the accelerometers' biases.
     pub force_bias_m_s2: f64,
-    /// How it came to its azimuth.
+    /// How the unit came to its azimuth.
     pub way: String,
     /// Number of runs.
     pub runs: usize,

@@ -64,7 +64,7 @@ pub enum Turn {
     Circle,
 }
 
-/// Both schedules.
+/// The arc and the circle that the schedules turn through.
 const TURNS: [Turn; 2] = [Turn::Arc, Turn::Circle];
 
 impl Turn {

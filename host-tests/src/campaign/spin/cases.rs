@@ -50,7 +50,7 @@ pub const COUNT: usize = 4;
 /// What many flights amount to. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What they were like.
+    /// Name of the flights' case.
     pub case: &'static str,
     /// Flights.
     pub runs: usize,

@@ -100,7 +100,7 @@ impl Leg {
         self.fits(self.stated_m)
     }
 
-    /// Whether it cannot be distinguished from none.
+    /// Whether what was driven cannot be distinguished from nothing.
     #[must_use]
     pub fn tells_nothing(&self) -> bool {
         self.fits([0.0; 2])

@@ -63,7 +63,7 @@ fn in_noise_bare_extrema_fail_and_the_phase_lock_loses_no_turn() {
 }
 
 #[test]
-fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
+fn a_solver_finds_the_same_roll_without_a_truth() {
     let (header, body, _) = recording("spin-80rps-noisy").into_parts();
     let blind = replay(&header, &body, &Asked::default()).expect("it is of a spinning body");
     let (replay, _) = replayed("spin-80rps-noisy");

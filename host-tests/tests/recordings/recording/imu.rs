@@ -224,7 +224,7 @@ fn stops_below_the_column_names_or_given_twice_are_refused() {
 }
 
 #[test]
-fn more_stops_than_anybody_makes_are_refused() {
+fn more_stops_than_a_session_takes_are_refused() {
     let many: Vec<String> = (0..1001).map(|i| format!("{i}-{i}.5")).collect();
     assert!(of_stops(&many.join(";")).contains("more than 1000 of them"));
 }

@@ -216,7 +216,7 @@ fn an_independent_solution_of_the_drives_agrees_with_the_papers_method() {
 }
 
 #[test]
-fn a_displacement_that_nobody_knows_costs_accuracy_and_nothing_else() {
+fn an_unknown_displacement_costs_accuracy_and_nothing_else() {
     let mut recorded = recorded(FOG);
     let known = recorded.replayed();
     recorded.header.displacements_m = None;

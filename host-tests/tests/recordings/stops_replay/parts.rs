@@ -91,7 +91,7 @@ fn noisy(walk: f64, density: f64, sway: f64, seconds: u32) -> Vec<ImuRow> {
 }
 
 #[test]
-fn noise_that_nobody_stated_is_found_within_a_tenth_also_under_sway() {
+fn noise_that_is_not_stated_is_found_within_a_tenth_also_under_sway() {
     let [walk, density] = [1.5e-5, 2.8e-3];
     for sway in [0.0, 0.01] {
         let found = estimate(&noisy(walk, density, sway, 1000), None, 0.04);

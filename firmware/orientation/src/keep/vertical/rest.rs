@@ -84,11 +84,13 @@ pub struct Means {
 /// Prior knowledge of the gyros.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known {
-    /// Estimated biases, rad/s, and their variances.
+    /// Estimated biases, rad/s.
     pub biases: Vector,
+    /// Variances of the estimated biases, (rad/s)².
     pub variances: Vector,
-    /// Configured variances of the biases, (rad/s)², and squared angle random walk, rad²/s.
+    /// Configured variances of the biases, (rad/s)².
     pub stated: Vector,
+    /// Squared angle random walk, rad²/s.
     pub walk: Vector,
 }
 

@@ -66,9 +66,9 @@ pub struct MisalignmentDetails {
 pub struct Stages {
     /// Clockwise at the first speed, as it came.
     pub raw_deg: f64,
-    /// Without what the axis misalignment makes of the platform's unevenness.
+    /// Azimuth without what the axis misalignment makes of the platform's unevenness.
     pub without_unevenness_deg: f64,
-    /// Both senses together.
+    /// Azimuth of both senses together.
     pub both_senses_deg: f64,
     /// Azimuth with all compensations.
     pub full_deg: f64,

@@ -48,9 +48,9 @@ pub struct SpinDetails {
 /// What the phase lock did from a moment on.
 #[derive(Clone, Debug, Serialize)]
 pub struct StateDetails {
-    /// When it began, s.
+    /// When the state began, s.
     pub from_s: f64,
-    /// What it was doing, in words.
+    /// State of the phase lock, in words.
     pub state: String,
 }
 

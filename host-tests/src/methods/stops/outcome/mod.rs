@@ -228,7 +228,7 @@ impl Finished for Replay {
             .column("east, m", |stop| stop.displaced(1, ""))
             .found("residual north, °", 5, |stop| stop.residual_deg.map(|[north, _]| north))
             .found("east, °", 5, |stop| stop.residual_deg.map(|[_, east]| east))
-            .found("1σ, °", 5, |stop| stop.residual_sigma_deg);
+            .found("1σ of white noise, °", 5, |stop| stop.residual_sigma_deg);
         let both = [lines, papers].into_iter().flatten().map(Part::from);
         both.chain([stops.into()]).collect()
     }
