@@ -11,6 +11,8 @@ pub mod stepwise;
 pub mod stops;
 pub mod vertical;
 
+use firmware::simulated::fault::Platform;
+
 use self::asked::Asked;
 use self::error::ReplayError;
 use crate::outcome::Finished;
@@ -31,8 +33,8 @@ pub struct Method {
     /// Options of `replay`, by their names without dashes, that it takes beside those that every method takes.
     pub takes: &'static [&'static str],
     /// Platform of `run` that finds an azimuth or a roll by it.
-    pub platform: Option<&'static str>,
-    /// Whether a recording for which no method was asked is one of its.
+    pub platform: Option<Platform>,
+    /// Whether a recording for which no method was asked is one of its, where none before it takes the recording.
     pub suits: fn(&Header, &Body) -> bool,
     /// Replays a recording.
     pub replay: Replays,
@@ -44,7 +46,7 @@ pub static METHODS: [Method; 7] = [
         name: stepwise::STEPWISE,
         meaning: "Stepwise gyrocompassing",
         takes: &["latitude", "criterion", "half"],
-        platform: Some("stage"),
+        platform: Some(Platform::Stage),
         suits: |_, body| matches!(body.kind(), Kind::Stage | Kind::Dwells),
         replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
@@ -52,7 +54,7 @@ pub static METHODS: [Method; 7] = [
         name: stepwise::POSITIONS,
         meaning: "Autocompensated positions, in passes",
         takes: &["latitude", "criterion", "half"],
-        platform: Some("two-frame"),
+        platform: Some(Platform::TwoFrame),
         suits: |_, _| false,
         replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
@@ -60,7 +62,7 @@ pub static METHODS: [Method; 7] = [
         name: "rotating",
         meaning: "A platform that turns all the time",
         takes: &["latitude"],
-        platform: Some("turntable"),
+        platform: Some(Platform::Turntable),
         suits: |_, body| body.kind() == Kind::Rotating,
         replay: |header, body, asked, _| boxed(rotating::replay(header, body, asked)),
     },
@@ -68,7 +70,7 @@ pub static METHODS: [Method; 7] = [
         name: "siap",
         meaning: "A vehicle: the azimuth from two stops and more",
         takes: &["latitude", "displacements"],
-        platform: Some("vehicle"),
+        platform: Some(Platform::Vehicle),
         suits: |header, body| stops::Method::of(header, body) == Some(stops::Method::Siap),
         replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
@@ -77,7 +79,7 @@ pub static METHODS: [Method; 7] = [
         meaning: "A vehicle at rest all the time, sway allowed",
         takes: &["latitude"],
         platform: None,
-        suits: |header, body| stops::Method::of(header, body) == Some(stops::Method::Static),
+        suits: |_, body| stops::samples::rows(body).is_some(),
         replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
@@ -92,7 +94,7 @@ pub static METHODS: [Method; 7] = [
         name: "spin",
         meaning: "The roll of a body in fast rotation, from the extrema of its accelerometers and by phase lock",
         takes: &[],
-        platform: Some("spin"),
+        platform: Some(Platform::Spin),
         suits: |_, body| body.kind() == Kind::Spin,
         replay: |header, body, asked, _| boxed(spin::replay(header, body, asked)),
     },

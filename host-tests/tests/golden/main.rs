@@ -222,24 +222,28 @@ fn hexadecimal(bits: &[Option<u64>]) -> String {
     bits.iter().map(one).collect::<Vec<_>>().join(" ")
 }
 
+fn readme() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    fs::read_to_string(path).expect("the list is there")
+}
+
+/// The keys that a text has between its code marks.
+fn marked(text: &str) -> impl Iterator<Item = String> + '_ {
+    text.split('`').skip(1).step_by(2).map(str::to_owned)
+}
+
 /// The keys that `README.md` lists in its tables: those of objects, and those of what objects hold.
 fn listed() -> [BTreeSet<String>; 2] {
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let text = fs::read_to_string(readme).expect("the list is there");
-    let marked =
-        |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+    let text = readme();
     let rows = text.lines().filter(|line| line.starts_with("| `"));
-    let (of_objects, held): (Vec<_>, Vec<_>) = rows
-        .filter_map(|row| row[1..].split_once('|'))
-        .map(|(key, rest)| (marked(key), marked(rest)))
-        .unzip();
-    [of_objects, held].map(|keys| keys.into_iter().flatten().collect())
+    let (of_objects, held): (Vec<_>, Vec<_>) =
+        rows.filter_map(|row| row[1..].split_once('|')).unzip();
+    [of_objects, held].map(|cells| cells.into_iter().flat_map(marked).collect())
 }
 
 /// The keys without an asterisk that an object of a method has.
 fn needed(method: &str) -> Vec<String> {
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let text = fs::read_to_string(readme).expect("the list is there");
+    let text = readme();
     let sections: Vec<&str> = text.split("\n## ").collect();
     let of_all = sections[0].lines().map(|row| (row, true));
     let of_methods = sections[1].lines().map(|row| {
@@ -249,7 +253,7 @@ fn needed(method: &str) -> Vec<String> {
     let cells = of_all.chain(of_methods).filter(|(row, is_its)| *is_its && row.starts_with("| `"));
     let cells = cells.filter_map(|(row, _)| row.split('|').nth(1));
     let plain = cells.filter(|cell| !cell.contains('*'));
-    plain.flat_map(|cell| cell.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+    plain.flat_map(marked).collect()
 }
 
 /// All keys of a value, those of what it holds too.

@@ -38,6 +38,6 @@ fn name_method(arguments: &mut Vec<OsString>, place: usize) {
         && let Some(platform) = methods::named(name).and_then(|method| method.platform)
     {
         arguments.drain(there);
-        arguments.insert(place, platform.into());
+        arguments.insert(place, platform.name().into());
     }
 }

@@ -97,7 +97,8 @@ impl Replay {
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let replay = run(header, body, asked)?;
     // What a board was given it went by; what a user states has to agree with the forces.
-    if header.session.is_some() && asked.displacements_m.is_none() {
+    let is_run = header.session.is_some() && replay.method == Method::Siap;
+    if is_run && asked.displacements_m.is_none() {
         return Ok(replay);
     }
     check_kilometres(header, body, asked, &replay)?;
