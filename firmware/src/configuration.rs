@@ -5,8 +5,8 @@
 //! otherwise.
 
 use embassy_time::Duration;
-use orientation::align::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
-use orientation::keep;
+use orientation::alignment::stepwise::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
+use orientation::attitude as keep;
 use orientation::units::DEGREE;
 
 use crate::calibration::Harmonics;

@@ -2,13 +2,14 @@
 //! in order, shows what the instrument did and why.
 
 use drivers::fault::Fault;
-use orientation::align::quality::Disturbance;
-use orientation::align::rotating::turn::Sense;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::turn::Sense;
+use orientation::alignment::stepwise::quality::Disturbance;
+use orientation::attitude::restart::RecallRefusal;
+use orientation::attitude::{Handover, Realigned, State};
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
-use orientation::keep::restart::RecallRefusal;
-use orientation::keep::{Handover, Realigned, State, spin};
 use orientation::noise::fit::{Coefficient, Estimate};
+use orientation::roll as spin;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
 use orientation::words::Rounded;

@@ -8,9 +8,9 @@ use core::convert::Infallible;
 
 use embassy_futures::join::join;
 use embassy_futures::select::{Either, select};
-use orientation::align::mount::Station;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::mount::Station;
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::FramesConfiguration;

@@ -3,8 +3,8 @@
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 
 use crate::event::Event;
 use crate::ports::Startable;

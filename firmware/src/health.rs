@@ -2,8 +2,8 @@
 //! sample stream.
 
 use embassy_time::{Duration, Timer};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 
 use crate::shared::Shared;
 

@@ -3,7 +3,7 @@
 use core::convert::Infallible;
 use core::future::pending;
 
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 
 use crate::shared::Shared;
 

@@ -2,8 +2,8 @@
 //! while only the bus fails; a movement that is broken off reports its cause.
 
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
 use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;

@@ -12,10 +12,10 @@
 use core::cell::Cell;
 
 use embassy_time::{Duration, Instant};
-use orientation::align::mount::{FrameAngles, TwoFrame};
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
+use orientation::alignment::stepwise::session::procedure::STILL;
 use orientation::device::Device;
-use orientation::error::Refusal;
-use orientation::session::procedure::STILL;
 use orientation::units::{Angle, DEGREE};
 
 use crate::calibration::{Calibration, Harmonics};

@@ -6,8 +6,10 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::keep::{Handover, Report};
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
+use orientation::attitude::{Handover, Report};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};

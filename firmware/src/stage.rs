@@ -9,8 +9,8 @@
 use core::convert::Infallible;
 
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
-use orientation::error::Refusal;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::StageConfiguration;

@@ -7,11 +7,11 @@
 use drivers::fault::Fault;
 use embassy_futures::select::select;
 use embedded_storage_async::nor_flash::NorFlash;
-use orientation::align::rotating::Setting;
-use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES};
-use orientation::align::rotating::solution::SPEEDS;
-use orientation::keep::restart::Remembered as Heading;
-use orientation::session::rotating::{Procedure, Session};
+use orientation::alignment::rotating::Setting;
+use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
+use orientation::alignment::rotating::session::{Procedure, Session};
+use orientation::alignment::rotating::solution::SPEEDS;
+use orientation::attitude::restart::Remembered as Heading;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
 use orientation::words::Rounded;

@@ -12,8 +12,8 @@
 
 use embassy_time::Instant;
 use micromath::F32Ext;
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::signal::sway::{Decision, Sway, SwayNoise};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
 

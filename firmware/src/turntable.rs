@@ -12,8 +12,8 @@ use core::convert::Infallible;
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
-use orientation::error::Refusal;
 use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::configuration::TurntableConfiguration;

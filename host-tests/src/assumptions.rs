@@ -4,14 +4,15 @@ pub mod unseen;
 
 use std::f64::consts::TAU;
 
-use orientation::align::conclusion::Conclusion;
-use orientation::align::level::Tilt;
-use orientation::align::rotating::conclusion::Conclusion as PlatformConclusion;
-use orientation::align::rotating::misalignment;
-use orientation::align::rotating::solution::{Fit, Pair};
-use orientation::align::setting::Setting;
+use orientation::alignment::rotating::conclusion::Conclusion as PlatformConclusion;
+use orientation::alignment::rotating::misalignment;
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::rotating::solution::{Fit, Pair};
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::level::Tilt;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::math::Complex;
-use orientation::session::{Session, rotating};
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;

@@ -1,6 +1,6 @@
 //! The criteria by the names of the command line.
 
-use orientation::align::criterion::Criterion;
+use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::units::DEGREE_PER_HOUR;
 
 /// Parses `ml`, `table` (maximum likelihood over the table), `least-squares`, `least-absolute`, `within-squares=A1` or `within-absolute=A`,

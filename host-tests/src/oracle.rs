@@ -6,9 +6,9 @@
 use std::sync::LazyLock;
 
 use hal_mock::noise::Generator;
-use orientation::align::etalon::{
-    self, Accepted, Criterion, Limit, Series, Table, table::QUARTER_COSINE,
-};
+use orientation::alignment::stepwise::etalon;
+use orientation::alignment::stepwise::etalon::{Accepted, Criterion, Limit, Series};
+use orientation::math::reference_table::{QUARTER_COSINE, Table};
 
 /// Grid steps in a turn.
 pub const TURN: i32 = 129_600;

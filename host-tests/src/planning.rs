@@ -3,9 +3,9 @@
 use std::fmt;
 use thiserror::Error;
 
-use orientation::align::POSITIONS;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::POSITIONS;
 use orientation::planner::burov::{self, Autocompensation};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Plan, PlanError, Rotation, for_sigma, for_time};

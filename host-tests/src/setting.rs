@@ -1,6 +1,6 @@
 //! What a recording's header says about place and instrument, as the solver's setting.
 
-use orientation::align::setting::Setting;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::units::DEGREE_PER_HOUR;

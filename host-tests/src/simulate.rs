@@ -3,8 +3,8 @@
 use hal_mock::disturbance::{self, Disturbance};
 use hal_mock::instruments::{Instruments, InstrumentsConfiguration, Sample as Reading};
 use hal_mock::stage::{StageState, minimum_jerk};
+use orientation::alignment::stepwise::session::{Command, Event, Phase, Session};
 use orientation::planner::Rotation;
-use orientation::session::{Command, Event, Phase, Session};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 

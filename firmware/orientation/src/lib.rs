@@ -44,25 +44,25 @@
 //!
 //! | term | meaning here | module |
 //! |---|---|---|
-//! | multi-position static alignment, gyrocompassing | a gyro is turned to several positions and measures the horizontal Earth rate at each (Sokolov 2019, Burov) | [`align::stepwise`], [`session`] |
+//! | multi-position static alignment, gyrocompassing | a gyro is turned to several positions and measures the horizontal Earth rate at each (Sokolov 2019, Burov) | [`alignment::stepwise`] |
 //! | dwell | one standstill at a position; its averaged rate is one measurement | [`signal::dwell`] |
-//! | reference table (etalon) | Sokolov's table of expected rate differences for every azimuth on a 10″ grid, and the search for the best one | [`align::etalon`] |
-//! | continuous rotation, carouselling | the gyro rotates all the time and its rate is demodulated at the turn (MET 2018) | [`align::rotating`], [`session::rotating`] |
-//! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`align::rotating::misalignment`] |
-//! | axis misalignment | angle between the sensitive axis and the plane of rotation | [`align::rotating::misalignment::AxisMisalignment`] |
-//! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`align::stops`], [`session::stops`] |
-//! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`keep::attitude`] |
+//! | reference table (etalon) | Sokolov's table of expected rate differences for every azimuth on a 10″ grid, and the search for the best one | [`alignment::stepwise::etalon`] |
+//! | continuous rotation, carouselling | the gyro rotates all the time and its rate is demodulated at the turn (MET 2018) | [`alignment::rotating`] |
+//! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`alignment::rotating::misalignment`] |
+//! | axis misalignment | angle between the sensitive axis and the plane of rotation | [`alignment::rotating::misalignment::AxisMisalignment`] |
+//! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`alignment::stops`] |
+//! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`attitude::quaternion`] |
 //! | coning | rotation that the order of small rotations adds, and its compensation | [`signal::strapdown`] |
-//! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`align::stops`], [`keep::vertical`] |
-//! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`keep`], [`keep::vertical`] |
-//! | heading hold, storage of azimuth | propagation of a known azimuth by the gyros, with its growing σ (Burov) | [`keep::heading`] |
-//! | roll of a spinning body | phase of the lift in the transverse forces, as a correction of the gyro (Nekrasova 2017) | [`keep::spin`] |
-//! | g-sensitivity | response of a gyro to specific force, κ in rad/s per g; with a tilt it acts as an Earth rate | [`align::setting`], [`align::budget`] |
+//! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`alignment::stops`], [`attitude::vertical`] |
+//! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`attitude`], [`attitude::vertical`] |
+//! | heading hold, storage of azimuth | propagation of a known azimuth by the gyros, with its growing σ (Burov) | [`attitude::heading`] |
+//! | roll of a spinning body | phase of the lift in the transverse forces, as a correction of the gyro (Nekrasova 2017) | [`roll`] |
+//! | g-sensitivity | response of a gyro to specific force, κ in rad/s per g; with a tilt it acts as an Earth rate | [`alignment::stepwise::setting`], [`alignment::budget`] |
 //! | angle random walk | white noise N of a gyro, °/√h; with bias instability B, rate random walk K, rate ramp R and quantisation Q the noise model | [`noise::model`], [`noise::allan`] |
-//! | Cramér–Rao bound | least standard deviation that any estimator reaches with the same data and unknowns; the `limit` of every result | [`align::stepwise`], [`align::rotating::solution`] |
-//! | normalised innovation squared | squared difference between measurement and prediction over its variance, by which outliers are rejected | [`align::stops::filter`], [`noise::whitener`] |
+//! | Cramér–Rao bound | least standard deviation that any estimator reaches with the same data and unknowns; the `limit` of every result | [`alignment::stepwise`], [`alignment::rotating::solution`] |
+//! | normalised innovation squared | squared difference between measurement and prediction over its variance, by which outliers are rejected | [`alignment::stops::filter`], [`noise::whitener`] |
 //! | sway compensation | subtraction of the base's motion, measured by coarse sensors, from the precise gyro's rate (Burov) | [`signal::sway`] |
-//! | error budget | contributions to the standard deviation of an azimuth; their root sum of squares is σ | [`align::budget`] |
+//! | error budget | contributions to the standard deviation of an azimuth; their root sum of squares is σ | [`alignment::budget`] |
 //! | autocompensation | cancelling a gyro's drift by turning it between positions, and the best schedule for that (Burov) | [`planner`], [`planner::burov`] |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -73,17 +73,17 @@ pub mod words;
 
 pub mod device;
 pub mod earth;
-pub mod error;
 pub mod math;
 
 pub mod signal;
 
 pub mod noise;
 
-pub mod align;
-
 pub mod planner;
 
-pub mod keep;
+pub mod filter;
 
-pub mod session;
+pub mod alignment;
+
+pub mod attitude;
+pub mod roll;

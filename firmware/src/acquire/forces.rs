@@ -2,8 +2,8 @@
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::units::SpecificForce;
 
 use super::Plausibility;

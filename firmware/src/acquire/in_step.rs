@@ -9,8 +9,8 @@ use core::cell::Cell;
 use drivers::fault::Fault;
 use embassy_futures::join::join_array;
 use embassy_time::{Duration, Instant, Timer, with_timeout};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::math;
 use orientation::units::AngularRate;
 

@@ -29,8 +29,8 @@ pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;
 
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
-use orientation::error::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
 use crate::retry_budget::Symptom;

@@ -1,8 +1,8 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
 use embassy_time::{Duration, Instant, with_timeout};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::units::AngularRate;
 
 use super::{Plausibility, SILENCE};

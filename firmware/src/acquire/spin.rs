@@ -5,8 +5,8 @@
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
 
 use embassy_time::Duration;
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 

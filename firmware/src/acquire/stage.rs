@@ -5,8 +5,8 @@
 //! is only averaged. Without a valid rate and a valid angle there is no sample.
 
 use embassy_time::{Duration, Instant, Ticker};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::signal::Sample;
 use orientation::units::AngularRate;
 

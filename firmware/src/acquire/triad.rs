@@ -5,8 +5,8 @@
 //! loss to the session.
 
 use embassy_time::{Duration, Instant};
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 use orientation::signal::InertialSample;
 use orientation::units::SpecificForce;
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use orientation::keep::{Report, State};
+use orientation::attitude::{Report, State};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::link::Thousandths;

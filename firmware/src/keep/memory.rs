@@ -10,8 +10,8 @@
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
-use orientation::keep::Keeper;
-use orientation::keep::restart::{RecallRefusal, Remembered};
+use orientation::attitude::Keeper;
+use orientation::attitude::restart::{RecallRefusal, Remembered};
 use orientation::units::DEGREE;
 
 use crate::event::Event;

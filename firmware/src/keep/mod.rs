@@ -26,7 +26,7 @@ use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Timer};
-use orientation::keep::Handover;
+use orientation::attitude::Handover;
 use orientation::signal::InertialSample;
 use orientation::units::Instant;
 

@@ -5,8 +5,9 @@ use core::future::pending;
 
 use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
-use orientation::error::Refusal;
-use orientation::keep::{self, Handover, Keeper, Realigned, Report, State, Trust};
+use orientation::alignment::refusal::Refusal;
+use orientation::attitude as keep;
+use orientation::attitude::{Handover, Keeper, Realigned, Report, State, Trust};
 use orientation::units::{self, DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use super::memory::Memory;

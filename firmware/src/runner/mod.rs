@@ -14,9 +14,9 @@ use core::future::pending;
 
 use embassy_futures::select::{Either, Either3, select, select3};
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::refusal::Refusal;
+use orientation::attitude::Handover;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
-use orientation::keep::Handover;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
 

@@ -1,9 +1,9 @@
 //! Runs a session of continuous rotation (carouselling).
 
-use orientation::align::rotating::turn::Stretch;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::session::{Command, Event as SessionEvent, Phase, Session};
+use orientation::alignment::rotating::turn::Stretch;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
-use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 

@@ -1,10 +1,10 @@
 //! Runs a session of multi-position alignment.
 
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::fit::NoiseFit;
-use orientation::session::schedule::Schedule;
-use orientation::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};

@@ -3,11 +3,11 @@
 //! The session's commands are for the driver. If position aiding is available, the session gets the
 //! displacement of every stop from the first one.
 
-use orientation::align::stops::conclusion::Conclusion;
-use orientation::align::stops::inclination::pitch_and_roll;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops::conclusion::Conclusion;
+use orientation::alignment::stops::inclination::pitch_and_roll;
+use orientation::alignment::stops::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
-use orientation::session::stops::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::InertialSample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 

@@ -14,7 +14,7 @@ use hal_mock::plant::base::{Base, CoarseConfiguration};
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::violation::Violation;
-use orientation::keep;
+use orientation::attitude as keep;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::DEGREE;

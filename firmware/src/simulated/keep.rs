@@ -5,9 +5,10 @@ use core::cell::Cell;
 use embassy_time::{Duration, Instant};
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::vehicle::{Leg, SensorFault, Stop};
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::attitude as keep;
+use orientation::attitude::Handover;
 use orientation::earth::Latitude;
-use orientation::keep::{self, Handover};
-use orientation::session::procedure::Procedure;
 use orientation::units::{DEGREE, DEGREE_PER_HOUR};
 
 use super::base;

@@ -12,14 +12,16 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
-use orientation::align::POSITIONS;
-use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
-use orientation::align::setting::Setting;
-use orientation::keep;
+use orientation::alignment::stepwise::mount::{
+    ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
+};
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::attitude as keep;
+use orientation::planner::POSITIONS;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
-use orientation::session::procedure::Procedure;
-use orientation::session::schedule::{Position, Schedule};
 use orientation::units::DEGREE;
 
 use super::fault::{Injection, PortWrapper};

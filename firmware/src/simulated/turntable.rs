@@ -11,10 +11,11 @@ use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
-use orientation::align::rotating::misalignment::AxisMisalignment;
-use orientation::align::rotating::solution::SPEEDS;
-use orientation::align::rotating::{Sensor, Setting};
-use orientation::session::rotating::{self, Procedure};
+use orientation::alignment::rotating::misalignment::AxisMisalignment;
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::rotating::session::Procedure;
+use orientation::alignment::rotating::solution::SPEEDS;
+use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::units::{DEGREE, TURN};
 
 use super::fault::{Fault, Injection};

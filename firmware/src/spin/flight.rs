@@ -1,7 +1,7 @@
 //! The roll angle of a spinning body during its flight, with course and pitch.
 
-use orientation::keep::spin::attitude::Attitude;
-use orientation::keep::spin::{Condition, Setting, Spin, State};
+use orientation::roll::attitude::Attitude;
+use orientation::roll::{Condition, Setting, Spin, State};
 use orientation::signal::SpinSample;
 use orientation::units::{DEGREES_PER_RADIAN as DEGREES, Instant, TURN, wrapped};
 

@@ -3,8 +3,9 @@
 use std::f64::consts::FRAC_PI_4;
 use std::fmt;
 
-use orientation::align::slow::SlowMotion;
-use orientation::session::{Session, rotating};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::slow::SlowMotion;
+use orientation::alignment::stepwise::session::Session;
 
 /// From how many of its σ on a slow motion of the base is stated, or taken off.
 const STATED: f64 = 5.0;

@@ -2,8 +2,9 @@
 
 use std::fmt::Display;
 
-use orientation::align::conclusion::{Azimuth, Conclusion};
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::conclusion::Conclusion;
 use serde::Serialize;
 
 use crate::output::{azimuth_error, degrees};

@@ -1,7 +1,7 @@
 //! Noise and σ that are not those of the dwells, and keys that are missing: what they would show is unknown, not zero.
 
-use orientation::align::conclusion::Azimuth;
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
 use orientation::units::DEGREE;
 
 use super::NO_NOISE;

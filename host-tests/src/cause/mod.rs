@@ -14,8 +14,8 @@ mod warming;
 
 pub use vehicle::{of_level, of_vehicle};
 
-use orientation::error::Refusal;
-use orientation::session::Session;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::Session;
 
 use crate::methods::asked::Asked;
 use crate::methods::rotating;

@@ -1,8 +1,8 @@
 //! An encoder that slipped, or a base that was turned, so far that no residual is small: two headings.
 
-use orientation::align::regression::{Column, Regression};
-use orientation::error::Refusal;
-use orientation::session::Session;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::Session;
+use orientation::math::regression::{Column, Regression};
 use orientation::signal::dwell::Dwell;
 use orientation::units::{DEGREES_PER_RADIAN, TURN, wrapped};
 

@@ -1,6 +1,6 @@
 //! Causes of a refusal of three gyros and three accelerometers: columns in other units.
 
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 
 use super::is_short;
 use super::units::{self, MOST_ROWS, RATES, Unit};

@@ -1,8 +1,8 @@
 //! An accelerometer that warms up: on an arc its biases change as the forces of a stage do that counts the other way.
 
-use orientation::align::regression::{Column, Regression};
-use orientation::error::Refusal;
-use orientation::session::Session;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::Session;
+use orientation::math::regression::{Column, Regression};
 use orientation::signal::dwell::Dwell;
 
 /// Fewest dwells with forces that say anything of a drift.

@@ -18,7 +18,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::outcome::{self, Finished, Outcome};
 use host::recording::{Body, Truth};
 use host::report::Report;
-use orientation::align::setting;
+use orientation::alignment::stepwise::setting;
 use orientation::earth::Latitude;
 use serde::Serialize;
 use serde_json::{Value, json};

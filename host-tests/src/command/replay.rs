@@ -10,7 +10,7 @@ use host::outcome::{Outcome, Source};
 use host::output::progress::Progress;
 use host::recording::{self, Recording};
 use host::unwritten;
-use orientation::align::criterion::Criterion;
+use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::earth::Latitude;
 
 use super::stated::{Stated, long};

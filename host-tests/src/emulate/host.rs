@@ -7,7 +7,7 @@ use firmware::simulated::fault::Injection;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::{BRIEF, VehicleScenario};
-use orientation::align::rotating::turn::Stretch;
+use orientation::alignment::rotating::turn::Stretch;
 
 use super::outcome::Outcome;
 use crate::instrument::{self, RunError};

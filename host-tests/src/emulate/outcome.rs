@@ -1,10 +1,10 @@
 //! What a run found, as bits, and where two runs differ.
 
-use orientation::align::conclusion::Azimuth;
-use orientation::align::rotating::turn::Turn;
-use orientation::align::stops::stop::Stop;
-use orientation::error::Refusal;
-use orientation::keep::Report;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::turn::Turn;
+use orientation::alignment::stops::stop::Stop;
+use orientation::attitude::Report;
 use orientation::signal::dwell::Dwell;
 use thiserror::Error;
 

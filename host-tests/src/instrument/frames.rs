@@ -15,8 +15,8 @@ use firmware::simulated::keep::journey;
 use firmware::simulated::mount::FramesScenario;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::gimbal::board::GimbalBoard;
-use orientation::keep::Keeper;
-use orientation::session::Session;
+use orientation::alignment::stepwise::session::Session;
+use orientation::attitude::Keeper;
 
 use super::harness::{self, Harness};
 use super::kept::{Kept, KeptPlan};

@@ -9,8 +9,10 @@ use firmware::health::Health;
 use firmware::ports::{BaseReading, Observer};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
-use orientation::keep::Report;
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
+use orientation::attitude::Report;
 
 use super::kept::Kept;
 use super::{Run, RunError};

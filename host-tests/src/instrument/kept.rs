@@ -7,7 +7,7 @@ use firmware::simulated::keep::Day;
 use hal_mock::earth::Attitude;
 use hal_mock::vehicle::motion::Motion;
 use hal_mock::vehicle::{Event, SensorFault};
-use orientation::keep::Report;
+use orientation::attitude::Report;
 
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]

@@ -19,10 +19,10 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::BaseReading;
-use orientation::align::conclusion::Conclusion;
-use orientation::align::mount::MountError;
-use orientation::keep::Report;
-use orientation::session::procedure::ProcedureError;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::mount::MountError;
+use orientation::attitude::Report;
 
 use thiserror::Error;
 
@@ -68,7 +68,7 @@ pub enum RunError {
     Latitude(f64),
     /// The session cannot begin.
     #[error("{0}")]
-    Procedure(ProcedureError),
+    Procedure(SetupError),
     /// The mount's calibration is impossible.
     #[error("{0}")]
     Mount(MountError),

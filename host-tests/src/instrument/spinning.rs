@@ -12,7 +12,7 @@ use firmware::simulated::spin::SpinScenario;
 use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use orientation::signal::SpinSample;
 use orientation::units::Instant;
 

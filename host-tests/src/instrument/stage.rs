@@ -15,8 +15,8 @@ use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::{self, Chips, Wires};
 use firmware::stage::Stage;
 use firmware::sway::{CompensatesSway, SwayCompensation};
-use orientation::keep::Keeper;
-use orientation::session::Session;
+use orientation::alignment::stepwise::session::Session;
+use orientation::attitude::Keeper;
 
 use super::harness::{self, Harness};
 use super::kept::{Kept, KeptPlan};

@@ -13,7 +13,7 @@ use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::storage::{FlashStore, Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
-use orientation::session::rotating;
+use orientation::alignment::rotating::session as rotating;
 
 use super::harness::{self, Harness};
 use super::{Run, RunError};

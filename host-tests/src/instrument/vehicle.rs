@@ -14,8 +14,8 @@ use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::vehicle::{Day, KnownPlace, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
-use orientation::keep::Keeper;
-use orientation::session::stops;
+use orientation::alignment::stops::session as stops;
+use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 
 use super::harness::{self, Harness};

@@ -1,7 +1,7 @@
 //! What a user asks of a replay, whatever the method.
 
-use orientation::align::criterion::Criterion;
-use orientation::align::setting::{Half, Setting};
+use orientation::alignment::stepwise::criterion::Criterion;
+use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::units::DEGREE;
 

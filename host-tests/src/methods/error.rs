@@ -1,7 +1,7 @@
 //! Why a recording that could be read cannot be replayed.
 
-use orientation::align::CAPACITY;
-use orientation::session::procedure::ProcedureError;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::CAPACITY;
 use thiserror::Error;
 
 use super::stepwise::late::Late;
@@ -126,7 +126,7 @@ pub enum ReplayError {
     NoiseUnknown,
     /// The session cannot follow the recording.
     #[error("{0}")]
-    Procedure(ProcedureError),
+    Procedure(SetupError),
     /// What the header says of a run's session cannot be read, and why.
     #[error("key session: {0}: leave the line as the run wrote it, or take it out")]
     Session(String),

@@ -19,7 +19,7 @@ use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
 
 /// What is called at each step of a replay: the session so far.
-pub type Watch<'a> = &'a dyn Fn(&orientation::session::Session);
+pub type Watch<'a> = &'a dyn Fn(&orientation::alignment::stepwise::session::Session);
 
 /// Replays a recording.
 type Replays = fn(&Header, &Body, &Asked, Watch<'_>) -> Result<Box<dyn Finished>, ReplayError>;

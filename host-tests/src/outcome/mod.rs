@@ -10,9 +10,10 @@ pub mod run;
 use std::any::Any;
 use std::fmt;
 
-use orientation::align::budget::Budget;
-use orientation::align::conclusion::Azimuth;
-use orientation::error::{Refusal, Source as Part};
+use orientation::alignment::Azimuth;
+use orientation::alignment::budget::Budget;
+use orientation::alignment::budget::Source as Part;
+use orientation::alignment::refusal::Refusal;
 use serde::ser::Error;
 use serde::{Serialize, Serializer};
 use serde_json::Value;

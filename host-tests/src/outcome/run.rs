@@ -5,7 +5,7 @@ use std::time::Duration;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::storage::Remembered;
-use orientation::keep::Realigned;
+use orientation::attitude::Realigned;
 use serde::Serialize;
 
 use crate::instrument::Run;

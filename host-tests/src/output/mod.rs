@@ -7,8 +7,8 @@ pub mod progress;
 
 use std::io::{self, Write};
 
-use orientation::align::regression::Column;
-use orientation::align::stepwise::{Fit, Hypothesis};
+use orientation::alignment::stepwise::fit::{Fit, Hypothesis};
+use orientation::math::regression::Column;
 
 /// Writes a line to standard error. A line that has no reader is lost, which is no error.
 pub fn say(line: &str) {

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use orientation::session::Session;
+use orientation::alignment::stepwise::session::Session;
 
 use super::{degrees, say};
 

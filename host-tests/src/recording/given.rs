@@ -6,7 +6,7 @@
 
 use std::io::{self, Write};
 
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use orientation::units::AngularRate;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -2,12 +2,12 @@
 //! and closed forms.
 
 use hal_mock::noise::Generator;
-use orientation::align::direction::{Amplitude, Components};
-use orientation::align::level::tilt;
-use orientation::align::quality::{Disturbance, ExpectedScatter};
-use orientation::align::regression::{Column, Regression};
-use orientation::align::setting::{Half, Mount, Setting};
+use orientation::alignment::stepwise::direction::{Amplitude, Components};
+use orientation::alignment::stepwise::level::tilt;
+use orientation::alignment::stepwise::quality::{Disturbance, ExpectedScatter};
+use orientation::alignment::stepwise::setting::{Half, Mount, Setting};
 use orientation::earth::Latitude;
+use orientation::math::regression::{Column, Regression};
 use orientation::noise::model::GyroNoise;
 use orientation::noise::whitener::Whitener;
 use orientation::signal::blocks::Blocks;

@@ -3,7 +3,7 @@
 //!
 //! `data/vectors/butterworth.json` comes from `scipy.signal.butter(output="sos")`.
 
-use orientation::signal::butterworth::{Coefficients, DesignError, Filter, Section};
+use orientation::filter::{Coefficients, DesignError, Filter, Section};
 use orientation::units::AngularRate;
 use proptest::prelude::*;
 use serde_json::Value;

@@ -1,14 +1,14 @@
 //! Averages of dwells whose samples bring a force or a temperature only now and then.
 
 use hal_mock::noise::Generator;
-use orientation::align::setting::Setting;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::session::{Event, Phase, Session};
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
-use orientation::session::procedure::Procedure;
-use orientation::session::schedule::Schedule;
-use orientation::session::{Event, Phase, Session};
+use orientation::filter::Coefficients;
 use orientation::signal::Sample;
-use orientation::signal::butterworth::Coefficients;
 use orientation::signal::dwell::{Dwell, DwellAverage};
 use orientation::units::{AngularRate, Instant, SpecificForce, Temperature};
 

@@ -6,11 +6,12 @@ use hal_mock::noise::Generator;
 use host::oracle::{
     CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
 };
-use orientation::align::etalon::series::CAPACITY;
-use orientation::align::etalon::table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
-use orientation::align::etalon::{
-    Acceptance, Accepted, Criterion, Limit, Series, SeriesError, Table, accepted, search,
+use orientation::alignment::stepwise::etalon::series::CAPACITY;
+use orientation::alignment::stepwise::etalon::{
+    Acceptance, Accepted, Criterion, Limit, Series, SeriesError, accepted, search,
 };
+use orientation::math::reference_table::Table;
+use orientation::math::reference_table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};

@@ -10,13 +10,13 @@ use host::methods::stepwise::positions::autocompensation;
 use host::methods::stepwise::{drive, replay};
 use host::output::azimuth_error;
 use host::simulate::stage_path;
-use orientation::align::setting::{Half, Setting};
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
+use orientation::alignment::stepwise::session::{Event, Session};
+use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::session::procedure::Procedure;
-use orientation::session::schedule::{Position, Schedule};
-use orientation::session::{Event, Session};
 
 use crate::support::files::recording;
 

@@ -5,17 +5,18 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use host::output::azimuth_error;
 use host::simulate::run;
-use orientation::align::setting::Setting;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
+use orientation::alignment::stepwise::session::survey::Survey;
+use orientation::alignment::stepwise::session::{Phase, Session};
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::fit::FitError;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
-use orientation::session::procedure::{Procedure, ProcedureError};
-use orientation::session::schedule::{Position, Schedule, StopRule};
-use orientation::session::survey::Survey;
-use orientation::session::{Phase, Session};
 use orientation::signal::dwell::Dwell;
 
 const N_DEG_SQRT_H: f64 = 0.001;
@@ -183,7 +184,7 @@ fn the_stage_never_leaves_its_travel() {
     let positions = [0.0, 7.0].map(|angle| Position { angle, seconds: 5.0 });
     let listed = Schedule::listed(&positions).expect("they fit");
     let begun = Session::new(setting(), Procedure::new(listed, 0.01));
-    assert_eq!(begun.err(), Some(ProcedureError::BeyondTravel(7.0)));
+    assert_eq!(begun.err(), Some(SetupError::BeyondTravel(7.0)));
 }
 
 #[test]
@@ -210,7 +211,7 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
 #[test]
 fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
     let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.1), 0.01));
-    assert!(matches!(begun.err(), Some(ProcedureError::DwellTooShort { samples: 10, .. })));
+    assert!(matches!(begun.err(), Some(SetupError::DwellTooShort { samples: 10, .. })));
 }
 
 /// A plan for the gyro of these tests on a stage that takes a second to turn.

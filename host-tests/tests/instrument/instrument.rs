@@ -13,7 +13,7 @@ use host::methods::asked::Asked;
 use host::methods::stepwise::replay;
 use host::output::{azimuth_error, degrees};
 use host::recording::{self, Header};
-use orientation::align::conclusion::Conclusion;
+use orientation::alignment::stepwise::conclusion::Conclusion;
 
 use crate::support::files::Scratch;
 

@@ -15,8 +15,8 @@ use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use host::virtual_time;
+use orientation::attitude::{State, Trust};
 use orientation::device::{Device, Trouble};
-use orientation::keep::{State, Trust};
 use orientation::units::Angle;
 use proptest::prelude::*;
 

@@ -20,7 +20,8 @@ use host::methods::spin::{Known, follow};
 use host::methods::{rotating, spin, stepwise, stops};
 use host::outcome::Finished;
 use host::recording::{self, Body, Header, Truth};
-use orientation::session::{rotating as rotating_session, stops as stops_session};
+use orientation::alignment::rotating::session as rotating_session;
+use orientation::alignment::stops::session as stops_session;
 use orientation::units::DEGREE;
 use serde_json::Value;
 

@@ -6,8 +6,8 @@ use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
 use host::instrument::{VehicleRun, align_stops};
-use orientation::align::conclusion::Azimuth;
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
 
 fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
     align_stops(scenario, fault, NoRecorder, &()).expect("the scenario is possible")

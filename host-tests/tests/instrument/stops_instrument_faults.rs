@@ -5,9 +5,9 @@ use firmware::ports::NoRecorder;
 use firmware::simulated::fault::{ChipFault, Fault, Platform};
 use firmware::simulated::vehicle::VehicleScenario;
 use host::instrument::{VehicleRun, align_stops};
-use orientation::align::conclusion::Azimuth;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
 
 use crate::support::campaign::{Extent, campaigns};
 

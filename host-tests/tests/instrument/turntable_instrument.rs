@@ -8,10 +8,10 @@ use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use host::instrument::{TurntableRun, align_turning};
 use host::output::{azimuth_error, degrees};
-use orientation::align::conclusion::Azimuth;
-use orientation::align::rotating::solution::SPEEDS;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::solution::SPEEDS;
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
 use rayon::prelude::*;
 
 /// A short alignment, for what does not depend on its length.

@@ -12,9 +12,9 @@ use firmware::storage::{FlashStore, Today, keep, recall};
 use host::instrument::{Keeping, TurntableRun, align_turning_again};
 use host::output::{azimuth_error, degrees};
 use host::virtual_time::run;
-use orientation::align::conclusion::Azimuth;
-use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES};
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use proptest::prelude::*;
 
 fn save(store: &mut FlashStore<Flash>, bytes: &[u8; BYTES]) -> Result<(), Fault> {

@@ -7,7 +7,7 @@ use host::methods::asked::Asked;
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::{Replay, replay};
 use host::recording::{Body, Header, SpinRow};
-use orientation::keep::spin::{Accelerometer, Condition, State};
+use orientation::roll::{Accelerometer, Condition, State};
 
 use crate::support::program::{code, meridian, object};
 

@@ -6,12 +6,12 @@ use host::methods::error::ReplayError;
 use host::methods::stops::floor::Spectrum;
 use host::methods::stops::{Replay, grade, noise, replay};
 use host::recording::{Body, Header, ImuRow};
-use orientation::align::setting::Setting as Common;
-use orientation::align::stops::Setting;
-use orientation::align::stops::stop_detector::Rests;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::stops::Setting;
+use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
-use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::units::Instant;
 

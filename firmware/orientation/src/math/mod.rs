@@ -2,6 +2,8 @@
 //! tails, a bounded minimisation.
 
 pub mod brent;
+pub mod reference_table;
+pub mod regression;
 pub mod rotation;
 pub mod turn;
 

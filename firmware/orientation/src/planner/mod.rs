@@ -9,12 +9,14 @@ pub mod burov;
 pub mod order;
 pub mod prediction;
 
-use crate::align::POSITIONS;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::units::TURN;
 use order::{Order, PARTS};
 use prediction::{Visit, rate_sigma};
+
+/// Greatest number of positions of a plan, and of an alignment on the board.
+pub const POSITIONS: usize = 64;
 
 /// Time that the stage takes for a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,9 @@
 //! contributions of tilt, encoder and scale belong to the conclusion.
 
 use super::order::PARTS;
-use crate::align::etalon::Table;
-use crate::align::etalon::table::{ONE, TURN};
-use crate::align::regression::{COLUMNS, Column, Regression};
+use crate::math::reference_table::Table;
+use crate::math::reference_table::{ONE, TURN};
+use crate::math::regression::{COLUMNS, Column, Regression};
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;

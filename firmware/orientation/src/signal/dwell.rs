@@ -9,7 +9,7 @@
 
 use super::Sample;
 use super::blocks::{BlockStatistics, Blocks};
-use super::butterworth::{Coefficients, Filter};
+use crate::filter::{Coefficients, Filter};
 use crate::units::{Angle, AngularRate, Instant, Optional};
 
 /// Result of one dwell (a standstill of the stage), whether averaged here or read from a table.

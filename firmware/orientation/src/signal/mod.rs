@@ -2,7 +2,6 @@
 //! platform, or to a strapdown attitude.
 
 pub mod blocks;
-pub mod butterworth;
 pub mod dwell;
 pub(crate) mod increment;
 pub mod phasor;

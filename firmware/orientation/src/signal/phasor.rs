@@ -12,8 +12,8 @@
 //! cos θ, sin θ over whole turns).
 
 use super::Sample;
-use crate::align::etalon::Table;
-use crate::align::regression::Regression;
+use crate::math::reference_table::Table;
+use crate::math::regression::Regression;
 use crate::units::Angle;
 
 /// Number of columns that the gyro's rate may be fitted to.

@@ -25,20 +25,22 @@ use firmware::configuration::{
     VehicleConfiguration,
 };
 use firmware::spin::configuration::{Channel, SpinConfiguration};
-use orientation::align::rotating::{self, Sensor};
-use orientation::align::setting::Setting;
-use orientation::align::stops;
+use orientation::alignment::period::CONVERTER_TOLERANCE;
+use orientation::alignment::rotating;
+use orientation::alignment::rotating::Sensor;
+use orientation::alignment::rotating::session::Procedure as Turning;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::session::survey::Survey;
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::stops;
+use orientation::alignment::stops::session::Procedure as Driving;
 use orientation::earth::Latitude;
-use orientation::keep::{self, spin};
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
-use orientation::session::procedure::{CONVERTER_TOLERANCE, Procedure};
-use orientation::session::rotating::Procedure as Turning;
-use orientation::session::schedule::Schedule;
-use orientation::session::stops::Procedure as Driving;
-use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
+use orientation::{attitude as keep, roll as spin};
 
 /// Platform that carries the gyro.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use firmware::ports::NoRecorder;
 use firmware::run::navigate;
 use firmware::runner::Stepwise;
 use firmware::stage::Stage;
-use orientation::session::procedure::ProcedureError;
-use orientation::session::{Prepared, Session};
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::session::{Prepared, Session};
 use static_cell::StaticCell;
 
 use crate::wiring::Wiring;
@@ -29,7 +29,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
 }
 
 /// Creates the session at its final place in memory.
-fn session() -> Result<&'static mut Session, ProcedureError> {
+fn session() -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let prepared = Prepared::new(configuration::setting(), configuration::procedure())?;
     Ok(SESSION.init_with(|| Session::from(prepared)))

@@ -10,9 +10,9 @@ use firmware::ports::NoRecorder;
 use firmware::run::navigate;
 use firmware::runner::Stops;
 use firmware::shared::Channels;
-use orientation::keep::Keeper;
-use orientation::session::procedure::ProcedureError;
-use orientation::session::stops::Session;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stops::session::Session;
+use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
@@ -56,7 +56,7 @@ fn keeper() -> &'static mut Keeper {
 }
 
 /// Creates the session at its final place in memory.
-fn session() -> Result<&'static mut Session, ProcedureError> {
+fn session() -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let procedure = configuration::driving_procedure();
     procedure.check()?;

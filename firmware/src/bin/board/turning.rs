@@ -7,7 +7,7 @@ use firmware::run::navigate;
 use firmware::runner::Rotating;
 use firmware::storage::{Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
-use orientation::session::rotating::{Session, check};
+use orientation::alignment::rotating::session::{Session, check};
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};

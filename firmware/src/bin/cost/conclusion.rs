@@ -2,13 +2,13 @@
 //! deviation.
 
 use hal_mock::noise::Generator;
-use orientation::align::conclusion::Conclusion;
-use orientation::align::criterion::Criterion;
-use orientation::align::setting::Setting;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::criterion::Criterion;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
+use orientation::filter::{Coefficients, DesignError};
 use orientation::noise::model::GyroNoise;
 use orientation::signal::Sample;
-use orientation::signal::butterworth::{Coefficients, DesignError};
 use orientation::signal::dwell::{Dwell, DwellAverage};
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 

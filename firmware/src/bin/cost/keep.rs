@@ -4,11 +4,12 @@
 use core::hint::black_box;
 
 use hal_mock::noise::Generator;
+use orientation::attitude::Handover;
+use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::keep::Handover;
-use orientation::keep::spin::{self, Signal, Spin};
-use orientation::keep::{Gyro, Keeper, Setting};
 use orientation::noise::model::GyroNoise;
+use orientation::roll as spin;
+use orientation::roll::{Signal, Spin};
 use orientation::signal::{InertialSample, SpinSample};
 use orientation::units::{
     AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce, SpinForce, TURN,

@@ -31,11 +31,12 @@ use core::panic::PanicInfo;
 use cortex_m::asm::wfi;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
-use orientation::align::conclusion::Conclusion;
-use orientation::align::etalon::series::SeriesError;
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::etalon::series::SeriesError;
+use orientation::alignment::stepwise::session::Session;
+use orientation::filter::DesignError;
 use orientation::noise::allan::Allan;
-use orientation::session::{Session, rotating};
-use orientation::signal::butterworth::DesignError;
 
 use counter::Counter;
 use report::{Report, figure, heading};
@@ -102,9 +103,12 @@ fn sizes() -> Result<(), Failure> {
     figure("stack of this image at its deepest", stack::greatest_stack() as u64);
     figure("a Session", size_of::<Session>() as u64);
     figure("a Session on a turning platform", size_of::<rotating::Session>() as u64);
-    figure("a Session from stops", size_of::<orientation::session::stops::Session>() as u64);
-    figure("a Keeper", size_of::<orientation::keep::Keeper>() as u64);
-    figure("a Spin", size_of::<orientation::keep::spin::Spin>() as u64);
+    figure(
+        "a Session from stops",
+        size_of::<orientation::alignment::stops::session::Session>() as u64,
+    );
+    figure("a Keeper", size_of::<orientation::attitude::Keeper>() as u64);
+    figure("a Spin", size_of::<orientation::roll::Spin>() as u64);
     figure("a Conclusion", size_of::<Conclusion>() as u64);
     figure("an Allan variance", size_of::<Allan>() as u64);
     figure("static memory of this image", memory::statics() as u64);

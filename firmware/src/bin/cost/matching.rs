@@ -1,9 +1,11 @@
 //! Cost of the search of the reference table (etalon), in the setting of Sokolov 2019.
 
 use hal_mock::noise::Generator;
-use orientation::align::etalon::series::SeriesError;
-use orientation::align::etalon::table::{ONE, STEP, TURN};
-use orientation::align::etalon::{self, Acceptance, Criterion, Limit, Match, Series, Table};
+use orientation::alignment::stepwise::etalon;
+use orientation::alignment::stepwise::etalon::series::SeriesError;
+use orientation::alignment::stepwise::etalon::{Acceptance, Criterion, Limit, Match, Series};
+use orientation::math::reference_table::Table;
+use orientation::math::reference_table::{ONE, STEP, TURN};
 
 use crate::counter::Counter;
 use crate::report::{Report, figure};

@@ -3,8 +3,8 @@
 use core::hint::black_box;
 
 use hal_mock::noise::Generator;
+use orientation::filter::{Coefficients, DesignError, Filter};
 use orientation::signal::Sample;
-use orientation::signal::butterworth::{Coefficients, DesignError, Filter};
 use orientation::signal::dwell::DwellAverage;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 

@@ -3,11 +3,11 @@
 
 use core::hint::black_box;
 
-use orientation::align::setting::Setting as Common;
-use orientation::align::stops::Setting;
-use orientation::align::stops::conclusion::Conclusion;
-use orientation::align::stops::inclination::Inclination;
-use orientation::align::stops::stop_detector::{Rests, StopDetector};
+use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::stops::Setting;
+use orientation::alignment::stops::conclusion::Conclusion;
+use orientation::alignment::stops::inclination::Inclination;
+use orientation::alignment::stops::stop_detector::{Rests, StopDetector};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;

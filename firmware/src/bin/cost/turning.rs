@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use hal_mock::noise::Generator;
-use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
+use orientation::alignment::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN};
 

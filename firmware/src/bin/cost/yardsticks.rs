@@ -3,9 +3,11 @@
 
 use core::hint::black_box;
 
-use orientation::align::etalon::table::TURN;
-use orientation::align::etalon::{self, Criterion, Series, Table};
-use orientation::align::regression::{Column, Regression, Solution};
+use orientation::alignment::stepwise::etalon;
+use orientation::alignment::stepwise::etalon::{Criterion, Series};
+use orientation::math::reference_table::TURN;
+use orientation::math::reference_table::Table;
+use orientation::math::regression::{Column, Regression, Solution};
 
 use crate::counter::Counter;
 use crate::report::{Report, figure};

@@ -12,7 +12,9 @@ use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
 use firmware::simulated::{self, Wires};
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
 use crate::meter::Meter;

@@ -20,8 +20,10 @@ use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::fault::PortWrapper;
 use hal_mock::chip::Select;
-use orientation::keep::Report;
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
+use orientation::attitude::Report;
 
 use crate::clock;
 use crate::meter::Meter;

@@ -7,11 +7,11 @@
 //! level.
 
 use defmt::println;
-use orientation::align::conclusion::Azimuth;
-use orientation::align::rotating::turn::Turn;
-use orientation::align::stops::stop::Stop;
-use orientation::error::Refusal;
-use orientation::keep::Report;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::turn::Turn;
+use orientation::alignment::stops::stop::Stop;
+use orientation::attitude::Report;
 use orientation::signal::dwell::Dwell;
 
 /// The bit pattern of an absent value.

@@ -21,9 +21,12 @@ use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use firmware::stage::Stage;
 use firmware::turntable::Turntable;
 use hal_mock::vehicle::board::VehicleBoard;
-use orientation::align::rotating::turn::Stretch;
-use orientation::keep::{self, Keeper};
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::rotating::turn::Stretch;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
+use orientation::attitude as keep;
+use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 

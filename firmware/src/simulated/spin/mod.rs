@@ -14,7 +14,7 @@ use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
 use hal_mock::spin::profile::Profile;
-use orientation::keep::spin::{Method, Setting};
+use orientation::roll::{Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};

@@ -16,11 +16,11 @@ use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
-use orientation::align::setting;
-use orientation::align::stops::Setting;
+use orientation::alignment::stepwise::setting;
+use orientation::alignment::stops::Setting;
+use orientation::alignment::stops::session::Procedure;
+use orientation::attitude as keep;
 use orientation::earth::Latitude;
-use orientation::keep;
-use orientation::session::stops::Procedure;
 use orientation::units::DEGREE_PER_HOUR;
 
 use super::fault::{Fault, Injection, PortWrapper};

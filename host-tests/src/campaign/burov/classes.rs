@@ -4,8 +4,8 @@
 //! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
 
 use hal_mock::gyro::Gyro;
-use orientation::error::Refusal;
-use orientation::keep::{Gyro as Known, Handover, Keeper, Setting};
+use orientation::alignment::refusal::Refusal;
+use orientation::attitude::{Gyro as Known, Handover, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
 use orientation::signal::InertialSample;
 use orientation::units::DEGREE_PER_HOUR;

@@ -9,15 +9,15 @@ use std::fmt;
 
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
-use orientation::align::setting::Setting;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Plan, Rotation};
-use orientation::session::Session;
-use orientation::session::procedure::Procedure;
-use orientation::session::schedule::Schedule;
 use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
 

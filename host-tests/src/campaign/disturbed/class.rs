@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
 
 use super::chance::Chance;

@@ -2,10 +2,10 @@
 
 use firmware::event::Event;
 use firmware::simulated::fault::Notice;
+use orientation::alignment::refusal::Refusal;
+use orientation::attitude::Realigned;
 use orientation::device::Device;
-use orientation::error::Refusal;
-use orientation::keep::Realigned;
-use orientation::keep::spin::Condition;
+use orientation::roll::Condition;
 
 /// The first event that reports something wrong.
 pub(super) fn first(events: &[Event]) -> Option<&Event> {

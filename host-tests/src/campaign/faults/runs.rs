@@ -10,9 +10,9 @@ use firmware::simulated::scenario::Scenario;
 use firmware::simulated::spin::SpinScenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::VehicleScenario;
-use orientation::align::conclusion::Azimuth;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::error::Refusal;
 
 use crate::instrument::spinning::follow_spin;
 use crate::instrument::{self, Run, RunError};

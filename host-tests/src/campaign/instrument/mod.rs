@@ -5,7 +5,7 @@ pub(super) mod report;
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
 
 use super::over;

@@ -8,8 +8,8 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle, VehicleConfiguration, VehicleSample};
+use orientation::attitude::{Gyro, Handover, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::burov::{Grade, LATITUDE_DEG, latitude};

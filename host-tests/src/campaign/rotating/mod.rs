@@ -9,13 +9,13 @@ pub mod world;
 
 use std::f64::consts::TAU;
 
-use orientation::align::rotating::solution::Fit;
-use orientation::align::rotating::{Sensor, Setting};
-use orientation::align::setting::Setting as Common;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::session::{Procedure, Session};
+use orientation::alignment::rotating::solution::Fit;
+use orientation::alignment::rotating::{Sensor, Setting};
+use orientation::alignment::stepwise::setting::Setting as Common;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::session::rotating::{Procedure, Session};
 use orientation::units::DEGREE_PER_HOUR;
 
 use self::world::{LATITUDE_DEG, World};

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::noise::Generator;
-use orientation::align::rotating::Sensor;
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::Sensor;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 

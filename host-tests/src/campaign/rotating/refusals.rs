@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use hal_mock::disturbance::Disturbance;
 use hal_mock::turntable::{EncoderSlip, Segment};
-use orientation::align::rotating::Sensor;
+use orientation::alignment::rotating::Sensor;
 use serde::Serialize;
 
 use super::stages::{SECONDS, TURN_HZ};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use orientation::align::rotating::Sensor;
+use orientation::alignment::rotating::Sensor;
 use serde::Serialize;
 
 use super::world::{Integrating, World};

@@ -11,7 +11,7 @@ use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
 
-use orientation::session::rotating::{Command, Event, Session};
+use orientation::alignment::rotating::session::{Command, Event, Session};
 
 use super::motor::Motor;
 use crate::recording::RotatingRow;

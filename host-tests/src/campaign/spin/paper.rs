@@ -2,7 +2,7 @@
 //! between corrections (Fig. 8); beside them what the same samples give with interpolated extrema and by
 //! phase lock.
 
-use orientation::keep::spin::{Method, Setting};
+use orientation::roll::{Method, Setting};
 use orientation::units::TURN;
 use serde::Serialize;
 

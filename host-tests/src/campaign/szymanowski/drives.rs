@@ -2,9 +2,9 @@
 //! the paper's, and that of everything that is known.
 
 use hal_mock::vehicle::scenario::Scenario;
-use orientation::align::stops::plain;
-use orientation::align::stops::stop_detector::Rests;
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops::plain;
+use orientation::alignment::stops::stop_detector::Rests;
 use serde::Serialize;
 
 use super::world::{Day, Known, live};

@@ -5,7 +5,7 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::{Scenario, fog};
 use hal_mock::vehicle::{Leg, Stop};
-use orientation::align::stops::stop_detector::Rests;
+use orientation::alignment::stops::stop_detector::Rests;
 use serde::Serialize;
 
 use super::drives::{DRIVE_S, STOP_S};

@@ -20,7 +20,9 @@ use host::outcome::Finished;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
 use host::recording::{Body, Truth};
-use orientation::session::{Session, rotating, stops};
+use orientation::alignment::rotating::session as rotating;
+use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::session as stops;
 
 use self::options::Common;
 use super::faults::{self, FaultChoice};

@@ -13,7 +13,7 @@ use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::RunDetails;
 use host::output::degrees;
 use host::recording::{GIVEN, Truth};
-use orientation::session::stops::Session;
+use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 
 use super::keeping::KeepingOptions;

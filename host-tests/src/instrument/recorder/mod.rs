@@ -17,7 +17,7 @@ use firmware::ports::Recorder;
 use firmware::simulated::scenario::Scenario;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use orientation::align::setting::Setting;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 
 pub use turntable::turning_rows;

@@ -8,8 +8,8 @@ use embassy_time::Instant;
 use firmware::ports::BaseReading;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
-use orientation::align::setting::Setting;
-use orientation::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::signal::Sample;
 use orientation::units::Angle;
 

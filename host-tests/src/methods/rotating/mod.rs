@@ -6,11 +6,11 @@ pub mod turns;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
-use orientation::align::rotating::turn::Stretch;
-use orientation::align::rotating::{Sensor, Setting};
-use orientation::align::setting::Setting as Common;
-use orientation::session::procedure::ProcedureError;
-use orientation::session::rotating::{Event, Procedure, Session};
+use orientation::alignment::rotating::session::{Event, Procedure, Session};
+use orientation::alignment::rotating::turn::Stretch;
+use orientation::alignment::rotating::{Sensor, Setting};
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::setting::Setting as Common;
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
@@ -174,7 +174,7 @@ pub fn follow(
     setting: Setting,
     rows: &[RotatingRow],
     sample_seconds: f64,
-) -> Result<Session, ProcedureError> {
+) -> Result<Session, SetupError> {
     let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), FEW_CUT);

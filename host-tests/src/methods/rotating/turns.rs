@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use orientation::align::regression::{Column, Regression};
+use orientation::math::regression::{Column, Regression};
 use rustfft::num_complex::Complex;
 
 use crate::recording::RotatingRow;

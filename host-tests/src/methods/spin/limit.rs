@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use orientation::align::regression::{Column, Regression};
+use orientation::math::regression::{Column, Regression};
 use orientation::signal::SpinSample;
 use orientation::units::{SpinForce, TURN};
 

@@ -9,7 +9,7 @@ pub mod outcome;
 pub mod samples;
 pub mod track;
 
-use orientation::keep::spin::{Method, Setting};
+use orientation::roll::{Method, Setting};
 use orientation::signal::SpinSample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 

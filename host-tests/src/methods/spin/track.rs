@@ -1,6 +1,6 @@
 //! What a method makes of samples, from the first to the last.
 
-use orientation::keep::spin::{Method, Setting, Spin, State};
+use orientation::roll::{Method, Setting, Spin, State};
 use orientation::signal::SpinSample;
 
 use crate::output::degrees;

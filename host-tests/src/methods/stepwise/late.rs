@@ -6,8 +6,8 @@
 
 use std::fmt;
 
-use orientation::align::quality::Disturbance;
-use orientation::session::Session;
+use orientation::alignment::stepwise::quality::Disturbance;
+use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
 
 use thiserror::Error;

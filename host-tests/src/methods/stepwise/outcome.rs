@@ -1,8 +1,8 @@
 //! Stepwise gyrocompassing and autocompensated positions: what an alignment at standstills found.
 
-use orientation::align::conclusion::Conclusion;
-use orientation::align::stepwise::Fit;
-use orientation::session::Session;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::fit::Fit;
+use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
 use serde::Serialize;
 

@@ -5,9 +5,9 @@
 //! noise. In an order that cancels drift plain least squares comes within a few per cent of it
 //! (Burov's autocompensation needs no more); where the order does not, the two come apart.
 
-use orientation::align::conclusion::Conclusion;
-use orientation::align::regression::{Column, Regression};
-use orientation::session::Session;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::session::Session;
+use orientation::math::regression::{Column, Regression};
 use orientation::units::wrapped;
 use serde::Serialize;
 

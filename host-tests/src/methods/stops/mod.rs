@@ -13,12 +13,12 @@ pub mod way;
 
 use firmware::ports::Recorder;
 use heapless::Vec as Few;
-use orientation::align::setting::Setting as Common;
-use orientation::align::stops::Setting;
-use orientation::align::stops::stop::STOPS;
-use orientation::align::stops::stop_detector::Rests;
+use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::stops::Setting;
+use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::stop::STOPS;
+use orientation::alignment::stops::stop_detector::Rests;
 use orientation::earth::EARTH_RATE;
-use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN};

@@ -5,8 +5,8 @@
 //! linearly growing acceleration, and is taken off. What is left is good to a tenth of the way: not enough for the
 //! azimuth, but enough to distinguish metres from kilometres and north from east.
 
-use orientation::align::setting::Setting as Common;
-use orientation::align::stops::stop::Stop;
+use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::stops::stop::Stop;
 use orientation::math::rotation::{
     Matrix, Vector, about_down, by, cross, difference, length, levelled, product, scaled, sum,
     transposed, turned, unit,

@@ -9,8 +9,8 @@ pub mod outcome;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use orientation::attitude::{Gyro, Keeper, Report, Setting, Trust};
 use orientation::earth::Latitude;
-use orientation::keep::{Gyro, Keeper, Report, Setting, Trust};
 use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;

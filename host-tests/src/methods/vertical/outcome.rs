@@ -1,6 +1,6 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
-use orientation::keep::attitude::angles;
+use orientation::attitude::quaternion::angles;
 use serde::Serialize;
 
 use crate::cause;

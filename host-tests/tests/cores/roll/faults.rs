@@ -1,6 +1,6 @@
 //! Lifts that come late or go, gyros that are wrong, samples that are missing.
 
-use orientation::keep::spin::Condition;
+use orientation::roll::Condition;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
 use super::world::{Body, assert_followed, follow, worst};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hal_mock::noise::Generator;
-use orientation::keep::spin::{Condition, Setting, Spin, State};
+use orientation::roll::{Condition, Setting, Spin, State};
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 

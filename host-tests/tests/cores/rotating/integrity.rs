@@ -8,8 +8,8 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Harmonic, Ripple, Unevenness};
+use orientation::alignment::rotating::session::Procedure;
 use orientation::noise::model::GyroNoise;
-use orientation::session::rotating::Procedure;
 
 use crate::support::campaign::{Extent, campaigns};
 

@@ -9,7 +9,7 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{Ripple, Unevenness};
-use orientation::session::rotating::Procedure;
+use orientation::alignment::rotating::session::Procedure;
 
 use super::rig::{Case, driven, molecular, over, rms};
 

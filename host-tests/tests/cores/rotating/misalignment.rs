@@ -2,8 +2,8 @@
 
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::turntable::{Segment, Turntable};
-use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES, nearest};
-use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
+use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES, nearest};
+use orientation::alignment::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use proptest::prelude::*;
 
 use super::outcome::{SPEED, healthy, turns_s};

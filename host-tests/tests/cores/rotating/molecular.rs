@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use hal_mock::noise::Generator;
-use orientation::align::rotating::molecular::{Freed, Halves, freed};
+use orientation::alignment::rotating::molecular::{Freed, Halves, freed};
 use orientation::math::Complex;
 
 /// Real and imaginary part.

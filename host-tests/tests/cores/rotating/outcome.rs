@@ -9,7 +9,7 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
 use hal_mock::turntable::{TurningSample, TurntableConfiguration};
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 
 use super::rig::{Case, both_senses, flat, over};
 

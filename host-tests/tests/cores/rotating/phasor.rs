@@ -1,8 +1,8 @@
 //! Sums of integer products give the coefficients of a plain least-squares fit in f64.
 
 use hal_mock::noise::Generator;
-use orientation::align::regression::Column;
-use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
+use orientation::alignment::rotating::turn_accumulator::{Mode, TurnAccumulator};
+use orientation::math::regression::Column;
 use orientation::signal::Sample;
 use orientation::signal::phasor::{
     Block, Blocks, COLUMNS, Products, QUICKENING, RATE, Reference, Sums, TURNING,

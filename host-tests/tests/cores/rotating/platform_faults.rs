@@ -1,8 +1,8 @@
 //! What goes wrong with the platform and its encoder is refused by name.
 
 use hal_mock::turntable::{EncoderSlip, Segment, TurntableConfiguration};
-use orientation::error::Refusal;
-use orientation::session::rotating::Procedure;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::session::Procedure;
 
 use super::outcome::{
     SPEED, TURNS, assert_never_wrong, assert_refused, assert_right, between_s, changed_at,

@@ -7,13 +7,13 @@ use hal_mock::gyro::DEGREE_PER_HOUR;
 use hal_mock::instruments::{Instruments, InstrumentsConfiguration};
 use hal_mock::stage::{StageState, Unevenness};
 use hal_mock::turntable::{Segment, TurningSample, Turntable, TurntableConfiguration};
-use orientation::align::rotating::conclusion::Conclusion;
-use orientation::align::rotating::{Sensor, Setting};
-use orientation::align::setting::Setting as Common;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::conclusion::Conclusion;
+use orientation::alignment::rotating::session::{Command, Event, Procedure, Session};
+use orientation::alignment::rotating::{Sensor, Setting};
+use orientation::alignment::stepwise::setting::Setting as Common;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::session::rotating::{Command, Event, Procedure, Session};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 

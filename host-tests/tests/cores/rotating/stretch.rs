@@ -1,6 +1,6 @@
 //! Turns that are joined keep their means, their number and their order.
 
-use orientation::align::rotating::turn::{Sense, Stretch, TURNS, Turn};
+use orientation::alignment::rotating::turn::{Sense, Stretch, TURNS, Turn};
 
 fn turn(number: u32) -> Turn {
     let x = f64::from(number);

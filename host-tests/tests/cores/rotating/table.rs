@@ -1,6 +1,6 @@
 //! Cosine and sine of any angle from the stored quarter, against the standard library's.
 
-use orientation::align::etalon::Table;
+use orientation::math::reference_table::Table;
 use orientation::units::Angle;
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Drive, Event, Leg, Stop};
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use orientation::signal::rest::Sensors;
 
 use super::assert_near;

@@ -1,8 +1,8 @@
 //! U(azp): closed form, minimisation and the paper's form on random drives.
 
 use hal_mock::noise::Generator;
-use orientation::align::stops::inclination::Inclination;
-use orientation::align::stops::place::{Place, up};
+use orientation::alignment::stops::inclination::Inclination;
+use orientation::alignment::stops::place::{Place, up};
 use orientation::earth::{EARTH_RATE, Latitude};
 use orientation::math::rotation::{
     Matrix, Vector, about_down, by, dot, product, transposed, turned,

@@ -1,6 +1,6 @@
 //! Where up points later and elsewhere, against the ellipsoid computed another way.
 
-use orientation::align::stops::place::{Place, up};
+use orientation::alignment::stops::place::{Place, up};
 use orientation::earth::Latitude;
 use orientation::math::rotation::Vector;
 

@@ -1,8 +1,8 @@
 //! What is refused, by name, and what is not silently wrong.
 
 use hal_mock::vehicle::{Drive, Leg, SensorFailure, SensorFault, VehicleSample};
-use orientation::align::conclusion::Azimuth;
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
 
 use super::criteria::{day, drive, stop};
 use super::drives::{quiet, three, two};

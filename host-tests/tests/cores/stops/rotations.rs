@@ -1,6 +1,6 @@
 //! Rotations against scipy's, and levelling against its definition.
 
-use orientation::align::stops::inclination::pitch_and_roll;
+use orientation::alignment::stops::inclination::pitch_and_roll;
 use orientation::math::rotation::{
     Matrix, Quaternion, Vector, about_down, by, levelled, product, small, transposed, turned,
 };

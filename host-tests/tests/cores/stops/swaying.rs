@@ -4,7 +4,7 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, VehicleSample};
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 use orientation::math::rotation::{Vector, cross, dot, unit};
 use rayon::prelude::*;
 

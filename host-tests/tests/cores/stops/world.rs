@@ -3,15 +3,15 @@
 use hal_mock::noise::Generator;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{SensorFault, Vehicle, VehicleSample};
-use orientation::align::setting::Setting as Common;
-use orientation::align::stops::Setting;
-use orientation::align::stops::conclusion::{Conclusion, Found};
-use orientation::align::stops::residual::Residual;
-use orientation::align::stops::stop::Stop;
-use orientation::align::stops::stop_detector::Rests;
+use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::stops::Setting;
+use orientation::alignment::stops::conclusion::{Conclusion, Found};
+use orientation::alignment::stops::residual::Residual;
+use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::stop::Stop;
+use orientation::alignment::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce};
 

@@ -1,6 +1,6 @@
 //! The attitude in integers against quaternions in `f64`.
 
-use orientation::keep::attitude::{Attitude, angles, quaternion};
+use orientation::attitude::quaternion::{Attitude, angles, quaternion};
 use proptest::prelude::*;
 
 use super::assert_near;

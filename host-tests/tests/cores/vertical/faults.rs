@@ -1,6 +1,6 @@
 //! What may go wrong: the state says so, σ covers it, and it comes back by itself.
 
-use orientation::keep::Trust;
+use orientation::attitude::Trust;
 use orientation::units::{AngleIncrement, DEGREE, SpecificForce, TURN};
 
 use super::world::{Body, Known, coarse, keep, precise};

@@ -1,6 +1,6 @@
 //! What the filter may not be too sure of: its level, the biases and the noise that were stated.
 
-use orientation::keep::{Gyro, Setting};
+use orientation::attitude::{Gyro, Setting};
 use orientation::units::{AngleIncrement, DEGREE};
 
 use super::world::{Body, Known, coarse, keep, precise, shaken};

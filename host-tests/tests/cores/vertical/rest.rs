@@ -1,6 +1,6 @@
 //! When a body is found to stand: whatever its motion left behind, and never while it only moves quietly.
 
-use orientation::keep::{Gyro, Setting};
+use orientation::attitude::{Gyro, Setting};
 use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR};
 
 use super::world::{Body, Known, coarse, keep, precise, shaken};

@@ -1,8 +1,8 @@
 //! A body that turns and accelerates in closed form, and what its sensors show of it.
 
 use hal_mock::noise::Generator;
+use orientation::attitude::{Gyro, Handover, Keeper, Report, Setting};
 use orientation::earth::Latitude;
-use orientation::keep::{Gyro, Handover, Keeper, Report, Setting};
 use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;
 use orientation::units::{

@@ -5,8 +5,8 @@ use firmware::configuration::{Alignment, KeepConfiguration, Realignment};
 use firmware::keep::{Keep, Keeping, Motion};
 use firmware::shared::Shared;
 use host::virtual_time;
+use orientation::attitude::{Gyro, Handover, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
 

@@ -4,7 +4,7 @@ use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
 use firmware::simulated::keep::Hold;
 use host::instrument::kept::KeptPlan;
-use orientation::keep::Realigned;
+use orientation::attitude::Realigned;
 
 #[test]
 fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {

@@ -11,7 +11,7 @@ use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
 use host::instrument::{VehicleRun, align_stops_along};
-use orientation::keep::restart::{RecallRefusal, Remembered};
+use orientation::attitude::restart::{RecallRefusal, Remembered};
 
 /// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
 const STEADY: GyroClass =

@@ -1,11 +1,11 @@
 //! The fit with an axis that is not level and an accelerometer on the base: exact dwells in, azimuth
 //! out.
 
-use orientation::align::conclusion::Conclusion;
-use orientation::align::criterion::Criterion;
-use orientation::align::mount::{FrameAngles, TWO_FRAMES, TwoFrame};
-use orientation::align::quality::Disturbance;
-use orientation::align::setting::Setting;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::criterion::Criterion;
+use orientation::alignment::stepwise::mount::{FrameAngles, TWO_FRAMES, TwoFrame};
+use orientation::alignment::stepwise::quality::Disturbance;
+use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::dwell::Dwell;

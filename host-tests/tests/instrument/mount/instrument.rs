@@ -12,9 +12,9 @@ use host::campaign::statistics::rms;
 use host::instrument::kept::KeptPlan;
 use host::instrument::{FramesRun, align_frames_and_keep};
 use host::output::{azimuth_error, degrees};
-use orientation::align::mount::TwoFrame;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
-use orientation::error::Refusal;
 use orientation::units::DEGREE;
 use rayon::prelude::*;
 

@@ -1,6 +1,8 @@
 //! Where the two angles point the axis, and which angles point it where it is wanted.
 
-use orientation::align::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame, azimuth_sigma};
+use orientation::alignment::stepwise::mount::{
+    FrameAngles, LIMIT, MountError, Station, TwoFrame, azimuth_sigma,
+};
 use orientation::earth::Latitude;
 use proptest::prelude::*;
 

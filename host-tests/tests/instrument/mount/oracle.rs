@@ -1,6 +1,6 @@
 //! The mount's mechanism by 3 × 3 matrices and Rodrigues' formula, apart from any code under test.
 
-use orientation::align::mount::{FrameAngles, TwoFrame};
+use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
 
 pub type Matrix = [[f64; 3]; 3];
 

@@ -9,7 +9,7 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::tmc5160::Oscillator;
-use orientation::align::mount::{FrameAngles, TwoFrame};
+use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
 use proptest::prelude::*;
 
 use super::kinematics::{calibration, frames};

@@ -8,7 +8,7 @@ use hal_mock::vehicle::{SensorFailure, SensorFault};
 use host::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::samples::Converter;
-use orientation::keep::spin::{Condition, Setting, Spin, State};
+use orientation::roll::{Condition, Setting, Spin, State};
 
 /// 80 turns a second.
 const SPIN: f64 = 160.0 * std::f64::consts::PI;

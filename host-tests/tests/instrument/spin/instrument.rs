@@ -7,7 +7,7 @@ use firmware::simulated::spin::SpinScenario;
 use host::instrument::spinning::{SpinRun, follow_spin};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::{Known, follow};
-use orientation::keep::spin::{Condition, State};
+use orientation::roll::{Condition, State};
 
 fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {
     follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))

@@ -13,12 +13,13 @@ use host::methods::stepwise::{Replay, replay};
 use host::outcome::{self, Finished};
 use host::output::{azimuth_error, columns};
 use host::recording::{Body, Header, StageRow, Truth};
-use orientation::align::conclusion::Conclusion;
-use orientation::align::criterion::Criterion;
-use orientation::align::quality::Disturbance;
-use orientation::align::setting::Half;
+use orientation::alignment::budget::Source;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::criterion::Criterion;
+use orientation::alignment::stepwise::quality::Disturbance;
+use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
-use orientation::error::{Refusal, Source};
 
 use crate::support::files::recording;
 

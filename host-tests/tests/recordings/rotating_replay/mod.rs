@@ -12,10 +12,10 @@ use host::methods::error::ReplayError;
 use host::methods::rotating::{Replay, replay};
 use host::output::azimuth_error;
 use host::recording::{Body, Header, Kind, RotatingRow};
-use orientation::align::rotating::conclusion::Conclusion;
-use orientation::align::rotating::solution::Pair;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::conclusion::Conclusion;
+use orientation::alignment::rotating::solution::Pair;
 use orientation::earth::Latitude;
-use orientation::error::Refusal;
 
 use crate::support::files::recording;
 

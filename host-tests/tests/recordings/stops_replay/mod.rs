@@ -10,9 +10,9 @@ use host::methods::stops::averaging::Averages;
 use host::methods::stops::{Method, Replay, replay};
 use host::output::{azimuth_error, degrees, degrees_per_hour};
 use host::recording::{Body, Header, ImuRow, Truth};
-use orientation::align::conclusion::Azimuth;
-use orientation::align::stops::conclusion::{Conclusion, Found};
-use orientation::error::Refusal;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops::conclusion::{Conclusion, Found};
 
 use crate::support::files::recording;
 

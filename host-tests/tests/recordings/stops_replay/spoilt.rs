@@ -4,7 +4,7 @@ use host::methods::asked::Asked;
 use host::methods::error::ReplayError;
 use host::methods::stops::replay;
 use host::recording::{Body, ImuRow, Kind};
-use orientation::error::Refusal;
+use orientation::alignment::refusal::Refusal;
 
 use super::{FOG, IDEAL, PARKED, Recorded, SIGMAS, THREE, conclusion, recorded};
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use orientation::align::regression::{Column, Regression};
+use orientation::math::regression::{Column, Regression};
 use orientation::units::DEGREE_PER_SQRT_HOUR;
 
 use crate::methods::spin::errors::wrapped;

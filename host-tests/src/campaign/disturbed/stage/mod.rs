@@ -9,9 +9,9 @@ use hal_mock::disturbance::Effect;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::Instruments;
 use hal_mock::stage::{Stage, Stop};
-use orientation::align::level;
-use orientation::align::regression::{Column as Coefficient, Regression};
-use orientation::session::Session;
+use orientation::alignment::stepwise::level;
+use orientation::alignment::stepwise::session::Session;
+use orientation::math::regression::{Column as Coefficient, Regression};
 
 use super::axes::shown;
 use super::chance::Chance;

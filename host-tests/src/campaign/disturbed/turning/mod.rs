@@ -10,8 +10,8 @@ use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
-use orientation::align::rotating::solution::Fit;
-use orientation::session::rotating::Session;
+use orientation::alignment::rotating::session::Session;
+use orientation::alignment::rotating::solution::Fit;
 
 use super::Platform;
 use super::axes::shown;

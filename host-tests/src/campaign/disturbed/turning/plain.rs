@@ -1,11 +1,13 @@
 //! The plain mean of all turns of a platform: nothing is checked, nothing left out.
 
-use orientation::align::rotating::level::Lean;
-use orientation::align::rotating::misalignment::{self, AxisMisalignment};
-use orientation::align::rotating::molecular::{self, Halves};
-use orientation::align::rotating::turn::{Sense, Stretch, Turn};
+use orientation::alignment::rotating::level::Lean;
+use orientation::alignment::rotating::misalignment;
+use orientation::alignment::rotating::misalignment::AxisMisalignment;
+use orientation::alignment::rotating::molecular;
+use orientation::alignment::rotating::molecular::Halves;
+use orientation::alignment::rotating::session::Session;
+use orientation::alignment::rotating::turn::{Sense, Stretch, Turn};
 use orientation::math::Complex;
-use orientation::session::rotating::Session;
 
 use crate::output::degrees;
 

@@ -4,11 +4,11 @@ pub(crate) mod figures;
 
 use std::f64::consts::TAU;
 
-use orientation::align::rotating::average::Average;
-use orientation::align::rotating::conclusion::Conclusion;
-use orientation::align::rotating::misalignment::AxisMisalignment;
-use orientation::align::rotating::solution::Fit;
-use orientation::align::rotating::turn::{Stretch, Turn};
+use orientation::alignment::rotating::average::Average;
+use orientation::alignment::rotating::conclusion::Conclusion;
+use orientation::alignment::rotating::misalignment::AxisMisalignment;
+use orientation::alignment::rotating::solution::Fit;
+use orientation::alignment::rotating::turn::{Stretch, Turn};
 use serde::Serialize;
 
 use crate::cause;

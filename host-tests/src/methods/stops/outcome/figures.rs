@@ -1,7 +1,7 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
 //! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
 
-use orientation::align::stops::plain::Plain;
+use orientation::alignment::stops::plain::Plain;
 use orientation::earth::Latitude;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::wrapped;

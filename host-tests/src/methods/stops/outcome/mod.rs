@@ -2,10 +2,10 @@
 
 pub(crate) mod figures;
 
-use orientation::align::stops::conclusion::Found;
-use orientation::align::stops::inclination::pitch_and_roll;
-use orientation::align::stops::residual::Residual;
-use orientation::align::stops::stop;
+use orientation::alignment::stops::conclusion::Found;
+use orientation::alignment::stops::inclination::pitch_and_roll;
+use orientation::alignment::stops::residual::Residual;
+use orientation::alignment::stops::stop;
 use orientation::units::wrapped;
 use serde::Serialize;
 

@@ -1,0 +1,111 @@
+//! Error budget: the contributions to the standard deviation of an azimuth. Every result prints it,
+//! because σ and the refusal of a poor azimuth both follow from it; an error source that is left
+//! out would show up as a wrong north with a small σ.
+
+/// Source of the uncertainty of an azimuth: one line of the error budget; see [`Budget`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Source {
+    /// White noise (angle random walk) of the gyro.
+    Noise,
+    /// Bias instability, rate random walk and ramp of the gyro.
+    Drift,
+    /// Sensitivity of the gyro to specific force (g-sensitivity), acting through the tilt.
+    GSensitivity,
+    /// Tilt as measured by the accelerometer: its noise and bias.
+    Accelerometer,
+    /// Errors of the stage encoder: zero, first and second harmonic.
+    Encoder,
+    /// Uncertainty of the latitude, which sets the horizontal Earth rate Ω cos φ.
+    Latitude,
+    /// Scale-factor error of the gyro.
+    Scale,
+    /// Temperature slope of the gyro's bias.
+    Temperature,
+    /// Uncertainty of the distance and direction that a vehicle drove between stops.
+    Displacement,
+}
+
+crate::words! { Source:
+    Self::Noise => "gyro noise";
+    Self::Drift => "gyro drift";
+    Self::GSensitivity => "g-sensitivity";
+    Self::Accelerometer => "tilt from the accelerometer";
+    Self::Encoder => "stage encoder";
+    Self::Latitude => "latitude";
+    Self::Scale => "gyro scale factor";
+    Self::Temperature => "temperature slope";
+    Self::Displacement => "displacement of the vehicle";
+}
+
+/// Contributions to the azimuth's standard deviation, 1σ, rad; their root sum of squares is σ.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Budget {
+    /// White noise of the gyro.
+    pub noise: f64,
+    /// Bias instability, random walk and ramp of the gyro, the cost of estimating a trend, and slow
+    /// rotation or tilting of the base.
+    pub drift: f64,
+    /// Unknown part of the g-sensitivity times the tilt, over the horizontal Earth rate:
+    /// `σ_κ`·|F|/`Ω_h`.
+    pub g_sensitivity: f64,
+    /// Tilt error: the accelerometer's noise and bias.
+    pub accelerometer: f64,
+    /// Zero, first and second harmonic of the encoder.
+    pub encoder: f64,
+    /// Uncertainty of the latitude.
+    pub latitude: f64,
+    /// Uncertainty of the gyro's scale factor.
+    pub scale: f64,
+    /// Cost of estimating a temperature slope of the bias.
+    pub temperature: f64,
+    /// Uncertainty of the distance that a vehicle drove between stops.
+    pub displacement: f64,
+}
+
+impl Budget {
+    /// The parts with their names, in the order in which they are printed.
+    #[must_use]
+    pub fn parts(&self) -> [(Source, f64); 9] {
+        [
+            (Source::Noise, self.noise),
+            (Source::Drift, self.drift),
+            (Source::GSensitivity, self.g_sensitivity),
+            (Source::Accelerometer, self.accelerometer),
+            (Source::Encoder, self.encoder),
+            (Source::Latitude, self.latitude),
+            (Source::Scale, self.scale),
+            (Source::Temperature, self.temperature),
+            (Source::Displacement, self.displacement),
+        ]
+    }
+
+    /// Standard deviation of the azimuth: root sum of squares of all contributions, rad.
+    #[must_use]
+    pub fn sigma(&self) -> f64 {
+        libm::sqrt(self.parts().iter().map(|(_, part)| part * part).sum())
+    }
+
+    /// Root sum of squares of all contributions except noise, rad.
+    #[must_use]
+    pub fn beside_noise(&self) -> f64 {
+        Self { noise: 0.0, ..*self }.sigma()
+    }
+
+    /// Largest contribution and its source.
+    #[must_use]
+    pub fn greatest(&self) -> (Source, f64) {
+        let parts = self.parts();
+        parts.into_iter().fold(parts[0], |most, part| if part.1 > most.1 { part } else { most })
+    }
+
+    /// Source that makes up more than half of the variance; `None` where it is noise or there is no
+    /// such source.
+    #[must_use]
+    pub fn dominant(&self) -> Option<Source> {
+        let (source, part) = self.greatest();
+        let dominates = part * part > 0.5 * self.sigma() * self.sigma();
+        (dominates && source != Source::Noise).then_some(source)
+    }
+}

@@ -1,0 +1,112 @@
+//! Azimuth from a continuously rotating platform: carouselling (MET 2018).
+//!
+//! ```text
+//!  sample ─▶ turn accumulator ─turns─▶ average ─────────────Q₊, Q₋─▶ solution ─▶ azimuth ± σ
+//!                └─modulated─▶ misalignment ▲   accelerometer ─F────────▲
+//! ```
+//!
+//! The gyro's rate is demodulated at the turn: its phasor contains the horizontal Earth rate, E =
+//! `Ω_h` e^{jA}, and everything else that rotates with the platform. The response to the platform's
+//! own unevenness is removed by the axis misalignment; what changes sign with the sense of rotation
+//! cancels between the senses; what falls with the speed is separated by a second speed; tilt is
+//! measured by the accelerometer.
+
+pub mod average;
+pub mod change;
+pub mod conclusion;
+pub mod heading;
+pub mod level;
+pub mod misalignment;
+pub mod molecular;
+pub mod part;
+pub mod session;
+pub mod solution;
+pub mod tilting;
+pub mod turn;
+pub mod turn_accumulator;
+
+use self::misalignment::AxisMisalignment;
+use self::solution::SPEEDS;
+use super::refusal::Refusal;
+use super::stepwise::setting::Setting as Common;
+use crate::units::{DEGREE, DEGREES_PER_RADIAN};
+
+/// Kind of sensor on the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Sensor {
+    /// Whether the response is flat: gain one and no lag at the platform's speed. Otherwise gain
+    /// and lag are unknown, and rotation in both senses determines them.
+    pub is_flat: bool,
+    /// Standard deviation, 1σ, of either part of a g-sensitivity that integrates acceleration
+    /// (molecular-electronic sensors): its effect of tilt times the platform's speed, over the
+    /// horizontal Earth rate, rad/s. Zero for a gyro without it; infinite where it is unknown,
+    /// which requires two speeds.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::units::or_infinite"))]
+    pub molecular_sigma: f64,
+    /// Settling time of the output after a change of speed, s.
+    pub settle_seconds: f64,
+}
+
+impl Sensor {
+    /// Ordinary gyro: flat, with a g-sensitivity proportional to force only, settled within 1 s.
+    pub const GYRO: Self = Self { is_flat: true, molecular_sigma: 0.0, settle_seconds: 1.0 };
+    /// Molecular-electronic sensor without prior knowledge, settled within 5 s.
+    pub const MOLECULAR: Self =
+        Self { is_flat: false, molecular_sigma: f64::INFINITY, settle_seconds: 5.0 };
+}
+
+/// Configuration of an alignment on a rotating platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Setting {
+    /// Site, gyro, accelerometer and requirements.
+    pub common: Common,
+    /// Kind of sensor.
+    pub sensor: Sensor,
+    /// Stored axis misalignments, one for each speed; rate-modulated turns replace them.
+    pub misalignments: [Option<AxisMisalignment>; SPEEDS],
+    /// Greatest misalignment of the sensitive axis from the platform's plane, rad.
+    pub misalignment_limit: f64,
+    /// Standard deviation of the encoder's zero, 1σ, rad. It enters the azimuth fully, and no
+    /// rotation shows it.
+    pub encoder_zero_sigma: f64,
+    /// Whether the encoder's error twice per turn is within [`Common::encoder_sigma`]; otherwise
+    /// modulation of the platform's rate at that frequency may be such an error.
+    pub harmonics_known: bool,
+    /// Quantisation step of the gyro's rates, rad/s, as far as their noise does not hide it:
+    /// rounding that is synchronous with the turn does not average out.
+    pub rate_step: f64,
+}
+
+/// Default of [`Setting::misalignment_limit`]: 2°.
+const MISALIGNMENT_LIMIT: f64 = 2.0 * DEGREE;
+
+impl Setting {
+    /// Configuration without stored misalignments, for an exact encoder.
+    #[must_use]
+    pub const fn new(common: Common, sensor: Sensor) -> Self {
+        Self {
+            common,
+            sensor,
+            misalignments: [None; SPEEDS],
+            misalignment_limit: MISALIGNMENT_LIMIT,
+            encoder_zero_sigma: 0.0,
+            harmonics_known: true,
+            rate_step: 0.0,
+        }
+    }
+
+    /// Checks that the axis misalignment is within its limit.
+    ///
+    /// # Errors
+    /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
+    pub fn accept(&self, misalignment: &AxisMisalignment) -> Result<(), Refusal> {
+        let (angle, allowed) = (misalignment.angle(), self.misalignment_limit);
+        if angle.abs() <= allowed {
+            return Ok(());
+        }
+        let [angle, allowed] = [angle, allowed].map(|angle| angle * DEGREES_PER_RADIAN);
+        Err(Refusal::Misaligned { angle, allowed })
+    }
+}

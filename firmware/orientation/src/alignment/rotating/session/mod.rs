@@ -1,0 +1,432 @@
+//! Procedure of a continuously rotating platform (carouselling) as a state machine without I/O.
+//!
+//! ```text
+//!  level ─▶ [ modulated ─▶ clockwise ─▶ counter-clockwise ] each speed ─▶ azimuth ± σ, or why none
+//! ```
+//!
+//! It commands the platform's rate, but takes the motion from the encoder alone, so that a
+//! recording replays the same session.
+
+mod procedure;
+
+pub use procedure::{Procedure, check};
+
+use super::Setting;
+use super::conclusion::Conclusion;
+use super::misalignment::AxisMisalignment;
+use super::turn::{Sense, Stretch};
+use super::turn_accumulator::{Mode, TurnAccumulator};
+use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
+use crate::alignment::refusal::Refusal;
+use crate::alignment::setup::SetupError;
+use crate::signal::Sample;
+use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
+
+/// Input of a session.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// A sample, with a fresh angle of the encoder.
+    Sample(&'a Sample),
+    /// A sample of a recording, with the platform's rate that was recorded beside it, rad/s.
+    Recorded(&'a Sample, f32),
+    /// The end of the recording: there are no more samples.
+    End,
+    /// A permanent failure of the instrument.
+    Failed(Refusal),
+}
+
+/// Output of a session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Continue sampling.
+    Wait,
+    /// Turn the platform at this rate, rad/s, clockwise positive; zero brings it to rest.
+    Turn(f64),
+    /// The session is over and its conclusion is final.
+    Finished,
+}
+
+/// State of the session; speeds are given by their index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// The tilt is measured before anything turns.
+    Level,
+    /// The platform makes rate-modulated turns at a speed.
+    Modulated(usize),
+    /// The platform accelerates to a speed, and the sensor settles.
+    Settle(usize, Sense),
+    /// The platform turns at constant rate.
+    Even(usize, Sense),
+    /// A recording is processed, whatever it contains.
+    Recorded,
+    /// The session is over.
+    Done,
+}
+
+/// Time between two commands of a rate-modulated turn, µs.
+const COMMAND_PERIOD: u64 = 20_000;
+/// Time allowed for a stretch: factor on its planned time, and additional time, s.
+const ALLOWANCE: (f64, f64) = (2.0, 30.0);
+/// Distance of two samples, in sample periods, that counts as a gap.
+const GAP: f64 = 3.5;
+
+/// One alignment on a rotating platform.
+#[derive(Clone, Debug)]
+pub struct Session {
+    /// Configuration of the alignment.
+    setting: Setting,
+    /// Procedure.
+    procedure: Procedure,
+    /// Accumulator of the turns that have been made.
+    turn_accumulator: TurnAccumulator,
+    /// State of the session.
+    phase: Phase,
+    /// Beginning of the phase, and time of the latest command.
+    since: Option<Instant>,
+    commanded: Instant,
+    /// Time of the latest sample.
+    last: Option<Instant>,
+    /// Number of samples of this phase.
+    samples: u32,
+    /// Time in this phase after which the sensor has settled, and after which the phase ends, µs.
+    settled: u64,
+    end: u64,
+    /// Beginning and encoder angle of the turn whose speed is measured, and the measured rate,
+    /// rad/s; zero before.
+    measured: Option<(Instant, Angle)>,
+    rate: f64,
+    /// Distance of two samples that counts as a gap, µs.
+    gap: u64,
+    /// Number of turns of this phase.
+    turns: u32,
+    /// Forces at rest.
+    level: Level,
+    /// Conclusion, once the session is over.
+    conclusion: Option<Conclusion>,
+}
+
+/// Sums of the forces at rest, µm/s², and the latest temperature.
+#[derive(Clone, Copy, Debug, Default)]
+struct Level {
+    sums: [i64; 3],
+    count: u32,
+    temperature: Option<f32>,
+}
+
+impl Session {
+    /// Creates a session before its first event.
+    ///
+    /// # Errors
+    /// [`SetupError::TableCorrupt`], and [`SetupError::NoSpeed`] for a speed of zero, too
+    /// few turns or no modulation.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
+        check(&procedure)?;
+        Ok(Self::of(setting, procedure))
+    }
+
+    /// Session of a procedure that was checked, built at its final place in memory.
+    #[must_use]
+    pub fn of(setting: Setting, procedure: Procedure) -> Self {
+        let is_recorded = procedure.speeds.is_empty();
+        let mode = if is_recorded { Mode::Recorded } else { Mode::Ignore };
+        Self {
+            setting,
+            turn_accumulator: TurnAccumulator::new(procedure.periods(), mode),
+            phase: if is_recorded { Phase::Recorded } else { Phase::Level },
+            since: None,
+            commanded: Instant::default(),
+            last: None,
+            samples: 0,
+            settled: 0,
+            measured: None,
+            rate: 0.0,
+            end: microseconds(procedure.level_seconds),
+            gap: microseconds(GAP * procedure.sample_seconds),
+            turns: 0,
+            level: Level::default(),
+            conclusion: None,
+            procedure,
+        }
+    }
+
+    /// Takes one event and returns the command that follows.
+    pub fn handle(&mut self, event: Event) -> Command {
+        match event {
+            _ if self.phase == Phase::Done => Command::Finished,
+            Event::Sample(sample) => self.sample(sample, None),
+            Event::Recorded(sample, turning) => self.sample(sample, Some(turning)),
+            Event::End => self.conclude(None),
+            Event::Failed(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    /// Configuration of the alignment.
+    #[must_use]
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// Procedure of the session.
+    pub fn procedure(&self) -> &Procedure {
+        &self.procedure
+    }
+
+    /// State of the session.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Motion of the platform so far.
+    #[must_use]
+    pub fn turn_accumulator(&self) -> &TurnAccumulator {
+        &self.turn_accumulator
+    }
+
+    /// Number of turns at constant rate that are done, and planned.
+    #[must_use]
+    pub fn turns(&self) -> (u32, u32) {
+        let done = self.turn_accumulator.stretches().iter().map(Stretch::count).sum();
+        let speeds = 0..self.procedure.speeds.len();
+        (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
+    }
+
+    /// Mean force at rest, m/s²; none without force readings.
+    #[must_use]
+    pub fn force(&self) -> Option<[f64; 3]> {
+        let count = f64::from(self.level.count);
+        (count > 0.0).then(|| self.level.sums.map(|sum| sum as f64 * 1e-6 / count))
+    }
+
+    /// Axis misalignments that were measured, with date and temperature, to be stored.
+    pub fn misalignments(&self) -> impl Iterator<Item = AxisMisalignment> {
+        let temperature = self.level.temperature.unwrap_or(f32::NAN);
+        let found = self.turn_accumulator.modulated().iter();
+        found
+            .filter_map(|stretch| stretch.misalignment(&self.setting.common.noise))
+            .map(move |it| AxisMisalignment { date: self.procedure.date, temperature, ..it })
+    }
+
+    /// Conclusion; `None` until the session is over.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.conclusion.as_ref()
+    }
+
+    /// Processes a sample.
+    fn sample(&mut self, sample: &Sample, turning: Option<f32>) -> Command {
+        let now = sample.time;
+        let last = self.last.replace(now).unwrap_or(now);
+        if now.0.saturating_sub(last.0) > self.gap {
+            self.turn_accumulator.restart();
+        }
+        if let Some(temperature) = sample.temperature {
+            self.level.temperature = Some(temperature.celsius() as f32);
+        }
+        let has_turned = self.turn_accumulator.push(sample, turning);
+        let since = *self.since.get_or_insert(now);
+        let elapsed = now.0.saturating_sub(since.0);
+        self.samples = self.samples.saturating_add(1);
+        if has_turned && let Some(reason) = self.contradiction() {
+            return self.conclude(Some(reason));
+        }
+        match self.phase {
+            Phase::Level => self.level(sample, elapsed),
+            Phase::Modulated(index) => self.modulated(index, sample, elapsed),
+            Phase::Settle(index, sense) => self.settle(index, sense, elapsed),
+            Phase::Even(index, sense) => self.even(index, sense, has_turned, elapsed),
+            Phase::Recorded | Phase::Done => Command::Wait,
+        }
+    }
+
+    /// Refusal of a recording whose time stamps up to its first turn contradict the configured
+    /// period.
+    fn contradiction(&mut self) -> Option<Refusal> {
+        if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
+            return None;
+        }
+        let (since, last) = (self.since?, self.last?);
+        let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
+        let found = elapsed / f64::from(self.samples.max(2) - 1);
+        let stated = self.procedure.sample_seconds;
+        contradiction(stated, found, PERIOD_TOLERANCE)
+    }
+
+    /// Measures the tilt at rest.
+    fn level(&mut self, sample: &Sample, elapsed: u64) -> Command {
+        if let Some(force) = sample.force {
+            for (sum, part) in self.level.sums.iter_mut().zip(force) {
+                *sum += i64::from(part.0);
+            }
+            self.level.count += 1;
+        }
+        if elapsed < self.end {
+            return Command::Wait;
+        }
+        let common = &self.setting.common;
+        let [x, y, _] = self.force().unwrap_or_default();
+        let tilt = libm::asin((libm::hypot(x, y) / common.latitude.gravity()).min(1.0));
+        if tilt > common.allowed_tilt {
+            let [tilt, allowed] = [tilt, common.allowed_tilt].map(|angle| angle * DEGREES);
+            return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        }
+        self.begin_speed(0)
+    }
+
+    /// Begins with a speed: with rate-modulated turns first, where they are configured.
+    fn begin_speed(&mut self, index: usize) -> Command {
+        if self.procedure.modulated_turns == 0 {
+            return self.begin_sense(index, Sense::Clockwise);
+        }
+        // The first ramp is part of the rate-modulated motion.
+        self.enter(Phase::Modulated(index), Mode::Ignore);
+        Command::Turn(self.speed(index))
+    }
+
+    /// Turns once at constant rate to measure the speed, then rate-modulated for the configured
+    /// number of turns once the sensor has settled.
+    fn modulated(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
+        if self.rate <= 0.0 {
+            self.measure(index, sample, elapsed);
+            return Command::Wait;
+        }
+        if elapsed >= self.end {
+            return self.end_modulated(index);
+        }
+        if sample.time.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
+            return Command::Wait;
+        }
+        self.commanded = sample.time;
+        if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.settled {
+            self.turn_accumulator.follow_modulated(self.procedure.modulation_width());
+        }
+        let time = (elapsed as f64 - self.settled as f64) * 1e-6;
+        Command::Turn(self.procedure.modulated_rate(self.speed(index), self.rate, time))
+    }
+
+    /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
+    /// off by some per cent, and the modulation must stay synchronous with the turns.
+    fn measure(&mut self, index: usize, sample: &Sample, elapsed: u64) {
+        let Some((since, stage)) = self.measured else {
+            if elapsed >= microseconds(self.procedure.ramp_seconds) {
+                self.measured = Some((sample.time, sample.stage));
+            }
+            return;
+        };
+        let seconds = sample.time.0.saturating_sub(since.0) as f64 * 1e-6;
+        if seconds < TURN / self.speed(index) {
+            return;
+        }
+        self.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
+        self.since = Some(sample.time);
+        self.end = self.settled
+            + microseconds(f64::from(self.procedure.modulated_turns) * TURN / self.rate);
+    }
+
+    /// Ends the session where the axis misalignment is too large, or the platform did not turn.
+    fn end_modulated(&mut self, index: usize) -> Command {
+        let Some(misalignment) = self.misalignments().nth(index) else {
+            let wanted = self.speed(index) * DEGREES;
+            return self.conclude(Some(Refusal::PlatformStopped { wanted }));
+        };
+        match self.setting.accept(&misalignment) {
+            Ok(()) => self.begin_sense(index, Sense::Clockwise),
+            Err(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    /// Begins a sense of rotation at a speed.
+    fn begin_sense(&mut self, index: usize, sense: Sense) -> Command {
+        self.enter(Phase::Settle(index, sense), Mode::Ignore);
+        Command::Turn(sense.signed(self.speed(index)))
+    }
+
+    /// Waits until platform and sensor have settled.
+    fn settle(&mut self, index: usize, sense: Sense, elapsed: u64) -> Command {
+        if elapsed >= self.end {
+            self.enter(Phase::Even(index, sense), Mode::Even);
+        }
+        Command::Wait
+    }
+
+    /// Counts turns until all are done; refuses when that takes far too long.
+    fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
+        // The number of planned turns is computed only with a complete turn: it costs 600
+        // instructions.
+        if has_turned {
+            self.turns += 1;
+            if self.turns >= self.procedure.turns_at(index) {
+                return self.go_on(index, sense);
+            }
+        }
+        if elapsed >= self.end {
+            let wanted = sense.signed(self.speed(index)) * DEGREES;
+            return self.conclude(Some(Refusal::PlatformStopped { wanted }));
+        }
+        Command::Wait
+    }
+
+    /// Goes on to the other sense, to the next speed, or to the conclusion.
+    fn go_on(&mut self, index: usize, sense: Sense) -> Command {
+        if sense == Sense::Clockwise {
+            return self.begin_sense(index, Sense::CounterClockwise);
+        }
+        if index + 1 < self.procedure.speeds.len() {
+            return self.begin_speed(index + 1);
+        }
+        self.conclude(None)
+    }
+
+    /// Enters a phase and restarts its counters.
+    fn enter(&mut self, phase: Phase, mode: Mode) {
+        self.phase = phase;
+        self.settled = microseconds(self.settle_seconds());
+        self.end = microseconds(self.longest(phase));
+        self.since = None;
+        self.samples = 0;
+        (self.measured, self.rate) = (None, 0.0);
+        self.turns = 0;
+        self.turn_accumulator.follow(mode);
+    }
+
+    /// Speed with this index, rad/s; zero beyond the last.
+    fn speed(&self, index: usize) -> f64 {
+        self.procedure.speeds.get(index).copied().unwrap_or_default()
+    }
+
+    /// Longest time of a phase, s.
+    fn longest(&self, phase: Phase) -> f64 {
+        match phase {
+            Phase::Settle(..) => self.settle_seconds(),
+            Phase::Even(index, _) => {
+                let turned = f64::from(self.procedure.turns_at(index)) * TURN;
+                ALLOWANCE.0 * turned / self.speed(index) + ALLOWANCE.1
+            }
+            // The end of a rate-modulated stretch follows from the speed that it measures.
+            Phase::Modulated(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
+        }
+    }
+
+    /// Time after a change of speed that is not used, s.
+    fn settle_seconds(&self) -> f64 {
+        self.procedure.ramp_seconds + self.setting.sensor.settle_seconds
+    }
+
+    /// Ends the session with the turns so far, or with a reason.
+    fn conclude(&mut self, reason: Option<Refusal>) -> Command {
+        let conclusion = self.conclusion.insert(Conclusion::default());
+        if let Some(reason) = reason {
+            conclusion.verdict = Err(reason);
+        } else {
+            self.turn_accumulator.finish();
+            conclusion.draw(&self.setting, &self.turn_accumulator);
+        }
+        self.phase = Phase::Done;
+        Command::Finished
+    }
+}
+
+/// Converts seconds to whole µs.
+fn microseconds(seconds: f64) -> u64 {
+    Instant::from_seconds(seconds).0
+}

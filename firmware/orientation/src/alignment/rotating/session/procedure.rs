@@ -1,0 +1,128 @@
+//! Procedure of a rotating platform's session, and the conditions that make one impossible.
+
+use heapless::Vec;
+
+use crate::alignment::rotating::solution::SPEEDS;
+use crate::alignment::setup::SetupError;
+use crate::math::reference_table::Table;
+use crate::units::TURN;
+
+/// Fewest turns in each sense: a single one cannot be distinguished from a disturbed one.
+const LEAST_TURNS: f64 = 2.0;
+/// Default time in each sense for each speed, s.
+const DEFAULT_SECONDS: f64 = 180.0;
+/// Length of a block, s: the platform's rotation within it costs 1e-4 of the signal.
+const BLOCK_SECONDS: f64 = 0.02;
+/// Least rotation of the platform in a block, rad: a tenth of a degree, so that the encoder's steps
+/// are small against it.
+const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
+
+/// Procedure of a session on a rotating platform.
+#[must_use]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Procedure {
+    /// Speeds of the platform, rad/s, > 0, one or two; none for a recording.
+    pub speeds: Vec<f64, SPEEDS>,
+    /// Turns at constant rate in each sense at the slower speed, two at least; see
+    /// [`Self::turns_at`].
+    pub turns: u32,
+    /// Rate-modulated turns before them; zero where the stored axis misalignments are used.
+    pub modulated_turns: u32,
+    /// Greatest amplitude of their modulation over the speed, 0 to 1.
+    pub modulation: f64,
+    /// Sample period, s.
+    pub sample_seconds: f64,
+    /// Length of the blocks to which samples are averaged, s.
+    pub block_seconds: f64,
+    /// Time for which the platform is levelled at rest, s.
+    pub level_seconds: f64,
+    /// Time that the platform needs to reach any speed, s.
+    pub ramp_seconds: f64,
+    /// Date with which an axis misalignment is stored, s since 1970; zero where it is unknown.
+    pub date: u64,
+}
+
+impl Procedure {
+    /// Procedure with a default number of turns: three minutes in each sense for each speed, and
+    /// twelve turns rate-modulated by a quarter, or twice as many with two speeds, where a lag has
+    /// more effect.
+    pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
+        let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+        Self {
+            speeds: speeds.iter().copied().take(SPEEDS).collect(),
+            turns: default_turns(speeds, slowest),
+            modulated_turns: if speeds.len() > 1 { 24 } else { 12 },
+            modulation: 0.25,
+            sample_seconds,
+            block_seconds: BLOCK_SECONDS.max(BLOCK_ANGLE / slowest),
+            level_seconds: 2.0,
+            ramp_seconds: 3.0,
+            date: 0,
+        }
+    }
+
+    /// Procedure for a recording with this sample period, whatever it contains.
+    pub fn recorded(sample_seconds: f64) -> Self {
+        Self { block_seconds: BLOCK_SECONDS, ..Self::new(&[], sample_seconds) }
+    }
+
+    /// Turns at constant rate in each sense at a speed. Two speeds a < b give the azimuth as (b² B
+    /// − a² A)/(b² − a²) of their individual results A and B: with times in proportion to these
+    /// weights its noise is least, (b² + a²)/(b² − a²) of that of one speed without a g-sensitivity
+    /// (MET 2018).
+    #[must_use]
+    pub fn turns_at(&self, index: usize) -> u32 {
+        let slowest = self.speeds.iter().copied().fold(f64::INFINITY, f64::min);
+        let faster = self.speeds.get(index).map_or(1.0, |speed| speed / slowest);
+        libm::round(f64::from(self.turns) * faster * faster * faster).min(1e6) as u32
+    }
+
+    /// Number of sample periods in a block.
+    pub(super) fn periods(&self) -> u32 {
+        libm::round(self.block_seconds / self.sample_seconds).clamp(1.0, 1e6) as u32
+    }
+
+    /// Half width of the modulation's spectral line over its frequency: the modulation reverses its
+    /// sign in the course of all rate-modulated turns.
+    pub(super) fn modulation_width(&self) -> f64 {
+        0.5 / f64::from(self.modulated_turns.max(1))
+    }
+
+    /// Commanded rate of the platform `time` s into the rate-modulated turns at a speed, rad/s;
+    /// negative times are before they count. The platform was found to turn at `rate` and is
+    /// modulated once per turn, where the relevant unevenness lies too, by a modulation that
+    /// reverses its sign meanwhile. So a constant phasor, such as the Earth rate, is separated from
+    /// it.
+    pub(super) fn modulated_rate(&self, speed: f64, rate: f64, time: f64) -> f64 {
+        let depth = self.modulation * libm::cos(self.modulation_width() * rate * time);
+        speed * (1.0 + depth * libm::sin(rate * time))
+    }
+}
+
+/// Turns in each sense at the slowest of some speeds, for the default time.
+fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
+    let squares: f64 = speeds.iter().map(|speed| speed * speed).sum();
+    let share = speeds.len() as f64 * slowest * slowest / squares;
+    let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN);
+    if turns > LEAST_TURNS { turns.min(1e6) as u32 } else { LEAST_TURNS as u32 }
+}
+
+/// Checks a procedure.
+///
+/// # Errors
+/// [`SetupError::TableCorrupt`], and [`SetupError::NoSpeed`] for a speed of zero, too few
+/// turns or no modulation.
+pub fn check(procedure: &Procedure) -> Result<(), SetupError> {
+    Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
+    let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
+    let is_modulation_possible = procedure.modulated_turns == 0
+        || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
+    let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
+    let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
+    if are_speeds && is_modulation_possible && has_turns && has_period {
+        Ok(())
+    } else {
+        Err(SetupError::NoSpeed)
+    }
+}

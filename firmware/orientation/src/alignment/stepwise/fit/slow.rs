@@ -1,0 +1,63 @@
+//! Observability of a slow motion of the base in the dwells.
+
+use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
+use crate::alignment::slow::SlowMotion;
+use crate::alignment::stepwise::direction::quadratic;
+use crate::alignment::stepwise::level;
+use crate::alignment::stepwise::level::TiltRate;
+use crate::math::regression::COLUMNS;
+use crate::signal::dwell::Dwell;
+
+/// Rotation rate so slow that the azimuth follows it linearly, rad/h.
+const SLOW: f64 = 1e-4;
+
+impl Problem<'_> {
+    /// Slow rotation of the base about the vertical beside the result of [`Self::fit`]; `None`
+    /// where the fit has already estimated such a rotation.
+    #[must_use]
+    pub fn slow_turn(&self, fit: &Fit) -> Option<SlowMotion> {
+        if fit.model.hypothesis == Hypothesis::Yawing {
+            return None;
+        }
+        let azimuth = |rate: f64| {
+            let bent = Bent { rate, ..fit.bent(fit.model.hypothesis) };
+            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            Some(self.trial(&regression, &fit.model)?.direction.azimuth)
+        };
+        let lever = (azimuth(SLOW)? - azimuth(-SLOW)?) / (2.0 * SLOW) * 3600.0;
+        let is_shown = self.dwells.len() >= FEWEST && self.is_circle(&self.steady());
+        let sigma = if is_shown { self.rate_sigma(fit) } else { None };
+        Some(SlowMotion { sigma: sigma.unwrap_or(f64::INFINITY), lever })
+    }
+
+    /// Standard deviation of the base's rate with the Earth rate free, 1σ, rad/s; `None` where the
+    /// dwells do not determine it.
+    fn rate_sigma(&self, fit: &Fit) -> Option<f64> {
+        let model = Model { hypothesis: Hypothesis::Yawing, ..fit.model };
+        let bent = fit.bent(Hypothesis::Yawing);
+        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let solution = regression.solve(&model.columns())?;
+        let variance = solution.covariance[COLUMNS - 2][COLUMNS - 2];
+        Some(libm::sqrt(variance) * fit.excess / 3600.0)
+    }
+
+    /// Slow tilting of the base in the forces of these dwells; `None` where a tilt rate is already
+    /// compensated.
+    #[must_use]
+    pub fn slow_tilting(&self, fit: &Fit) -> Option<SlowMotion> {
+        if self.tilt.rate != TiltRate::default() {
+            return None;
+        }
+        let (gravity, bias) =
+            (self.setting.latitude.gravity(), self.setting.accelerometer_bias_sigma);
+        let shown = level::tilting(&self.setting.mount, self.dwells.iter().copied(), gravity, bias);
+        let Some(shown) = shown.filter(|_| self.tilt.measured) else {
+            let lever = 1.0 / self.setting.latitude.horizontal_rate();
+            return Some(SlowMotion { sigma: f64::INFINITY, lever });
+        };
+        let [[a, _], [_, b]] = shown.covariance;
+        let sigma = libm::sqrt(a.max(b)) / self.tilt.upward();
+        let shift = quadratic(&self.tilting(&shown.covariance), fit.direction.gain).max(0.0);
+        Some(SlowMotion { sigma, lever: libm::sqrt(shift) / sigma })
+    }
+}

@@ -1,0 +1,387 @@
+//! Alignment procedure as a state machine without I/O: each event is answered by a command.
+//!
+//! ```text
+//!  level ─▶ (survey) ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
+//!                        ▲└─disturbed: again─┘
+//! ```
+//!
+//! The motion of the stage is taken from its encoder alone: a dwell is an interval of constant
+//! angle, whatever commanded it. So a recording replays the same session that a board runs.
+
+mod accuracy;
+mod prepared;
+pub mod procedure;
+pub mod schedule;
+pub mod survey;
+mod timing;
+
+pub use prepared::Prepared;
+
+use heapless::Vec;
+
+use self::procedure::Procedure;
+use self::schedule::{Position, StopRule};
+use self::survey::Store;
+use self::timing::{Target, Timing};
+use super::conclusion::Conclusion;
+use super::criterion::Criterion;
+use super::quality::{Disturbance, ExpectedScatter};
+use super::setting::Setting;
+use crate::alignment::period::contradiction;
+use crate::alignment::refusal::Refusal;
+use crate::alignment::setup::SetupError;
+use crate::filter::Coefficients;
+use crate::noise::fit::NoiseFit;
+use crate::signal::Sample;
+use crate::signal::dwell::{Dwell, DwellAverage};
+use crate::signal::sway::SwayNoise;
+use crate::units::{Instant, TURN};
+
+/// Number of second-order sections of the stage filter: order six (Sokolov 2019).
+const SECTIONS: usize = 3;
+
+/// Greatest number of repetitions that are recorded: two at each of twelve positions.
+const REPETITIONS: usize = 24;
+
+/// Input of a session.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// A sample of the stage path.
+    Sample(&'a Sample),
+    /// A dwell that was averaged elsewhere, for example in a table of dwells.
+    Averaged(&'a Dwell),
+    /// The end of the recording: there are no more samples.
+    End,
+    /// A permanent failure of the instrument.
+    Failed(Refusal),
+}
+
+/// Output of a session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Continue sampling.
+    Wait,
+    /// Send the stage to this angle, rad, not wrapped to one turn.
+    Rotate(f64),
+    /// The session is over and its conclusion is final.
+    Finished,
+}
+
+/// State of the session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// The tilt is measured before anything turns.
+    Level,
+    /// The stage stands still while the gyro's noise is surveyed.
+    Survey,
+    /// A dwell is being averaged.
+    Dwell,
+    /// The stage has been rotating since this time.
+    Rotate(Instant),
+    /// The session is over.
+    Done,
+}
+
+/// Record of a dwell that was discarded and measured again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repetition {
+    /// Index of the position.
+    pub position: usize,
+    /// Disturbance of the discarded dwell.
+    pub why: Disturbance,
+}
+
+/// One alignment from the first sample to its conclusion.
+#[derive(Clone, Debug)]
+pub struct Session {
+    /// Site, instrument and requirements.
+    setting: Setting,
+    /// Procedure.
+    procedure: Procedure,
+    /// Coefficients of the stage filter.
+    coefficients: Coefficients<SECTIONS>,
+    /// Procedure in the units of the sample path.
+    timing: Timing,
+    /// State of the session.
+    phase: Phase,
+    /// Position to which the stage was sent.
+    target: Target,
+    /// Time of the first sample.
+    begun: Option<Instant>,
+    /// Average of the standstill in progress.
+    average: Option<DwellAverage<SECTIONS>>,
+    /// Dwells, or the survey before them.
+    store: Store,
+    /// Noise found by the survey.
+    surveyed: Option<NoiseFit>,
+    /// Record of repeated dwells.
+    repetitions: Vec<Repetition, REPETITIONS>,
+    /// Repetitions at the present position.
+    tries: usize,
+    /// Conclusion, once the session is over.
+    conclusion: Option<Conclusion>,
+}
+
+impl Session {
+    /// Creates a session before its first event; nothing moves yet.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a procedure that the filter or the stage cannot follow.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
+        Prepared::new(setting, procedure).map(Self::from)
+    }
+
+    /// Takes one event and returns the command that follows.
+    pub fn handle(&mut self, event: Event) -> Command {
+        match event {
+            _ if self.phase == Phase::Done => Command::Finished,
+            Event::Sample(sample) => self.sample(sample),
+            Event::Averaged(dwell) => self.averaged(dwell),
+            Event::End => self.conclude(None),
+            Event::Failed(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    /// Site, instrument and requirements.
+    #[must_use]
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// Reports that the base's sway is compensated in the rates, which leaves this noise. It must
+    /// be called before the first dwell.
+    pub fn allow_for(&mut self, sway: SwayNoise) {
+        self.setting.sway = sway;
+    }
+
+    /// Procedure of the session.
+    pub fn procedure(&self) -> &Procedure {
+        &self.procedure
+    }
+
+    /// Mean specific force of the standstill in progress, m/s²; none without force readings.
+    #[must_use]
+    pub fn force(&self) -> Option<[f64; 3]> {
+        self.average.as_ref().and_then(DwellAverage::force)
+    }
+
+    /// State of the session.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Dwells so far.
+    #[must_use]
+    pub fn dwells(&self) -> &[Dwell] {
+        self.store.dwells()
+    }
+
+    /// Dwells that were measured again; with more than 24 the first ones.
+    #[must_use]
+    pub fn repetitions(&self) -> &[Repetition] {
+        &self.repetitions
+    }
+
+    /// Number of planned positions.
+    #[must_use]
+    pub fn planned(&self) -> usize {
+        match self.procedure.stop {
+            StopRule::Accuracy { .. } => self.procedure.schedule.len_beyond(self.dwells().len()),
+            _ => self.procedure.schedule.len(),
+        }
+    }
+
+    /// Conclusion; `None` until the session is over.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.conclusion.as_ref()
+    }
+
+    /// Conclusion from the dwells so far, for reporting progress and for stopping early.
+    pub fn preview(&self) -> Conclusion {
+        Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
+    }
+
+    /// Processes a sample.
+    fn sample(&mut self, sample: &Sample) -> Command {
+        let begun = *self.begun.get_or_insert(sample.time);
+        if sample.time.0.saturating_sub(begun.0) > self.timing.longest {
+            return self.conclude(Some(Refusal::TimeExhausted));
+        }
+        if let Some(command) = self.follow(sample) {
+            return command;
+        }
+        match self.phase {
+            Phase::Level => self.level(sample.time),
+            Phase::Survey => self.survey(sample),
+            Phase::Dwell => self.dwell(sample.time),
+            Phase::Rotate(since) => self.rotate(sample, since),
+            Phase::Done => Command::Finished,
+        }
+    }
+
+    /// Averages while the stage stands; where it moves, ends the dwell and begins a new average.
+    fn follow(&mut self, sample: &Sample) -> Option<Command> {
+        let mut ended = None;
+        match &mut self.average {
+            Some(average) if average.stands_at(sample.stage, self.timing.still) => {
+                average.push(&self.coefficients, sample);
+                return None;
+            }
+            Some(_) if self.phase == Phase::Dwell => ended = Some(self.complete(sample.time)),
+            _ => {}
+        }
+        self.average = Some(DwellAverage::begin(&self.coefficients, sample));
+        ended
+    }
+
+    /// Tests the tilt once there are enough samples and a force, then goes to the first position.
+    fn level(&mut self, now: Instant) -> Command {
+        let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.timing.level;
+        let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
+        else {
+            return Command::Wait;
+        };
+        let tilt = libm::asin((libm::hypot(x, y) / self.setting.latitude.gravity()).min(1.0));
+        if tilt > self.setting.allowed_tilt {
+            let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
+            return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        }
+        if self.must_survey() {
+            self.store.begin_survey();
+            self.phase = Phase::Survey;
+            self.average = None;
+            return Command::Wait;
+        }
+        if self.stands_at_target() {
+            self.phase = Phase::Dwell;
+            return Command::Wait;
+        }
+        self.send(now)
+    }
+
+    /// Sends the stage to the target.
+    fn send(&mut self, now: Instant) -> Command {
+        self.phase = Phase::Rotate(now);
+        Command::Rotate(self.target.position.angle)
+    }
+
+    /// Whether the running average began at the commanded angle.
+    fn stands_at_target(&self) -> bool {
+        let (stage, arrival) = (self.target.stage, self.timing.arrival);
+        self.average.as_ref().is_some_and(|average| average.stands_at(stage, arrival))
+    }
+
+    /// Ends the dwell when its time is over.
+    fn dwell(&mut self, now: Instant) -> Command {
+        let count = self.average.as_ref().map_or(0, DwellAverage::count);
+        if count < self.target.samples { Command::Wait } else { self.complete(now) }
+    }
+
+    /// Waits until the stage stands at the commanded angle; refuses when that takes too long.
+    fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
+        let count = self.average.as_ref().map_or(0, DwellAverage::count);
+        if self.stands_at_target() && count > 1 && count >= self.timing.settle {
+            self.phase = Phase::Dwell;
+        } else if sample.time.0.saturating_sub(since.0) > self.timing.longest_rotation {
+            let [target, actual] =
+                [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
+            return self.conclude(Some(Refusal::StageNotThere { target, actual }));
+        }
+        Command::Wait
+    }
+
+    /// Takes the dwell in progress, or orders its repetition. A dwell that an uncommanded motion of
+    /// the stage cut short is begun again at its position.
+    fn complete(&mut self, now: Instant) -> Command {
+        if let Some(reason) = self.wrong_period() {
+            return self.conclude(Some(reason));
+        }
+        let finished = self
+            .average
+            .take()
+            .and_then(|average| average.finish(&self.coefficients, self.procedure.sample_seconds));
+        let Some(dwell) = finished else { return self.send(now) };
+        if !self.store.push(dwell) {
+            return self.conclude(None);
+        }
+        match ExpectedScatter::of(&self.setting, self.dwells()).disturbance(&dwell) {
+            Some(why) if self.tries < self.procedure.retries => self.repeat(why),
+            _ => self.go_on(now),
+        }
+    }
+
+    /// Refusal of samples whose time stamps contradict the configured period.
+    fn wrong_period(&self) -> Option<Refusal> {
+        let Procedure { sample_seconds, period_tolerance, .. } = self.procedure;
+        let step = self.average.as_ref().and_then(DwellAverage::step)?;
+        contradiction(sample_seconds, step, period_tolerance)
+    }
+
+    /// Discards the last dwell; the stage stays, and the next sample begins the dwell anew.
+    fn repeat(&mut self, why: Disturbance) -> Command {
+        self.store.pop();
+        self.tries += 1;
+        // A full record omits one more repetition, never a dwell.
+        let _ = self.repetitions.push(Repetition { position: self.dwells().len(), why });
+        Command::Wait
+    }
+
+    /// Sends the stage to the next position, or concludes.
+    fn go_on(&mut self, now: Instant) -> Command {
+        self.tries = 0;
+        if let StopRule::Accuracy { seconds } = self.procedure.stop {
+            return self.go_on_until(seconds, now);
+        }
+        let sigma = self.difference_sigma();
+        let (schedule, dwells) = (&self.procedure.schedule, self.store.dwells());
+        let stops = schedule
+            .last_difference(dwells, sigma)
+            .is_some_and(|difference| self.procedure.stop.stops(difference, sigma));
+        let [low, high] = self.procedure.travel;
+        match schedule.next(dwells, sigma) {
+            Some(next) if !stops && (low..=high).contains(&next.angle) => self.go_to(next, now),
+            _ => self.conclude(None),
+        }
+    }
+
+    /// Makes a position the next target and sends the stage there.
+    fn go_to(&mut self, position: Position, now: Instant) -> Command {
+        self.target = Target::new(position, self.procedure.sample_seconds);
+        self.send(now)
+    }
+
+    /// Standard deviation of the difference of two dwells, 1σ, rad/s.
+    fn difference_sigma(&self) -> f64 {
+        let white = ExpectedScatter::of(&self.setting, self.dwells()).white;
+        libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
+    }
+
+    /// Takes a dwell that was averaged elsewhere.
+    fn averaged(&mut self, dwell: &Dwell) -> Command {
+        let is_taken = self.store.push(*dwell);
+        if is_taken && self.dwells().len() < self.planned() {
+            Command::Wait
+        } else {
+            self.conclude(None)
+        }
+    }
+
+    /// Withdraws a conclusion that came too early.
+    fn resume(&mut self) {
+        self.conclusion = None;
+        self.phase = Phase::Dwell;
+    }
+
+    /// Ends the session with the dwells so far, or with a reason that further dwells cannot remove.
+    fn conclude(&mut self, reason: Option<Refusal>) -> Command {
+        let conclusion = self.conclusion.insert(Conclusion::default());
+        conclusion.draw(&self.setting, self.store.dwells(), self.procedure.criterion);
+        if let Some(reason) = reason {
+            conclusion.verdict = Err(reason);
+        }
+        self.phase = Phase::Done;
+        Command::Finished
+    }
+}

@@ -1,0 +1,80 @@
+//! Prerequisites of a session: a procedure that was checked, with its filter.
+
+use heapless::Vec;
+
+use super::procedure::Procedure;
+use super::survey::Store;
+use super::timing::{Target, Timing, samples};
+use super::{Phase, SECTIONS, Session};
+use crate::alignment::setup::SetupError;
+use crate::alignment::stepwise::setting::Setting;
+use crate::filter::Coefficients;
+use crate::math::reference_table::Table;
+use crate::signal::dwell;
+
+/// Prerequisites of a session. They are small, so that the session itself can be built at its final
+/// place in memory.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Site, instrument and requirements.
+    setting: Setting,
+    /// Procedure that was checked.
+    procedure: Procedure,
+    /// Coefficients of its filter.
+    coefficients: Coefficients<SECTIONS>,
+    /// First position.
+    target: Target,
+}
+
+impl Prepared {
+    /// Checks a procedure and designs its filter.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a damaged reference table, or a procedure that the filter or the
+    /// stage cannot follow.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
+        Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
+        let (coefficients, target) = designed(&procedure)?;
+        Ok(Self { setting, procedure, coefficients, target })
+    }
+}
+
+impl From<Prepared> for Session {
+    fn from(prepared: Prepared) -> Self {
+        let Prepared { setting, procedure, coefficients, target } = prepared;
+        Self {
+            setting,
+            target,
+            timing: Timing::of(&procedure),
+            store: Store::Dwells(Vec::new()),
+            surveyed: None,
+            procedure,
+            coefficients,
+            phase: Phase::Level,
+            begun: None,
+            average: None,
+            repetitions: Vec::new(),
+            tries: 0,
+            conclusion: None,
+        }
+    }
+}
+
+/// Filter of a procedure, and its first target.
+pub(super) fn designed(
+    procedure: &Procedure,
+) -> Result<(Coefficients<SECTIONS>, Target), SetupError> {
+    let rate = 1.0 / procedure.sample_seconds;
+    let coefficients =
+        Coefficients::low_pass(procedure.cutoff(), rate).map_err(SetupError::Filter)?;
+    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
+    let needed = dwell::shortest(&coefficients);
+    if samples < needed {
+        return Err(SetupError::DwellTooShort { samples, needed });
+    }
+    if let Some(angle) = procedure.beyond_travel() {
+        return Err(SetupError::BeyondTravel(angle));
+    }
+    let first = procedure.schedule.next(&[], 0.0).ok_or(SetupError::NoPosition)?;
+    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
+}

@@ -1,0 +1,123 @@
+//! Procedure of a multi-position alignment: schedule, retries, travel and tolerances.
+
+use super::schedule::{Schedule, StopRule};
+use super::survey::Survey;
+use crate::alignment::period::PERIOD_TOLERANCE;
+use crate::alignment::stepwise::criterion::Criterion;
+use crate::planner::POSITIONS;
+use crate::units::TURN;
+
+/// Product of the filter's cut-off and the shortest dwell: the taper then costs 1.2 % of σ.
+const CUTOFF_DWELLS: f64 = 20.0;
+/// Highest cut-off over the sample rate at which the filter still has an effect.
+const HIGHEST_CUTOFF: f64 = 0.2;
+/// Lowest cut-off over the sample rate at which the filter's coefficients are accurate enough.
+const LOWEST_CUTOFF: f64 = 2.5e-4;
+
+/// Change of the encoder angle that counts as standstill, rad: seven steps of a 21-bit encoder.
+pub const STILL: f64 = 20e-6;
+
+/// Procedure of a session.
+#[must_use]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Procedure {
+    /// Positions and dwells.
+    pub schedule: Schedule,
+    /// Survey of the gyro's noise before the dwells, after which the schedule is planned anew; none
+    /// without one.
+    pub survey: Option<Survey>,
+    /// Rule by which the session stops early.
+    pub stop: StopRule,
+    /// Criterion by which the azimuth is chosen.
+    pub criterion: Criterion,
+    /// Sample period, s.
+    pub sample_seconds: f64,
+    /// Tolerance of the time stamps' mean step against that period, relative.
+    pub period_tolerance: f64,
+    /// Time for which the platform is levelled before the first dwell, s; these samples are part of
+    /// that dwell all the same.
+    pub level_seconds: f64,
+    /// Time for which the stage must stand before it counts as arrived, s; these samples are part
+    /// of the dwell all the same. A stage that rings after its stop needs as long as it rings.
+    pub settle_seconds: f64,
+    /// Greatest number of repetitions of a disturbed dwell at its position.
+    pub retries: usize,
+    /// Longest time for the whole session, s.
+    pub longest_seconds: f64,
+    /// Longest time for one rotation, s.
+    pub longest_rotation: f64,
+    /// Stage travel from lowest to highest angle, rad.
+    pub travel: [f64; 2],
+    /// Change of the encoder angle that counts as standstill, rad.
+    pub still: f64,
+    /// Distance from the commanded angle that counts as arrived, rad.
+    pub arrival: f64,
+}
+
+impl Procedure {
+    /// Default procedure of the stage: a quarter of a dwell before the tilt is tested, travel
+    /// −10°…370°, two repetitions, standstill within 20 µrad (seven steps of a 21-bit encoder),
+    /// arrival within 0.05°, five minutes for a rotation (enough for a stage to home again), and
+    /// for the session twice the dwells' time, half a minute for each dwell and a minute for
+    /// everything else.
+    pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
+        let level_seconds = 0.25 * schedule.shortest();
+        let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
+        Self {
+            schedule,
+            survey: None,
+            stop: StopRule::AllPositions,
+            criterion: Criterion::MaximumLikelihood,
+            sample_seconds,
+            period_tolerance: PERIOD_TOLERANCE,
+            level_seconds,
+            settle_seconds: 0.0,
+            retries: 2,
+            longest_seconds,
+            longest_rotation: 300.0,
+            travel: [-10.0 / 360.0 * TURN, 370.0 / 360.0 * TURN],
+            still: STILL,
+            arrival: 0.05 / 360.0 * TURN,
+        }
+    }
+
+    /// Procedure with a survey of the gyro's noise before the dwells; the longest time grows
+    /// accordingly.
+    pub fn after(self, survey: Survey) -> Self {
+        let retry_budget = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
+        let longest_seconds = self.longest_seconds + retry_budget;
+        Self { survey: Some(survey), longest_seconds, ..self }
+    }
+
+    /// Procedure that continues until the accuracy of
+    /// [`crate::alignment::stepwise::setting::Setting::required_sigma`] is reached or `seconds` have passed.
+    pub fn until_accurate(self, seconds: f64) -> Self {
+        let retry_budget = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
+        let longest_seconds = self.longest_seconds.max(retry_budget);
+        Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
+    }
+
+    /// Cut-off of the filter for this schedule, Hz.
+    #[must_use]
+    pub fn cutoff(&self) -> f64 {
+        let rate = 1.0 / self.sample_seconds;
+        // The method `clamp` would link a panic that formats floats, 15 KB of flash.
+        (CUTOFF_DWELLS / self.schedule.shortest())
+            .max(LOWEST_CUTOFF * rate)
+            .min(HIGHEST_CUTOFF * rate)
+    }
+
+    /// First position that lies beyond the stage's travel, rad.
+    pub(super) fn beyond_travel(&self) -> Option<f64> {
+        let [low, high] = self.travel;
+        let outside = |angle: f64| !(low..=high).contains(&angle);
+        match &self.schedule {
+            Schedule::Listed(list) => list.iter().map(|p| p.angle).find(|&angle| outside(angle)),
+            Schedule::Planned(plan) => {
+                (0..plan.positions()).map(|index| plan.angle(index)).find(|&angle| outside(angle))
+            }
+            Schedule::TowardMaximum { start, .. } => outside(*start).then_some(*start),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Schedule of the stage: positions and lengths of the dwells, and the rules by which it ends
+//! early.
+
+use heapless::Vec;
+
+use crate::alignment::stepwise::CAPACITY;
+use crate::planner::POSITIONS;
+use crate::planner::order::Order;
+use crate::planner::{FEWEST, Plan};
+use crate::signal::dwell::Dwell;
+
+/// One position: stage angle and length of the dwell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Position {
+    /// Stage angle, rad, not wrapped to one turn: cables are not.
+    pub angle: f64,
+    /// Length of the dwell, s.
+    pub seconds: f64,
+}
+
+/// Sequence of positions to visit.
+#[must_use]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "without an allocator the list lives here; a session holds one schedule"
+)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Schedule {
+    /// A list of positions, visited in its order.
+    Listed(Vec<Position, CAPACITY>),
+    /// A plan that the planner made for the gyro's noise.
+    Planned(Plan),
+    /// Search for the maximum (Sokolov 2019): equal steps from `start` towards growing rate. The
+    /// first steps go clockwise until the rate has changed significantly; if it fell, the rest
+    /// continue from `start` in the other direction.
+    TowardMaximum {
+        /// Angle of the first position, rad.
+        start: f64,
+        /// Step Δ, rad, positive.
+        step: f64,
+        /// Number of positions n.
+        positions: usize,
+        /// Length of each dwell, s.
+        seconds: f64,
+    },
+}
+
+/// Rule by which a session stops before the last position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum StopRule {
+    /// All positions are visited.
+    #[default]
+    AllPositions,
+    /// Stop when the rate's difference to the previous position is negative (Sokolov 2019). Noise
+    /// alone makes it fire early.
+    SignChange,
+    /// Stop when that difference is negative by this many of its standard deviations.
+    Significant(f64),
+    /// Stop when the standard deviation, as predicted from the gyro's noise and as observed in the
+    /// dwells, is the required one. The session continues beyond its schedule until then, and gives
+    /// up as soon as the time cannot suffice.
+    Accuracy {
+        /// Time allowed from the beginning of the session or, with a survey, from the survey's end,
+        /// s.
+        seconds: f64,
+    },
+}
+
+impl StopRule {
+    /// Whether the rule stops the session, for the last difference δ and its standard deviation,
+    /// both in rad/s.
+    #[must_use]
+    pub fn stops(self, difference: f64, sigma: f64) -> bool {
+        match self {
+            Self::AllPositions | Self::Accuracy { .. } => false,
+            Self::SignChange => difference < 0.0,
+            Self::Significant(bound) => difference < -bound * sigma,
+        }
+    }
+}
+
+/// Significance, in σ, at which the direction of growing rate is decided.
+const DIRECTION_BOUND: f64 = 3.0;
+
+impl Schedule {
+    /// Schedule of these positions in this order; `None` with more than [`CAPACITY`].
+    #[must_use]
+    pub fn listed(positions: &[Position]) -> Option<Self> {
+        Vec::from_slice(positions).ok().map(Self::Listed)
+    }
+
+    /// Schedule of equal steps over the full circle from zero, the last one a step before a whole
+    /// turn; at most [`POSITIONS`].
+    pub fn circle(positions: usize, seconds: f64) -> Self {
+        let step = core::f64::consts::TAU / positions.max(1) as f64;
+        let list = (0..positions.min(POSITIONS))
+            .map(|index| Position { angle: index as f64 * step, seconds })
+            .collect();
+        Self::Listed(list)
+    }
+
+    /// Schedule of [`Self::circle`] with the first position repeated at the end, a whole turn on: a
+    /// drift synchronous with the stage shows as the difference of the two. The repeat is omitted
+    /// where there is no room.
+    pub fn closed_circle(positions: usize, seconds: f64) -> Self {
+        let mut schedule = Self::circle(positions, seconds);
+        if let Self::Listed(list) = &mut schedule
+            && list.len() < POSITIONS
+        {
+            // The list has room for at least one more position.
+            let _ = list.push(Position { angle: core::f64::consts::TAU, seconds });
+        }
+        schedule
+    }
+
+    /// Number of positions.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Listed(list) => list.len(),
+            Self::Planned(plan) => plan.positions(),
+            Self::TowardMaximum { positions, .. } => *positions,
+        }
+    }
+
+    /// Number of positions when the session continues after this many dwells: whole passes, at most
+    /// [`POSITIONS`].
+    #[must_use]
+    pub fn len_beyond(&self, dwells: usize) -> usize {
+        let length = self.len();
+        let pass = match self {
+            Self::Planned(_) => Order::Quadrature.length(),
+            _ => length.max(1),
+        };
+        let more = dwells.saturating_sub(length);
+        (length + more.next_multiple_of(pass)).min(POSITIONS)
+    }
+
+    /// Whether this many dwells make up whole passes, so that the accuracy is equal in all
+    /// directions and drift has cancelled.
+    #[must_use]
+    pub fn is_balanced(&self, dwells: usize) -> bool {
+        let pass = match self {
+            Self::Planned(plan) if plan.order != Order::Pairs => plan.order.length(),
+            _ => self.len(),
+        };
+        if dwells < self.len() {
+            dwells >= FEWEST && dwells.is_multiple_of(pass)
+        } else {
+            dwells == self.len_beyond(dwells)
+        }
+    }
+
+    /// Position with this index. Beyond the end a planned schedule continues with 0, 180, 90, 270°,
+    /// and a list begins anew; `None` for a search, whose positions depend on the dwells.
+    #[must_use]
+    pub fn position(&self, index: usize) -> Option<Position> {
+        match self {
+            Self::Listed(list) => list.get(index % list.len().max(1)).copied(),
+            Self::Planned(plan) => {
+                let angle = match index.checked_sub(plan.positions()) {
+                    None => plan.angle(index),
+                    Some(beyond) => Order::Quadrature.angle(beyond, 1),
+                };
+                Some(Position { angle, seconds: plan.dwell })
+            }
+            Self::TowardMaximum { .. } => None,
+        }
+    }
+
+    /// Whether there is no position.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Length of the shortest dwell, s.
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min),
+            Self::Planned(plan) => plan.dwell,
+            Self::TowardMaximum { seconds, .. } => *seconds,
+        }
+    }
+
+    /// Sum of all dwell lengths, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds).sum(),
+            Self::Planned(plan) => plan.positions() as f64 * plan.dwell,
+            Self::TowardMaximum { seconds, positions, .. } => *positions as f64 * seconds,
+        }
+    }
+
+    /// Position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
+    /// `None` at the end.
+    #[must_use]
+    pub fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
+        match self {
+            Self::Listed(_) | Self::Planned(_) => {
+                self.position(dwells.len()).filter(|_| dwells.len() < self.len())
+            }
+            Self::TowardMaximum { start, step, positions, seconds } => {
+                let steps = steps_towards(dwells, sigma);
+                let angle = start + steps * step;
+                (dwells.len() < *positions).then_some(Position { angle, seconds: *seconds })
+            }
+        }
+    }
+
+    /// Latest difference δ in the direction of motion, rad/s; `None` where the last two dwells are
+    /// not neighbours.
+    #[must_use]
+    pub fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
+        let [.., before, last] = dwells else { return None };
+        let turned_back = match self {
+            Self::Listed(_) | Self::Planned(_) => false,
+            Self::TowardMaximum { .. } => {
+                turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2)
+            }
+        };
+        (!turned_back).then_some(last.rate - before.rate)
+    }
+}
+
+/// Index of the first dwell whose rate differs significantly from that of the first one.
+fn turning_point(dwells: &[Dwell], sigma: f64) -> Option<usize> {
+    let first = dwells.first()?.rate;
+    dwells.iter().position(|dwell| (dwell.rate - first).abs() > DIRECTION_BOUND * sigma)
+}
+
+/// Next position, in steps from the start.
+fn steps_towards(dwells: &[Dwell], sigma: f64) -> f64 {
+    let visited = dwells.len() as f64;
+    match turning_point(dwells, sigma) {
+        Some(turn) if dwells[turn].rate < dwells[0].rate => turn as f64 - visited,
+        _ => visited,
+    }
+}

@@ -1,0 +1,221 @@
+//! Survey of the gyro before the alignment: the stage stands still while the Allan variance is
+//! measured, the noise model is fitted to it, and the planner makes the schedule.
+
+use heapless::Vec;
+
+use super::prepared::designed;
+use super::schedule::{Schedule, StopRule};
+use super::{Command, Session};
+use crate::alignment::refusal::Refusal;
+use crate::alignment::setup::SetupError;
+use crate::alignment::stepwise::CAPACITY;
+use crate::noise::allan::Allan;
+use crate::noise::fit::{Estimate, FitError, NoiseFit};
+use crate::noise::model::GyroNoise;
+use crate::planner::order::Order;
+use crate::planner::{Conditions, FEWEST, PlanError, Rotation, for_sigma, for_time};
+use crate::signal::Sample;
+use crate::signal::dwell::{Dwell, SampleFault};
+use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
+
+/// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
+const RESERVE: f64 = 0.95;
+
+/// Survey of the gyro's noise, and conditions of the plan that follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Survey {
+    /// Time for which the stage stands still, s.
+    pub seconds: f64,
+    /// Rotation time of the stage.
+    pub rotation: Rotation,
+    /// Orders of positions that the stage can turn through; text does not hold them, because they
+    /// belong to the mount.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub orders: &'static [Order],
+    /// Length of the shortest dwell of the plan, s.
+    pub shortest: f64,
+    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy decides instead.
+    pub plan_seconds: f64,
+}
+
+/// Data of a session: first the Allan variance, then dwells, in the same memory.
+#[allow(clippy::large_enum_variant, reason = "without an allocator both live in this one place")]
+#[derive(Clone, Debug)]
+pub(super) enum Store {
+    /// Allan variance of the survey in progress.
+    Survey(Allan),
+    /// Dwells of the alignment.
+    Dwells(Vec<Dwell, CAPACITY>),
+}
+
+impl Store {
+    /// Dwells so far; none during a survey.
+    pub(super) fn dwells(&self) -> &[Dwell] {
+        match self {
+            Self::Survey(_) => &[],
+            Self::Dwells(dwells) => dwells,
+        }
+    }
+
+    /// Adds a dwell; returns whether there was room.
+    pub(super) fn push(&mut self, dwell: Dwell) -> bool {
+        match self {
+            Self::Survey(_) => false,
+            Self::Dwells(dwells) => dwells.push(dwell).is_ok(),
+        }
+    }
+
+    /// Removes the last dwell.
+    pub(super) fn pop(&mut self) {
+        if let Self::Dwells(dwells) = self {
+            dwells.pop();
+        }
+    }
+
+    /// Begins a survey. This function and the next are not inlined, because the new value passes
+    /// over the stack.
+    #[inline(never)]
+    pub(super) fn begin_survey(&mut self) {
+        *self = Self::Survey(Allan::new());
+    }
+
+    /// Ends the survey and makes room for dwells.
+    #[inline(never)]
+    fn begin_dwells(&mut self) {
+        *self = Self::Dwells(Vec::new());
+    }
+
+    /// Noise of a gyro that was sampled every `seconds`, as the survey shows it; `None` without a
+    /// survey.
+    #[inline(never)]
+    fn fit(&self, seconds: f64) -> Option<Result<NoiseFit, FitError>> {
+        match self {
+            Self::Survey(allan) => Some(NoiseFit::of(allan, seconds)),
+            Self::Dwells(_) => None,
+        }
+    }
+
+    /// Adds a sample to a survey, which begins anew with the first one; returns the number of
+    /// samples.
+    fn survey(&mut self, rate: AngularRate, is_first: bool) -> u32 {
+        if is_first {
+            self.begin_survey();
+        }
+        let Self::Survey(allan) = self else { return u32::MAX };
+        allan.push(rate);
+        allan.samples()
+    }
+}
+
+impl Session {
+    /// Takes a sample of the survey, which begins anew when the stage moves.
+    pub(super) fn survey(&mut self, sample: &Sample) -> Command {
+        let is_first = self.average.as_ref().is_none_or(|average| average.count() <= 1);
+        if self.store.survey(sample.rate, is_first) < self.timing.survey {
+            return Command::Wait;
+        }
+        match self.learn(sample.time) {
+            Ok(command) => command,
+            Err(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    /// Ends the survey: fits the noise, makes the plan, and goes to its first position.
+    #[inline(never)]
+    fn learn(&mut self, now: Instant) -> Result<Command, Refusal> {
+        if self.has_missed_samples() {
+            self.store.begin_survey();
+            return Ok(Command::Wait);
+        }
+        let fit = self.store.fit(self.procedure.sample_seconds);
+        let Some(fit) = fit else { return Ok(Command::Wait) };
+        let found = fit.map_err(Refusal::NoiseUnknown)?;
+        self.setting.noise = known(&found, &self.setting.noise);
+        self.setting.white_known = true;
+        self.surveyed = Some(found);
+        // The time allowed counts from the end of the survey.
+        self.begun = Some(now);
+        self.plan()?;
+        self.store.begin_dwells();
+        Ok(self.send(now))
+    }
+
+    /// Takes the standstill of the survey; returns whether samples were missing in it.
+    #[inline(never)]
+    fn has_missed_samples(&mut self) -> bool {
+        let seconds = self.procedure.sample_seconds;
+        let dwell = self.average.as_ref().and_then(|all| all.finish(&self.coefficients, seconds));
+        self.average = None;
+        dwell.is_some_and(|dwell| dwell.fault == Some(SampleFault::Missing))
+    }
+
+    /// Makes the plan for the noise that was found.
+    #[inline(never)]
+    fn plan(&mut self) -> Result<(), Refusal> {
+        let Some(survey) = self.procedure.survey else { return Ok(()) };
+        let conditions = Conditions {
+            noise: self.setting.noise,
+            rotation: survey.rotation,
+            shortest: survey.shortest,
+            fewest: FEWEST,
+            orders: survey.orders,
+        };
+        let rate = self.setting.latitude.horizontal_rate();
+        let (plan, allowed) = match self.procedure.stop {
+            StopRule::Accuracy { seconds } => {
+                let wanted = RESERVE * self.setting.required_sigma * rate;
+                (for_sigma(&conditions, wanted, seconds), seconds)
+            }
+            _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
+        };
+        let plan = plan.map_err(|error| self.unplanned(error, allowed))?;
+        self.procedure.schedule = Schedule::Planned(plan);
+        designed(&self.procedure)
+            .map(|(coefficients, target)| {
+                self.coefficients = coefficients;
+                self.target = target;
+            })
+            .map_err(|_: SetupError| Refusal::NoSchedule { seconds: allowed })
+    }
+
+    /// Refusal for a planning error, with angles in degrees.
+    fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
+        let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
+        match error {
+            PlanError::OutOfReach(rate) => Refusal::OutOfReach {
+                sigma: degrees(rate / self.setting.latitude.horizontal_rate()),
+                required: degrees(self.setting.required_sigma),
+                seconds,
+            },
+            PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },
+        }
+    }
+
+    /// Noise found by the survey, where there was one.
+    #[must_use]
+    pub fn surveyed(&self) -> Option<&NoiseFit> {
+        self.surveyed.as_ref()
+    }
+
+    /// Whether a survey is configured and has not been made.
+    pub(super) fn must_survey(&self) -> bool {
+        self.procedure.survey.is_some() && self.surveyed.is_none()
+    }
+}
+
+/// Noise model for the alignment: coefficients that were found, and for those not observable the
+/// configured ones, limited to the survey's upper limits.
+fn known(found: &NoiseFit, stated: &GyroNoise) -> GyroNoise {
+    let of = |estimate: Estimate, stated: f64| match estimate {
+        Estimate::Found { value, .. } => value,
+        Estimate::NotObservable { at_most } => stated.min(at_most),
+    };
+    GyroNoise {
+        quantisation: of(found.quantisation, stated.quantisation),
+        angle_random_walk: of(found.angle_random_walk, stated.angle_random_walk),
+        bias_instability: of(found.bias_instability, stated.bias_instability),
+        rate_random_walk: of(found.rate_random_walk, stated.rate_random_walk),
+        rate_ramp: of(found.rate_ramp, stated.rate_ramp),
+    }
+}

@@ -1,0 +1,416 @@
+//! Decision on the azimuth of a vehicle: from the averages of its stops and drives to an azimuth
+//! with σ, or to a refusal.
+//!
+//! The sequence is: check that the rotation was recorded without loss and that there is something
+//! to solve, run the filter until the start frame is consistent, then test outliers, residuals, the
+//! Earth-rate ratio and the budget.
+
+use super::Setting;
+use super::filter::{BIAS, FORCE, LATITUDE, NOW, PLACE, Row, SCALE, START, placed};
+use super::path::Path;
+use super::place::Place;
+use super::plain::Plain;
+use super::residual::Residual;
+use super::solution::{Belief, Solution, Tally};
+use super::stop::Stop;
+use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
+use crate::alignment::Azimuth;
+use crate::alignment::budget::Budget;
+use crate::alignment::budget::Source;
+use crate::alignment::refusal::Refusal;
+use crate::earth::EARTH_RATE;
+use crate::math::chi_square_tail;
+use crate::math::rotation::{
+    IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
+};
+use crate::signal::rest::Criteria;
+use crate::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, wrapped};
+
+/// Least time at rest of a stop, s: the length of the stop criteria's average.
+const LEAST_REST: f64 = WINDOW as f64;
+/// Least time between the middles of the first and the last stop, and least length of a single
+/// rest, s: the Earth turns by a quarter of a degree.
+const LEAST_SECONDS: f64 = 60.0;
+/// Least length of a drive between two stops, s.
+const LEAST_DRIVE: f64 = 1.0;
+/// Tolerance of the ratio of the Earth's rotation beyond five of its σ.
+const RATIO_TOLERANCE: f64 = 0.01;
+/// Difference that is not chance, in σ.
+const DIFFERENT: f64 = 5.0;
+/// Least part of gravity along the body's down axis: no vehicle stands on its side.
+const UPRIGHT: f64 = 0.5;
+/// Greatest rotation of a swaying body between both ends of a stop, rad: about one degree.
+const SWAY: f64 = 0.02;
+/// Probability of the scatter of sound blocks below which they are refused.
+const SCATTER_PROBABILITY: f64 = 1e-6;
+/// Factor by which the assumed scatter of the blocks may be too small: it is estimated from the
+/// same few blocks, and sway is not white.
+const UNSURE: f64 = 1.5;
+/// Greatest power of the force changes after rotation to a frozen frame over that on the body's
+/// axes. Where axes and signs of gyros and accelerometers are right, this rotation removes the
+/// sway.
+const DISAGREEMENT: f64 = 1.5;
+/// Greatest rate of a vehicle that only stands, from its beginning to its end and relative to the
+/// Earth, rad/s: a fifth of the Earth rate.
+const CARRIED: f64 = 0.2 * EARTH_RATE;
+/// Correlation of neighbouring blocks beyond that of any noise: an unmodelled drift.
+const CORRELATED: f64 = 0.75;
+/// Correlation of neighbouring blocks that a sway with a period shorter than two blocks makes;
+/// longer blocks respond less to it.
+const SWAYS: f64 = -0.3;
+/// Fewest blocks that may be joined in pairs.
+const MANY: usize = 16;
+/// Reciprocal of the greatest part of the blocks that may be excluded.
+const LEFT_OUT: u32 = 4;
+/// Part of a bias's prior 1σ below which the bias counts as observed.
+const OBSERVED: f64 = 0.5;
+
+/// Complete result of the stops.
+#[must_use]
+#[derive(Clone, Debug)]
+pub struct Conclusion {
+    /// Azimuth of body x at the end, or the reason for refusing it.
+    pub verdict: Result<Azimuth, Refusal>,
+    /// Details, where there was something to solve; they are valid only together with the verdict.
+    pub found: Option<Found>,
+}
+
+/// Details of the solution.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// Azimuth of body x at the end, with σ.
+    pub azimuth: Azimuth,
+    /// Azimuth of body x at the start, with σ.
+    pub start: Azimuth,
+    /// Attitude at the start: rotation from body axes to north, east, down.
+    pub start_attitude: Matrix,
+    /// Cramér–Rao bound of the azimuth at the end for the same unknowns, 1σ, rad.
+    pub limit: f64,
+    /// Azimuth of body x at the end from the first run, before outliers are excluded, rad; for
+    /// simulation campaigns.
+    pub unchecked: f64,
+    /// Error budget of the azimuth at the end.
+    pub budget: Budget,
+    /// Pitch and roll at the end, rad.
+    pub level: [f64; 2],
+    /// Estimated biases of the gyros, rad/s.
+    pub biases: Vector,
+    /// Standard deviations of the biases, 1σ, rad/s.
+    pub bias_sigmas: Vector,
+    /// Whether the stops determine all biases: the 1σ of each is at most half of the prior one.
+    pub are_biases_observed: bool,
+    /// Factor by which the prior 1σ of the biases had to be inflated; one where it was sufficient.
+    pub widening: f64,
+    /// Result of the original method (Szymanowski 2003).
+    pub plain: Plain,
+    /// Statistics of the last run along the path.
+    pub tally: Tally,
+    /// Number of all blocks at rest.
+    pub blocks: u32,
+}
+
+impl Conclusion {
+    /// Checks the contents of a stop detector, solves, and decides.
+    #[inline(never)]
+    pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
+        stop_detector.update();
+        if let Err(reason) = inspect(setting, stop_detector) {
+            return Self { verdict: Err(reason), found: None };
+        }
+        let mut found = Found::of(setting, &path(setting, stop_detector));
+        while found.tally.correlation() < SWAYS && stop_detector.blocks.list.len() >= MANY {
+            stop_detector.coarsen();
+            found = Found::of(setting, &path(setting, stop_detector));
+        }
+        Self {
+            verdict: judge(setting, &found, stop_detector.stops().len() as u32)
+                .map(|()| found.azimuth),
+            found: Some(found),
+        }
+    }
+
+    /// What the solution leaves of a stop of this session; none without a solution, or where it is
+    /// not known how far from the first one the vehicle stood.
+    #[must_use]
+    pub fn residual(
+        &self,
+        setting: &Setting,
+        stop_detector: &StopDetector,
+        stop: usize,
+    ) -> Option<Residual> {
+        let Found { start_attitude, biases, .. } = self.found.as_ref()?;
+        let path = path(setting, stop_detector);
+        path.stops.get(stop).filter(|at| stop == 0 || at.displacement.is_some())?;
+        let walk = setting.common.noise.angle_random_walk;
+        Some(Residual::of(&path, stop, start_attitude, biases, walk))
+    }
+
+    /// Refusal without any details.
+    pub const fn refused(reason: Refusal) -> Self {
+        Self { verdict: Err(reason), found: None }
+    }
+}
+
+/// Path of the vehicle until now.
+fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
+    let (now, carried) = stop_detector.now();
+    Path {
+        place: Place::new(setting.common.latitude),
+        gravity: setting.common.latitude.gravity(),
+        start: stop_detector.start(),
+        stops: stop_detector.stops(),
+        blocks: &stop_detector.blocks,
+        drives: &stop_detector.drives,
+        now,
+        carried,
+        stated_density: 0.5 * setting.force_noise * setting.force_noise,
+    }
+}
+
+/// Refuses lost rotation, missing or short stops, and drives that are too short.
+fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
+    match stop_detector.loss {
+        Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
+        Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
+        None => {}
+    }
+    let stops = stop_detector.stops();
+    let is_whole = stop_detector.rests == Rests::Whole;
+    let seconds = stop_detector.fleeting;
+    if seconds > 0.0 && stops.len() < 2 {
+        return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
+    }
+    let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
+        return Err(Refusal::NoStop);
+    };
+    if !is_whole && stops.len() == 1 {
+        return Err(Refusal::OneStop { from: first.from, to: first.to });
+    }
+    for (index, stop) in stops.iter().enumerate() {
+        inspect_stop(setting, stop_detector, index, stop)?;
+    }
+    let driven = stops.windows(2).map(|pair| pair[1].from - pair[0].to);
+    if let Some(seconds) = driven.into_iter().find(|seconds| *seconds < LEAST_DRIVE) {
+        return Err(Refusal::DriveTooShort { seconds, least: LEAST_DRIVE });
+    }
+    let seconds = if is_whole { last.seconds() } else { last.middle() - first.middle() };
+    if seconds < LEAST_SECONDS {
+        return Err(Refusal::DriveTooShort { seconds, least: LEAST_SECONDS });
+    }
+    Ok(())
+}
+
+/// Checks that a stop is long enough, and that the vehicle stood.
+fn inspect_stop(
+    setting: &Setting,
+    stop_detector: &StopDetector,
+    index: usize,
+    stop: &Stop,
+) -> Result<(), Refusal> {
+    let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
+    if rest < LEAST_REST {
+        return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
+    }
+    let gravity = setting.common.latitude.gravity();
+    let ratio = -stop.force.mean()[2] / gravity;
+    if ratio < UPRIGHT {
+        return Err(Refusal::AccelerometerImplausible { ratio });
+    }
+    let mut limits = setting.sensors().limits(stop.seconds());
+    limits.rate += SWAY / stop.seconds();
+    let [rate, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| length(&mean));
+    let criteria = Criteria::of(rate, force, gravity);
+    let ratio = stop.disagreement();
+    if criteria.is_rest(&limits) {
+        return if ratio <= DISAGREEMENT { Ok(()) } else { Err(Refusal::AxesDisagree { ratio }) };
+    }
+    let rate = criteria.rate.abs() / DEGREE_PER_HOUR;
+    Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
+}
+
+/// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
+/// drive may end rolling; but where most of them deviate, the model is wrong.
+fn agree(found: &Tally, stops: u32) -> Result<(), Refusal> {
+    let drives = stops.saturating_sub(1);
+    // A single rest has no other data: the vehicle may be rocked, but not carried round.
+    let is_carried = drives == 0 && found.turning_rate > CARRIED;
+    if is_carried || drives > 0 && 2 * found.turning > stops {
+        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
+    }
+    if drives > 0 && 2 * found.unsteady >= drives {
+        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives });
+    }
+    Ok(())
+}
+
+/// Tests the plausibility of the result.
+fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
+    agree(&found.tally, stops)?;
+    let (Tally { left_out, chi_square, degrees, .. }, blocks) = (found.tally, found.blocks);
+    if left_out * LEFT_OUT > blocks {
+        return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
+    }
+    if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
+        return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
+    }
+    let correlation = found.tally.correlation();
+    if correlation > CORRELATED {
+        return Err(Refusal::ResidualsCorrelated { correlation });
+    }
+    let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
+    if (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE {
+        return Err(Refusal::EarthRateMismatch { ratio, sigma });
+    }
+    let required = setting.common.required_sigma;
+    let sigma = found.azimuth.sigma;
+    // A σ that is not a number does not pass either.
+    if sigma <= required {
+        return Ok(());
+    }
+    let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
+    let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
+    Err(Refusal::BudgetNotMet { sigma: sigma * DEGREES, required: required * DEGREES, source })
+}
+
+impl Found {
+    /// Solves the path and reports the result.
+    #[inline(never)]
+    fn of(setting: &Setting, path: &Path) -> Self {
+        let (plain, frame) = Plain::of(setting, path);
+        let mut solution = Solution::new(frame);
+        solution.run(setting, path, Belief::Ideal);
+        // The uncertainty of the azimuth hardly depends on the azimuth itself.
+        let end = End::of(path, &solution);
+        let limit = libm::sqrt(solution.filter.variance(&end.row(path)));
+        let unchecked = azimuth_of(&end.attitude);
+        solution.settle(setting, path);
+        Self { limit, unchecked, ..Self::shown(setting, path, &plain, &solution) }
+    }
+
+    /// Result without its limit.
+    #[inline(never)]
+    fn shown(setting: &Setting, path: &Path, plain: &Plain, solution: &Solution) -> Self {
+        let filter = &solution.filter;
+        let end = End::of(path, solution);
+        let row = end.row(path);
+        let start_attitude = start_attitude(solution);
+        let start = Azimuth {
+            angle: azimuth_of(&start_attitude),
+            sigma: libm::sqrt(filter.variance(&start_row(solution))),
+        };
+        let sigma = libm::sqrt(filter.variance(&row));
+        let bias_sigmas: Vector =
+            core::array::from_fn(|axis| libm::sqrt(filter.covariance[BIAS + axis][BIAS + axis]));
+        let known = setting.bias_sigma();
+        Self {
+            azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma },
+            start,
+            start_attitude,
+            limit: 0.0,
+            unchecked: 0.0,
+            budget: budget(setting, path, &filter.covariances(&row), sigma, solution.widening),
+            level: level_of(&end.attitude),
+            biases: filter.three(BIAS),
+            bias_sigmas,
+            are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
+            widening: solution.widening,
+            plain: *plain,
+            tally: solution.tally,
+            blocks: path.blocks.list.len() as u32,
+        }
+    }
+}
+
+/// Attitude and place at the end of the path.
+struct End {
+    /// Rotation from body axes to north, east, down.
+    attitude: Matrix,
+    /// Rotation from the start frame to north, east, down.
+    navigation: Matrix,
+    /// Direction of body x on the start frame.
+    forward: Vector,
+}
+
+impl End {
+    fn of(path: &Path, solution: &Solution) -> Self {
+        let last = path.stops.len().saturating_sub(1);
+        let [north, east] = path.displaced(last);
+        let [farther_north, farther_east, ..] = solution.filter.three(PLACE);
+        let displaced = [north + farther_north, east + farther_east];
+        let there = path.place.navigation(path.now - path.start, displaced);
+        let navigation = product(&transposed(&there), &transposed(&solution.frame));
+        let error = solution.filter.three(NOW);
+        let body = product(&without(&error), &path.carried.attitude.matrix());
+        let forward = transposed(&body)[0];
+        Self { attitude: product(&navigation, &body), navigation, forward }
+    }
+
+    /// Derivatives of the azimuth at the end with respect to the states: the rotation φ now, and
+    /// the displacement east.
+    fn row(&self, path: &Path) -> Row {
+        let mut row = placed(NOW, &gradient(&self.navigation, &self.forward));
+        row[PLACE + 1] = path.place.convergence();
+        row
+    }
+}
+
+/// Rotation that removes a small error φ.
+fn without(error: &Vector) -> Matrix {
+    let columns = IDENTITY.map(|axis| difference(&axis, &cross(error, &axis)));
+    transposed(&columns)
+}
+
+/// Attitude at the start: rotation from body axes to north, east, down.
+fn start_attitude(solution: &Solution) -> Matrix {
+    product(&transposed(&solution.frame), &without(&solution.filter.three(START)))
+}
+
+/// Derivatives of the azimuth at the start with respect to the states.
+fn start_row(solution: &Solution) -> Row {
+    placed(START, &gradient(&transposed(&solution.frame), &IDENTITY[0]))
+}
+
+/// Derivative of the azimuth of an axis, given on the start frame, with respect to an error φ of
+/// that frame.
+fn gradient(navigation: &Matrix, axis: &Vector) -> Vector {
+    let forward = crate::math::rotation::turned(navigation, axis);
+    let square = forward[0] * forward[0] + forward[1] * forward[1];
+    IDENTITY.map(|about| {
+        let moved = crate::math::rotation::turned(navigation, &cross(axis, &about));
+        (forward[0] * moved[1] - forward[1] * moved[0]) / square
+    })
+}
+
+/// Azimuth of body x for an attitude, rad, [0, 2π).
+fn azimuth_of(attitude: &Matrix) -> f64 {
+    wrapped(libm::atan2(attitude[1][0], attitude[0][0]))
+}
+
+/// Pitch and roll for an attitude, rad.
+fn level_of(attitude: &Matrix) -> [f64; 2] {
+    let [x, y, z] = attitude[2];
+    [libm::atan2(-x, libm::hypot(y, z)), libm::atan2(y, z)]
+}
+
+/// Contributions to σ: each group of states with prior knowledge contributes (covariance with the
+/// azimuth)² over its prior variance; the rest is noise. The squares add up to σ².
+fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widening: f64) -> Budget {
+    let part = |states: core::ops::Range<usize>, sigma: f64| {
+        let together = length(&core::array::from_fn(|axis| {
+            states.clone().nth(axis).map_or(0.0, |state| covariances[state])
+        }));
+        if sigma > 0.0 { together / sigma } else { 0.0 }
+    };
+    let common = &setting.common;
+    let mut budget = Budget {
+        drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma()),
+        scale: part(SCALE..SCALE + 3, common.scale_sigma),
+        accelerometer: part(FORCE..FORCE + 3, common.accelerometer_bias_sigma),
+        latitude: part(LATITUDE..LATITUDE + 1, common.latitude_sigma),
+        displacement: part(PLACE..PLACE + 2, path.displacement_sigma(setting)),
+        ..Budget::default()
+    };
+    let beside = budget.beside_noise();
+    budget.noise = libm::sqrt((sigma * sigma - beside * beside).max(0.0));
+    budget
+}

@@ -1,0 +1,88 @@
+//! Azimuth from stops of a vehicle by inertial-frame alignment (Szymanowski 2003), also for a
+//! single stop at which the vehicle sways.
+//!
+//! ```text
+//!  sample ─▶ stop detector ─┬─ stops: attitude carried from inertial space, rest rates ─▶ filter ─▶ azimuth ± σ
+//!                      └─ lever: forces without what the sway makes of them
+//!                           └─ blocks: up in the frozen start frame ──────────────────▲
+//!                         Earth rotation, displacement ─▶ where up must be ───────────┘
+//! ```
+//!
+//! Gravity seen from inertial space turns with the Earth: its directions at two times show where
+//! north is, whatever the vehicle did between, as long as its gyros carried the frame along. The
+//! resolution is set by the gyros: an uncompensated bias B makes an azimuth error of up to B/`Ω_h`,
+//! which stops at different headings remove, because they make the biases observable.
+
+pub mod block;
+pub mod conclusion;
+pub mod filter;
+pub mod inclination;
+pub mod lever;
+pub mod path;
+pub mod place;
+pub mod plain;
+pub mod residual;
+pub mod session;
+pub mod solution;
+pub mod stop;
+pub mod stop_detector;
+
+use super::stepwise::setting::Setting as Common;
+use crate::signal::rest::Sensors;
+use crate::units::DEGREE_PER_HOUR;
+
+/// Configuration of an alignment by stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Setting {
+    /// Site of the first stop, the gyros' noise, the accelerometers' biases, and the requirements.
+    pub common: Common,
+    /// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, rad/s; none where
+    /// it is unknown.
+    pub bias_sigma: Option<f64>,
+    /// Noise density of the accelerometers, one-sided, m/s²/√Hz.
+    pub force_noise: f64,
+    /// Standard deviation of a reported displacement, 1σ, m.
+    pub displacement_sigma: f64,
+    /// Standard deviation of the mean speed north and east of a drive without reported
+    /// displacement, 1σ, m/s.
+    pub speed_sigma: f64,
+}
+
+/// Prior 1σ of an unknown bias, rad/s: a worse gyro cannot find north by this method.
+const ANY_BIAS: f64 = 30.0 * DEGREE_PER_HOUR;
+/// Default of [`Setting::displacement_sigma`], m: that of a position fix.
+const DISPLACEMENT_SIGMA: f64 = 5.0;
+/// Default of [`Setting::speed_sigma`], m/s: most vehicles do not get farther in a straight line.
+const SPEED_SIGMA: f64 = 10.0;
+
+impl Setting {
+    /// Configuration without knowledge of the gyros' biases, for noiseless accelerometers.
+    #[must_use]
+    pub const fn new(common: Common) -> Self {
+        Self {
+            common,
+            bias_sigma: None,
+            force_noise: 0.0,
+            displacement_sigma: DISPLACEMENT_SIGMA,
+            speed_sigma: SPEED_SIGMA,
+        }
+    }
+
+    /// Prior 1σ of the gyros' biases, rad/s, bias instability included.
+    #[must_use]
+    pub fn bias_sigma(&self) -> f64 {
+        libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS), self.common.noise.bias_instability)
+    }
+
+    /// Sensor properties for the stop criteria.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
+        Sensors {
+            angle_random_walk: self.common.noise.angle_random_walk,
+            bias_sigma: self.bias_sigma(),
+            force_noise: self.force_noise,
+            force_bias_sigma: self.common.accelerometer_bias_sigma,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Heading hold: propagation of the azimuth through motion, with its growing standard deviation.
+//!
+//! The azimuth is `A(t) = A₀ + ∫(ω_down + Ω_v) dt`, in any attitude and with the gyros' biases
+//! subtracted (Burov, section 2, storage of azimuth). Its variance is the sum of those of A₀, of
+//! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
+//! over the net turn, of a ramp of its bias, and of rotation during gaps.
+
+use super::vertical::Vertical;
+use super::{Gyro, quaternion as attitude};
+use crate::alignment::Azimuth;
+use crate::earth::Latitude;
+use crate::units::{TURN, wrapped};
+
+/// Significance, in σ, at which an alignment and the held azimuth contradict each other.
+const BOUND: f64 = 4.0;
+
+/// An azimuth with its standard deviation, as an alignment or an external source hands it over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handover {
+    /// Azimuth of body x, rad.
+    pub azimuth: f64,
+    /// Standard deviation of the azimuth, 1σ, rad.
+    pub sigma: f64,
+}
+
+/// Outcome of a new alignment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Realigned {
+    /// There was no azimuth before, and the new one was adopted.
+    Taken,
+    /// The new azimuth was combined with the held one, weighted by their variances.
+    Fused {
+        /// Distance between the two, in σ.
+        sigmas: f64,
+    },
+    /// The new azimuth contradicts the held one: one of them is wrong, and the azimuth is
+    /// withdrawn.
+    Disagrees {
+        /// Distance between the two, in σ.
+        sigmas: f64,
+    },
+}
+
+/// An azimuth that is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Heading {
+    /// Azimuth of the level frame's x, rad.
+    pub(super) frame: f64,
+    /// Variance of the azimuth that was handed over, rad².
+    variance: f64,
+    /// Standard deviations of the gyro's scale factor, and of an unknown ramp of its bias, rad/s².
+    scale: f64,
+    ramp: f64,
+}
+
+impl Heading {
+    /// Begins with an azimuth of body x, and restarts the error of the turn.
+    pub(super) fn begin(handover: Handover, gyro: &Gyro, vertical: &mut Vertical) -> Self {
+        vertical.begin_course();
+        Self {
+            frame: wrapped(handover.azimuth - course(vertical)),
+            variance: handover.sigma * handover.sigma,
+            scale: gyro.scale_sigma,
+            ramp: gyro.noise.rate_ramp,
+        }
+    }
+
+    /// Present azimuth of body x.
+    pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
+        let angle = wrapped(self.frame + course(vertical));
+        Azimuth { angle, sigma: libm::sqrt(self.variance(vertical)) }
+    }
+
+    /// Variance of the present azimuth, rad².
+    fn variance(&self, vertical: &Vertical) -> f64 {
+        let motion = &vertical.course;
+        let scale = self.scale * f64::from(motion.turned);
+        let ramp = self.ramp * f64::from(motion.ramp);
+        self.variance + f64::from(vertical.turn_variance()) + scale * scale + ramp * ramp
+    }
+
+    /// Combines a new alignment with the held azimuth.
+    pub(super) fn realign(
+        &mut self,
+        handover: Handover,
+        gyro: &Gyro,
+        vertical: &mut Vertical,
+    ) -> Realigned {
+        let kept = self.azimuth(vertical);
+        let off = difference(handover.azimuth, kept.angle);
+        let (old, new) = (kept.sigma * kept.sigma, handover.sigma * handover.sigma);
+        let sigmas = off.abs() / libm::sqrt(old + new);
+        if sigmas > BOUND || sigmas.is_nan() {
+            return Realigned::Disagrees { sigmas };
+        }
+        let azimuth = kept.angle + off * old / (old + new);
+        let sigma = libm::sqrt(old * new / (old + new));
+        *self = Self::begin(Handover { azimuth, sigma }, gyro, vertical);
+        Realigned::Fused { sigmas }
+    }
+}
+
+/// Rate of the level frame, rad/s, about north, east and down of that frame, whose x has the
+/// azimuth `north`: rotation of the Earth and, where the speed north and east is known, m/s,
+/// transport rate.
+pub(super) fn frame_rate(
+    latitude: Latitude,
+    north: Option<f64>,
+    speed: Option<[f64; 2]>,
+) -> [f32; 3] {
+    let down = -latitude.vertical_rate();
+    let Some(frame) = north else { return [0.0, 0.0, down as f32] };
+    let [to_north, to_east] = speed.unwrap_or_default();
+    let [along, across] = latitude.radii();
+    let about_north = latitude.horizontal_rate() + to_east / across;
+    let about_east = -to_north / along;
+    let about_down = down - to_east / across * libm::tan(latitude.rad());
+    let (sine, cosine) = libm::sincos(frame);
+    let x = about_north * cosine + about_east * sine;
+    let y = about_east * cosine - about_north * sine;
+    [x as f32, y as f32, about_down as f32]
+}
+
+/// Course of body x on the level frame, rad.
+fn course(vertical: &Vertical) -> f64 {
+    let [course, ..] = attitude::angles(vertical.attitude().parts());
+    course
+}
+
+/// Difference of two angles, rad, in [−π, π).
+fn difference(a: f64, b: f64) -> f64 {
+    wrapped(a - b + 0.5 * TURN) - 0.5 * TURN
+}

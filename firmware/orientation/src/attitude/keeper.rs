@@ -1,0 +1,234 @@
+//! Attitude and heading reference (AHRS): gyrovertical and heading hold together. It takes samples
+//! from switch-on and reports pitch, roll and azimuth.
+
+use super::heading::{Handover, Heading, Realigned, frame_rate};
+use super::restart::{self, RecallRefusal, Remembered};
+use super::vertical::{Trust, Vertical};
+use super::{Gyro, Setting, quaternion as attitude};
+use crate::signal::InertialSample;
+use crate::units::Instant;
+use crate::words::Rounded;
+
+pub use crate::alignment::Azimuth;
+
+/// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
+const NOWHERE: f64 = 0.5;
+
+/// Reliability of the level, and how long it has been so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Reliability of the level, and the cause that limits it.
+    pub trust: Trust,
+    /// Duration of that reliability, s.
+    pub seconds: f64,
+}
+
+crate::words! { State:
+    Self { trust: Trust::Starting, .. } => "starting";
+    Self { trust: Trust::Level, .. } => "level";
+    Self { trust: Trust::Coasting, seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
+    Self { trust: Trust::FreeFall, seconds } => "falling freely for {} s", Rounded::<1>(seconds);
+    Self { trust: Trust::NoForce, seconds } => "without forces for {} s", Rounded::<1>(seconds);
+    Self { trust: Trust::RotationLost, seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
+}
+
+/// Present attitude with its uncertainties, as reported to the user.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// End of the latest sample.
+    pub time: Instant,
+    /// Pitch, nose up positive, rad.
+    pub pitch: f64,
+    /// Roll, right side down positive, rad.
+    pub roll: f64,
+    /// Standard deviation of pitch and of roll, 1σ, rad.
+    pub level_sigma: f64,
+    /// Azimuth; none before one was handed over, or after it was withdrawn.
+    pub azimuth: Option<Azimuth>,
+    /// Attitude from body axes to north, east, down (w, x, y, z); up to a constant heading without
+    /// an azimuth.
+    pub attitude: [f64; 4],
+    /// Reliability of the level.
+    pub state: State,
+    /// Whether the body is at rest.
+    pub is_at_rest: bool,
+    /// Estimated biases of the gyros forward, right, down, rad/s.
+    pub biases: [f64; 3],
+    /// Standard deviations of the biases, 1σ, rad/s.
+    pub bias_sigmas: [f64; 3],
+    /// Whether a bias exceeded five times its configured 1σ; the configured 1σ of all biases is
+    /// then inflated.
+    pub is_bias_beyond_stated: bool,
+    /// Time since the azimuth was handed over, s; zero without an azimuth.
+    pub seconds: f64,
+}
+
+/// Propagates pitch, roll and azimuth.
+#[derive(Clone, Debug)]
+pub struct Keeper {
+    /// Configuration of the sensors.
+    setting: Setting,
+    /// Gyrovertical.
+    vertical: Vertical,
+    /// Azimuth that is held, if there is one.
+    heading: Option<Heading>,
+    /// Time at which the azimuth was handed over.
+    handed: Instant,
+    /// Speed north and east, m/s, where it is known.
+    speed: Option<[f64; 2]>,
+    /// Reliability of the level.
+    trust: Trust,
+    /// Time since which the reliability has been the same.
+    since: Instant,
+}
+
+impl Keeper {
+    /// Begins without an azimuth.
+    #[must_use]
+    pub fn new(setting: &Setting) -> Self {
+        Self {
+            setting: *setting,
+            vertical: Vertical::new(setting),
+            heading: None,
+            handed: Instant::default(),
+            speed: None,
+            trust: Trust::Starting,
+            since: Instant::default(),
+        }
+    }
+
+    /// Takes a sample. Every sample from switch-on must be passed, also while an alignment runs.
+    #[inline]
+    pub fn push(&mut self, sample: &InertialSample) {
+        if self.vertical.push(sample) {
+            self.judge(sample.time);
+        }
+    }
+
+    /// Updates the reliability, and withdraws an azimuth that has become meaningless.
+    #[inline(never)]
+    fn judge(&mut self, now: Instant) {
+        if self.trust != self.vertical.trust {
+            self.trust = self.vertical.trust;
+            self.since = now;
+        }
+        let is_nowhere = |heading: &Heading| heading.azimuth(&self.vertical).sigma > NOWHERE;
+        // The test is made only after a loss of rotation: otherwise σ grows slowly.
+        if self.trust == Trust::RotationLost && self.heading.as_ref().is_some_and(is_nowhere) {
+            self.withdraw();
+        }
+    }
+
+    /// Withdraws the azimuth.
+    fn withdraw(&mut self) {
+        self.heading = None;
+        self.vertical.lose_north(self.frame_rate());
+    }
+
+    /// Replaces the gyro of the down axis by another one.
+    pub fn exchange_down(&mut self, gyro: Gyro) {
+        self.setting = self.setting.with_down(gyro);
+        self.vertical.exchange_down(&self.setting);
+    }
+
+    /// Adopts an azimuth of body x at the present time, in place of any previous one.
+    pub fn hand_over(&mut self, handover: Handover) {
+        let [.., gyro] = &self.setting.gyros;
+        let is_first = self.heading.is_none();
+        self.heading = Some(Heading::begin(handover, gyro, &mut self.vertical));
+        self.handed = self.vertical.time();
+        if is_first {
+            self.vertical.find_north(self.frame_rate());
+        } else {
+            self.turn_frame();
+        }
+    }
+
+    /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
+    /// is withdrawn.
+    pub fn realign(&mut self, handover: Handover) -> Realigned {
+        let [.., gyro] = &self.setting.gyros;
+        let realigned = match &mut self.heading {
+            None => Realigned::Taken,
+            Some(heading) => heading.realign(handover, gyro, &mut self.vertical),
+        };
+        match realigned {
+            Realigned::Taken => self.hand_over(handover),
+            Realigned::Fused { .. } => self.turn_frame(),
+            Realigned::Disagrees { .. } => self.withdraw(),
+        }
+        realigned
+    }
+
+    /// Sets the speed of the vehicle north and east, m/s; none where it is not known.
+    pub fn move_at(&mut self, speed: Option<[f64; 2]>) {
+        self.speed = speed;
+        self.turn_frame();
+    }
+
+    /// Updates the rate of the level frame.
+    fn turn_frame(&mut self) {
+        self.vertical.frame = self.frame_rate();
+    }
+
+    /// Rate of the level frame, rad/s.
+    fn frame_rate(&self) -> [f32; 3] {
+        let north = self.heading.as_ref().map(|heading| heading.frame);
+        frame_rate(self.setting.latitude, north, self.speed)
+    }
+
+    /// Present attitude with its uncertainties.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let vertical = &self.vertical;
+        let azimuth = self.heading.as_ref().map(|heading| heading.azimuth(vertical));
+        let [course, pitch, roll] = attitude::angles(vertical.attitude().parts());
+        let course = azimuth.map_or(course, |azimuth| azimuth.angle);
+        let time = vertical.time();
+        let seconds = azimuth.map_or(0.0, |_| time.seconds() - self.handed.seconds());
+        Report {
+            time,
+            pitch,
+            roll,
+            level_sigma: vertical.sigma().into(),
+            azimuth,
+            attitude: attitude::quaternion([course, pitch, roll]),
+            state: State { trust: self.trust, seconds: time.seconds() - self.since.seconds() },
+            is_at_rest: vertical.is_at_rest(),
+            biases: vertical.bias.map(f64::from),
+            bias_sigmas: vertical.bias_sigmas().map(f64::from),
+            is_bias_beyond_stated: vertical.is_bias_beyond_stated,
+            seconds,
+        }
+    }
+
+    /// State to be saved against a loss of supply; only at rest, and with an azimuth.
+    #[must_use]
+    pub fn remember(&self) -> Option<Remembered> {
+        let report = self.report();
+        let azimuth = report.azimuth.filter(|_| report.is_at_rest)?;
+        Some(Remembered {
+            azimuth: azimuth.angle,
+            sigma: azimuth.sigma,
+            pitch: report.pitch,
+            roll: report.roll,
+            rates: self.vertical.rest_rates()?,
+            rest: f64::from(self.vertical.course.stood),
+        })
+    }
+
+    /// Adopts the azimuth saved before a loss of supply, if the body has not moved since as far as
+    /// the sensors show.
+    ///
+    /// # Errors
+    /// Reason for which the saved azimuth is rejected.
+    pub fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
+        let report = self.report();
+        let rates = self.vertical.rest_rates().filter(|_| report.is_at_rest);
+        let rest = f64::from(self.vertical.course.stood);
+        let now = restart::Now { pitch: report.pitch, roll: report.roll, rates, rest };
+        restart::check(remembered, &now, &self.setting)?;
+        self.hand_over(Handover { azimuth: remembered.azimuth, sigma: remembered.sigma });
+        Ok(())
+    }
+}

@@ -1,0 +1,379 @@
+//! Analytic gyrovertical: attitude from three gyros and three accelerometers, with the Earth rate
+//! compensated.
+//!
+//! ```text
+//!  angle increments ─▶ sum, coning ─50 Hz─▶ attitude (integers) ─▶ pitch, roll, turn about the vertical
+//!  forces ───────────▶ mean ─turned level─▶ velocity ─10 Hz─▶ filter ─tilt, biases─▲
+//!                                      └─2 Hz─▶ rest? ─rates are biases, force is gravity─▲
+//! ```
+//!
+//! Sources: Burov, section 2 (two coarse gyros and two accelerometers as an analytic gyrovertical);
+//! for separating gravity from acceleration compare D. Laidig and T. Seel, VQF, Information Fusion
+//! 2023, which filters the forces in an inertial frame for the same reason.
+
+mod course;
+mod filter;
+mod floor;
+mod gap;
+mod judge;
+mod motion;
+mod rest;
+mod stretch;
+mod sums;
+
+pub use self::course::Course;
+pub use self::filter::Expected;
+use self::filter::{Filter, TURN};
+use self::judge::{Findings, STRETCH, Task};
+use self::rest::ZeroVelocityDetector;
+use self::stretch::Stretch;
+use self::sums::{Before, Rested, Sums, Window};
+use super::Setting;
+use super::quaternion::{Attitude, Matrix};
+use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
+use crate::signal::InertialSample;
+use crate::signal::increment::Increment;
+use crate::units::{Instant, SpecificForce};
+
+/// A vector in single precision.
+type Vector = [f32; 3];
+
+/// Time between attitude updates, µs: 50 Hz.
+const TICK: u64 = 20_000;
+/// Standard gravity, m/s².
+const GRAVITY: f32 = 9.806_65;
+/// Greatest delay of a sample, in sample periods.
+const LATE: f32 = 0.5;
+/// Greatest plausible force of an accelerometer on a vehicle or in a hand, µm/s²: 100 g; beyond it
+/// the reading is clipped or faulty.
+const GREATEST_FORCE: u32 = 980_665_000;
+/// Decay time of the recent rate, s.
+const GAP_WATCH: f32 = 1.0;
+
+/// Reliability of the level, and the cause that limits it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trust {
+    /// No forces have been received yet.
+    #[default]
+    Starting,
+    /// The level is corrected by gravity.
+    Level,
+    /// Gravity compensates less than a quarter of the growth by the gyros' errors, which alone
+    /// carry the level.
+    Coasting,
+    /// The body is in free fall.
+    FreeFall,
+    /// There are no forces, or they are saturated.
+    NoForce,
+    /// Rotation was lost, and the level with it.
+    RotationLost,
+}
+
+/// State of the gyrovertical.
+#[derive(Clone, Debug)]
+pub struct Vertical {
+    /// Expected errors of the gyros.
+    expected: Expected,
+    /// Variances of the switch-on biases, (rad/s)², and variance of the Earth rate that they may
+    /// contain while north is unknown.
+    priors: Vector,
+    unknown: f32,
+    /// Whether a gyro's bias exceeded its configured 1σ by far, so that the configuration was
+    /// inflated.
+    pub(super) is_bias_beyond_stated: bool,
+    /// Standard deviation of the accelerometers' biases, as a tilt, 1σ, rad.
+    force_tilt: f32,
+    /// Sample period, s.
+    period: f32,
+    /// Rate of the level frame, rad/s: Earth rate and transport rate.
+    pub(super) frame: Vector,
+    /// Rotation since the latest attitude update.
+    increment: Increment,
+    /// Forces since the latest attitude update.
+    force: Sums,
+    /// Attitude from body axes to the level frame.
+    attitude: Attitude,
+    /// Attitude as a matrix.
+    matrix: Matrix,
+    /// Estimated biases, rad/s.
+    pub(super) bias: Vector,
+    /// Excess of each gyro per rotation about each axis: scale factor and axis errors.
+    axes: Matrix,
+    /// Filter of tilt, biases and axes.
+    filter: Filter,
+    /// Stretch in progress.
+    stretch: Stretch,
+    /// Stretch that is being processed, its next task, and the number of tasks for each sample.
+    block: Stretch,
+    task: Task,
+    tasks_per_sample: u32,
+    /// Measurements of a rest for the filter.
+    findings: Findings,
+    /// Window of rest detection in progress.
+    window: Window,
+    /// Rest detection.
+    rest: ZeroVelocityDetector,
+    /// Part of the present rest that was not used yet.
+    rested: Rested,
+    /// Values of the previous sample.
+    before: Before,
+    /// Motion since the heading was handed over.
+    pub(super) course: Course,
+    /// Time of the latest attitude update.
+    since: Instant,
+    /// Reliability of the level.
+    pub(super) trust: Trust,
+    /// Whether the level is lost completely.
+    is_lost: bool,
+    /// Whether north is known, so that biases and Earth rate are separated.
+    knows_north: bool,
+}
+
+impl Vertical {
+    /// Begins with these gyros at this site.
+    #[must_use]
+    pub fn new(setting: &Setting) -> Self {
+        // While north is unknown, a level axis may contain the Earth rate in addition to its bias.
+        let unknown = 0.5 * setting.latitude.horizontal_rate() * setting.latitude.horizontal_rate();
+        let sigmas = setting
+            .gyros
+            .map(|gyro| libm::sqrt(gyro.bias_sigma * gyro.bias_sigma + unknown) as f32);
+        let expected = setting.expected();
+        let period = setting.sample_seconds as f32;
+        Self {
+            priors: setting.gyros.map(|gyro| (gyro.bias_sigma * gyro.bias_sigma) as f32),
+            unknown: unknown as f32,
+            is_bias_beyond_stated: false,
+            force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
+            period,
+            frame: [0.0, 0.0, -(setting.latitude.vertical_rate() as f32)],
+            increment: Increment::default(),
+            force: Sums::default(),
+            attitude: Attitude::default(),
+            matrix: Attitude::default().matrix(),
+            bias: [0.0; 3],
+            axes: [[0.0; 3]; 3],
+            filter: Filter::new(sigmas, &expected),
+            expected,
+            stretch: Stretch::default(),
+            block: Stretch::default(),
+            task: Task::Nothing,
+            tasks_per_sample: Self::tasks_per_sample(period),
+            findings: Findings::default(),
+            window: Window::default(),
+            rest: ZeroVelocityDetector::default(),
+            rested: Rested::default(),
+            before: Before::default(),
+            course: Course::default(),
+            since: Instant::default(),
+            trust: Trust::Starting,
+            is_lost: false,
+            knows_north: false,
+        }
+    }
+
+    /// Takes a sample; returns whether it updated the attitude, or lost rotation.
+    #[inline]
+    pub fn push(&mut self, sample: &InertialSample) -> bool {
+        let elapsed = self.elapsed(sample.time);
+        if elapsed > (1.0 + LATE) * self.period {
+            self.bridge(elapsed, sample);
+        }
+        let [x, y, z] = sample.turned;
+        let is_lost = x.is_saturated() || y.is_saturated() || z.is_saturated();
+        if is_lost {
+            self.clip(sample.time);
+        } else {
+            self.increment.push(sample.turned);
+            self.before.turned = sample.turned;
+            self.before.clipped = 0.0;
+        }
+        let is_felt = |force: &[SpecificForce; 3]| {
+            force.iter().all(|part| part.0.unsigned_abs() < GREATEST_FORCE)
+        };
+        if let Some(force) = sample.force.filter(is_felt) {
+            self.force.push(force);
+        }
+        let is_due = sample.time.0.saturating_sub(self.since.0) >= TICK;
+        if is_due || self.increment.is_large() {
+            self.tick(sample.time);
+        }
+        // A sample that updates the attitude does no further task, if there are others.
+        for _ in u32::from(is_due)..self.tasks_per_sample {
+            self.work();
+        }
+        is_due || is_lost
+    }
+
+    /// Time since the previous sample, s.
+    #[inline]
+    fn elapsed(&mut self, now: Instant) -> f32 {
+        if let Some(before) = self.before.time.replace(now) {
+            if now < before {
+                // The clock was set back: increments since the latest attitude update count from
+                // now.
+                self.since = now;
+            }
+            return seconds_between(before, now);
+        }
+        self.since = Instant(now.0.saturating_sub((self.period * 1e6) as u64));
+        self.period
+    }
+
+    /// Updates the attitude.
+    #[inline(never)]
+    fn tick(&mut self, now: Instant) {
+        let seconds = seconds_between(self.since, now);
+        self.since = now;
+        let rotation = self.increment.take_rough();
+        if seconds > 0.0 {
+            self.advance(&rotation, seconds);
+        }
+        self.before.lately *= 1.0 - (seconds / GAP_WATCH).min(1.0);
+        let rate = libm::sqrtf(dot(&rotation, &rotation)) / seconds.max(self.period);
+        self.before.lately = self.before.lately.max(rate);
+    }
+
+    /// Rotates the body by the gyros' rotation, rad, in a time, s.
+    fn advance(&mut self, rotation: &Vector, seconds: f32) {
+        let frame = turned(&transposed(&self.matrix), &scaled(&self.frame, seconds));
+        let shown = difference(rotation, &frame);
+        let rotation = self.rotation(&difference(&shown, &scaled(&self.bias, seconds)));
+        self.attitude.turn(&rotation);
+        let after = self.attitude.matrix();
+        let middle: Matrix = core::array::from_fn(|row| {
+            core::array::from_fn(|column| 0.5 * (self.matrix[row][column] + after[row][column]))
+        });
+        self.matrix = after;
+        self.window.turn(&shown, seconds);
+        self.window.about += dot(&middle[2], &rotation);
+        self.stretch.turn(&middle, &rotation, seconds);
+        if let Some(force) = self.force.take() {
+            self.window.impulse = sum(&self.window.impulse, &scaled(&force, seconds));
+            self.window.forced += seconds;
+            self.stretch.push(&turned(&middle, &force), seconds);
+        }
+        if self.stretch.seconds >= STRETCH {
+            self.step();
+        }
+    }
+
+    /// Rotation of the body from the gyros' rotation without biases: the estimated axis errors are
+    /// corrected in the level, but not in the heading.
+    fn rotation(&self, shown: &Vector) -> Vector {
+        let [.., down] = &self.matrix;
+        let off = turned(&self.axes, shown);
+        let level = difference(&off, &scaled(down, dot(down, &off)));
+        difference(shown, &level)
+    }
+}
+
+/// Results of the gyrovertical.
+impl Vertical {
+    /// Attitude from body axes to the level frame at the latest sample; the course is zero for a
+    /// body that was level at the start.
+    #[must_use]
+    pub fn attitude(&self) -> Attitude {
+        let mut increment = self.increment;
+        let seconds = self.time().0.saturating_sub(self.since.0) as f32 * 1e-6;
+        let frame = turned(&transposed(&self.matrix), &self.frame);
+        let drift = scaled(&sum(&frame, &self.bias), seconds);
+        let mut attitude = self.attitude;
+        attitude.turn(&difference(&increment.take_rough(), &drift));
+        attitude
+    }
+
+    /// Standard deviation of pitch and of roll, 1σ, rad.
+    #[must_use]
+    pub fn sigma(&self) -> f32 {
+        let tilt = self.filter.tilt_sigma();
+        libm::sqrtf(tilt * tilt + self.force_tilt * self.force_tilt)
+    }
+
+    /// Standard deviations of the biases, 1σ, rad/s.
+    #[must_use]
+    pub fn bias_sigmas(&self) -> Vector {
+        self.filter.bias_variances().map(libm::sqrtf)
+    }
+
+    /// Whether the body is at rest.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.rest.is_at_rest
+    }
+
+    /// End of the latest sample.
+    pub fn time(&self) -> Instant {
+        self.before.time.unwrap_or_default()
+    }
+
+    /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
+    /// during gaps.
+    #[must_use]
+    pub fn turn_variance(&self) -> f32 {
+        self.filter.variance(TURN)
+    }
+
+    /// Mean rates about the body's axes at rest, rad/s, including the Earth rate; `None` in motion.
+    #[must_use]
+    pub fn rest_rates(&self) -> Option<[f64; 3]> {
+        let frame = turned(&transposed(&self.matrix), &self.frame);
+        self.is_at_rest().then(|| sum(&self.bias, &frame).map(f64::from))
+    }
+
+    /// Replaces the gyro of the down axis by another one, whose bias is unknown.
+    pub fn exchange_down(&mut self, setting: &Setting) {
+        self.finish();
+        self.expected = setting.expected();
+        let [.., down] = &setting.gyros;
+        let sigma = down.bias_sigma as f32;
+        self.priors[2] = sigma * sigma;
+        self.bias[2] = 0.0;
+        self.axes[2] = [0.0; 3];
+        self.filter.reset(Filter::bias(2), sigma * sigma);
+        self.filter.reset_axis(2, self.expected.scale[2]);
+        self.rested = Rested::default();
+        self.rest.exchange(2, self.expected.walk[2]);
+        self.window = Window::default();
+    }
+
+    /// Sets the rate of the level frame, rad/s, and reports that north is known for the first time,
+    /// or again: until now the biases contained the level Earth rate.
+    pub fn find_north(&mut self, rate: Vector) {
+        self.learn_biases();
+        let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
+        self.frame = rate;
+        self.knows_north = true;
+        self.window = Window::default();
+        if !self.is_at_rest() {
+            return;
+        }
+        // The estimate of the sum now holds for the bias, which has a tighter prior.
+        self.bias = difference(&self.bias, &more);
+        for (axis, bias) in self.bias.into_iter().enumerate() {
+            self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
+        }
+        self.correct();
+    }
+
+    /// Sets the rate of the level frame, rad/s, and reports that north is unknown: biases may
+    /// contain the Earth rate from now on.
+    pub fn lose_north(&mut self, rate: Vector) {
+        self.frame = rate;
+        self.knows_north = false;
+        self.inflate_biases();
+    }
+
+    /// Restarts the motion statistics and the error of the rotation about the vertical.
+    pub fn begin_course(&mut self) {
+        self.learn_biases();
+        self.filter.reset(TURN, 0.0);
+        self.course = Course { stood: self.course.stood, ..Course::default() };
+    }
+}
+
+/// Time from one moment to the next, s, at most an hour; zero where it runs backwards.
+#[inline]
+fn seconds_between(before: Instant, now: Instant) -> f32 {
+    now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6
+}
