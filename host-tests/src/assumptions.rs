@@ -8,6 +8,7 @@ use orientation::alignment::rotating::conclusion::Conclusion as PlatformConclusi
 use orientation::alignment::rotating::misalignment;
 use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::solution::{Fit, Pair};
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::level::Tilt;
 use orientation::alignment::stepwise::session::Session;
@@ -71,7 +72,7 @@ pub fn of_stage(session: &Session) -> Vec<String> {
     ];
     let shown = shown_by_stage(setting, conclusion);
     let level = (!tilt.measured).then(|| {
-        let each = setting.latitude.rad().tan().abs();
+        let each = setting.site.latitude.rad().tan().abs();
         format!("a level platform, for there are no forces: by each degree of tilt north is {each:.2}° off")
     });
     let unseen = unseen::of_stage(session);
@@ -94,7 +95,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         sigma: azimuth.sigma,
         ratio: fit.ratio,
         unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
-        felt: felt(&session.setting().common, fit.tilt),
+        felt: felt(&session.setting().site, fit.tilt),
     };
     let is_one_lag = !session.setting().sensor.is_flat && conclusion.pairs.len() < 2;
     let assumed = [
@@ -114,7 +115,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
 /// What it rests on that a sensor of unknown lag lags at a speed without a rate-modulated turn as one pole does.
 fn pole(session: &rotating::Session, conclusion: &PlatformConclusion) -> Option<String> {
     let setting = session.setting();
-    let horizontal = setting.common.latitude.horizontal_rate();
+    let horizontal = setting.site.latitude.horizontal_rate();
     let off = |pair: &Pair| {
         let misalignment = misalignment::nearest(&conclusion.misalignments, pair.speed())?;
         let is_there = (misalignment.frequency / pair.speed() - 1.0).abs() < SAME_SPEED;
@@ -161,9 +162,9 @@ struct Shown {
 
 /// What a tilt, g, lets the gyro feel of the vertical Earth rate and by its g-sensitivity, over the horizontal Earth rate;
 /// in this hemisphere and in the other.
-fn felt(setting: &Setting, tilt: Complex) -> [Complex; 2] {
-    let [along, across] = setting.g_sensitivity;
-    let latitude = setting.latitude;
+fn felt(site: &Site, tilt: Complex) -> [Complex; 2] {
+    let [along, across] = site.g_sensitivity;
+    let latitude = site.latitude;
     [latitude.vertical_rate(), -latitude.vertical_rate()].map(|vertical| {
         let per_tilt = Complex::new(vertical + along, across);
         (per_tilt * tilt).scaled(1.0 / latitude.horizontal_rate())
@@ -173,7 +174,7 @@ fn felt(setting: &Setting, tilt: Complex) -> [Complex; 2] {
 fn shown_by_stage(setting: &Setting, conclusion: &Conclusion) -> Option<Shown> {
     let (fit, azimuth) = (conclusion.fit.as_ref()?, conclusion.verdict.ok()?);
     let Tilt { real, imaginary, .. } = conclusion.tilt;
-    let tolerance = if setting.scale_sigma > 0.0 { 0.0 } else { TOLERANCE };
+    let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { TOLERANCE };
     // Two positions take the Earth rate for granted.
     let sigma = if fit.model.is_single_axis { f64::INFINITY } else { fit.ratio_sigma };
     Some(Shown {
@@ -181,7 +182,7 @@ fn shown_by_stage(setting: &Setting, conclusion: &Conclusion) -> Option<Shown> {
         sigma: azimuth.sigma,
         ratio: fit.direction.amplitude,
         unnoticed: UNNOTICED * sigma + tolerance,
-        felt: felt(setting, Complex::new(real, imaginary)),
+        felt: felt(&setting.site, Complex::new(real, imaginary)),
     })
 }
 

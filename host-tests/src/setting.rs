@@ -1,17 +1,17 @@
-//! What a recording's header says about place and instrument, as the solver's setting.
+//! What a recording's header says about place and instrument, as the site of an alignment.
 
-use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::site::Site;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::recording::{Body, Header};
 
-/// A setting, and in words what had to be assumed for it.
+/// A site, and in words what had to be assumed for it.
 #[derive(Clone, Debug)]
 pub struct Described {
-    /// The setting.
-    pub setting: Setting,
+    /// The site.
+    pub site: Site,
     /// What the header does not say and how it was taken.
     pub assumed: Vec<String>,
 }
@@ -21,7 +21,7 @@ const SCALE_SIGMA: f64 = 0.01;
 /// 1σ of an accelerometer bias of which nothing is known, m/s²: 25 mg, the offset that an ADXL355 may have.
 const FORCE_BIAS_SIGMA: f64 = 0.25;
 
-/// Builds the setting for a latitude from the header's keys.
+/// Builds the site for a latitude from the header's keys.
 #[must_use]
 pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     let mut assumed = Vec::new();
@@ -65,18 +65,18 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         Body::Stage(_) | Body::Dwells(_) => "latitude and encoder exact",
     };
     assumed.push(exact.to_owned());
+    let stated = if white_known { StatedNoise::Whole } else { StatedNoise::ExceptWhite };
     let kappa = header.g_sensitivity_deg_h_g.unwrap_or_default();
-    let setting = Setting {
-        noise: noise(header),
-        white_known,
+    let site = Site {
+        noise: stated(noise(header)),
         scale_sigma,
         g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
         g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,
         g_sensitivity_known: kappa_known,
         accelerometer_bias_sigma,
-        ..Setting::at(latitude)
+        ..Site::at(latitude)
     };
-    Described { setting, assumed }
+    Described { site, assumed }
 }
 
 /// The gyro's noise as the header has it; what is absent is zero.

@@ -44,12 +44,12 @@ fn is_misalignment_settled(session: &Session) -> bool {
 
 impl AlignmentSession<Sample> for Rotating<'_> {
     fn latitude(&self) -> Latitude {
-        self.session.setting().common.latitude
+        self.session.setting().site.latitude
     }
 
     fn outset(&self) -> Event {
         let (_, turns) = self.session.turns();
-        let latitude = self.session.setting().common.latitude.rad() * DEGREES;
+        let latitude = self.session.setting().site.latitude.rad() * DEGREES;
         Event::BegunTurning { turns, latitude }
     }
 

@@ -47,12 +47,12 @@ impl<'a> Stepwise<'a> {
 
 impl AlignmentSession<Sample> for Stepwise<'_> {
     fn latitude(&self) -> Latitude {
-        self.session.setting().latitude
+        self.session.setting().site.latitude
     }
 
     fn outset(&self) -> Event {
         let dwell = self.session.procedure().schedule.shortest();
-        let latitude = self.session.setting().latitude.rad() * DEGREES;
+        let latitude = self.session.setting().site.latitude.rad() * DEGREES;
         Event::Begun { positions: self.session.planned(), dwell, latitude }
     }
 
@@ -148,7 +148,7 @@ fn report_plan(session: &Session, shared: &Shared<'_>) {
             positions: plan.positions(),
             dwell: plan.dwell,
             seconds: plan.seconds,
-            sigma: plan.sigma(session.setting().latitude) * DEGREES,
+            sigma: plan.sigma(session.setting().site.latitude) * DEGREES,
         });
     }
 }

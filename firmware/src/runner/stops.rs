@@ -92,11 +92,11 @@ impl<'a, W: PositionAiding> Stops<'a, W> {
 
 impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
     fn latitude(&self) -> Latitude {
-        self.session.setting().common.latitude
+        self.session.setting().site.latitude
     }
 
     fn outset(&self) -> Event {
-        Event::BegunStops { latitude: self.session.setting().common.latitude.rad() * DEGREES }
+        Event::BegunStops { latitude: self.session.setting().site.latitude.rad() * DEGREES }
     }
 
     fn take(&mut self, sample: &InertialSample) -> Step {

@@ -12,6 +12,7 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::mount::{
     ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
 };
@@ -93,14 +94,11 @@ impl FramesScenario {
     /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
-        let setting = self.base.setting()?;
-        let encoder = setting.encoder_sigma;
-        Some(Setting {
-            mount: TWO_FRAMES,
-            accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
-            encoder_sigma: azimuth_sigma(self.orthogonality_sigma, encoder, setting.latitude),
-            ..setting
-        })
+        let site = self.base.site()?;
+        let encoder_sigma =
+            azimuth_sigma(self.orthogonality_sigma, site.encoder_sigma, site.latitude);
+        let site = Site { accelerometer_bias_sigma: FORCE_BIAS_SIGMA, encoder_sigma, ..site };
+        Some(Setting { mount: TWO_FRAMES, half: self.base.half, ..Setting::new(site) })
     }
 
     /// How the board goes about it.

@@ -11,13 +11,14 @@ use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::alignment::period::CONVERTER_TOLERANCE;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
 use orientation::alignment::stepwise::session::survey::Survey;
 use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
@@ -243,21 +244,25 @@ impl Scenario {
         Self { sample_rate_hz: 100.0, survey_s: 120.0, aim: Aim::Time(60.0), ..base }
     }
 
-    /// What the board is given about place and instrument; none where the latitude is none.
+    /// What the board is given about the mount too; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
+        Some(Setting { half: self.half, ..Setting::new(self.site()?) })
+    }
+
+    /// What the board is given about place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn site(&self) -> Option<Site> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;
-        Some(Setting {
-            noise: self.gyro.noise(),
-            white_known: true,
+        Some(Site {
+            noise: StatedNoise::Whole(self.gyro.noise()),
             scale_sigma: SCALE_SIGMA,
             g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
             g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
             encoder_sigma: ENCODER_SIGMA,
-            half: self.half,
             required_sigma: self.required_sigma(),
-            ..Setting::at(latitude)
+            ..Site::at(latitude)
         })
     }
 

@@ -114,7 +114,7 @@ impl TurntableScenario {
     /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
-        let setting = Setting::new(self.base.setting()?, self.sensor());
+        let setting = Setting::new(self.base.site()?, self.sensor());
         Some(Setting {
             misalignments: self.stored,
             encoder_zero_sigma: ENCODER_ZERO_SIGMA,

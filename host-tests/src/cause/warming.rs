@@ -29,7 +29,7 @@ struct Found {
 pub fn of(session: &Session, refusal: &Refusal, is_reversed: bool) -> Option<String> {
     let is_of_forces =
         matches!(refusal, Refusal::AccelerometerDisagrees { .. } | Refusal::TiltStepped { .. });
-    let (dwells, gravity) = (session.dwells(), session.setting().latitude.gravity());
+    let (dwells, gravity) = (session.dwells(), session.setting().site.latitude.gravity());
     let steady = fit(dwells, gravity, 1.0, Column::Absent)?;
     let drifting = fit(dwells, gravity, 1.0, Column::Free)?;
     let reversed = fit(dwells, gravity, -1.0, Column::Absent).filter(|_| is_reversed);

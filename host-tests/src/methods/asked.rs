@@ -1,7 +1,8 @@
 //! What a user asks of a replay, whatever the method.
 
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::criterion::Criterion;
-use orientation::alignment::stepwise::setting::{Half, Setting};
+use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use orientation::units::DEGREE;
 
@@ -50,7 +51,7 @@ impl Asked {
     /// There is no latitude.
     pub(crate) fn describe(&self, header: &Header, body: &Body) -> Result<Described, ReplayError> {
         let mut described = describe(header, body, self.latitude(header, body)?);
-        self.change(&mut described.setting);
+        self.change(&mut described.site);
         Ok(described)
     }
 
@@ -60,9 +61,8 @@ impl Asked {
     }
 
     /// Puts what the user states in the place of what a session was given.
-    pub(crate) fn change(&self, setting: &mut Setting) {
-        setting.latitude = self.latitude.unwrap_or(setting.latitude);
-        setting.half = self.half.or(setting.half);
-        setting.required_sigma = self.required_sigma.unwrap_or(setting.required_sigma);
+    pub(crate) fn change(&self, site: &mut Site) {
+        site.latitude = self.latitude.unwrap_or(site.latitude);
+        site.required_sigma = self.required_sigma.unwrap_or(site.required_sigma);
     }
 }

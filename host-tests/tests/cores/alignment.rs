@@ -2,13 +2,14 @@
 //! and closed forms.
 
 use hal_mock::noise::Generator;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::direction::{Amplitude, Components};
 use orientation::alignment::stepwise::level::tilt;
 use orientation::alignment::stepwise::quality::{Disturbance, ExpectedScatter};
 use orientation::alignment::stepwise::setting::{Half, Mount, Setting};
 use orientation::earth::Latitude;
 use orientation::math::regression::{Column, Regression};
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::noise::whitener::Whitener;
 use orientation::signal::blocks::Blocks;
 use orientation::signal::dwell::Dwell;
@@ -284,7 +285,7 @@ fn blocks(generator: &mut Generator, samples: u32, add: impl Fn(u32) -> f64) -> 
 fn gyro() -> Setting {
     let noise = GyroNoise { angle_random_walk: 1e-6 * 0.1, ..GyroNoise::default() };
     let latitude = Latitude::from_degrees(50.0).expect("it is one");
-    Setting { noise, white_known: true, ..Setting::at(latitude) }
+    Setting::new(Site { noise: StatedNoise::Whole(noise), ..Site::at(latitude) })
 }
 
 #[test]
@@ -354,7 +355,8 @@ fn a_healthy_dwell_is_rejected_less_than_once_in_two_thousand() {
 fn an_unknown_noise_is_taken_from_the_dwells() {
     let mut generator = Generator::new(8);
     let dwells: Vec<Dwell> = (0..20).map(|_| blocks(&mut generator, 1000, |_| 0.0)).collect();
-    let setting = Setting { white_known: false, ..gyro() };
+    let mut setting = gyro();
+    setting.site.noise = StatedNoise::ExceptWhite(*setting.site.noise.model());
     let found = ExpectedScatter::of(&setting, &dwells).white.sqrt();
     assert!((found / 1e-7 - 1.0).abs() < 0.15, "{found}");
 }

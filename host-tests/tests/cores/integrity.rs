@@ -15,12 +15,13 @@ use host::output::azimuth_error;
 use host::simulate::stage_path;
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 use rayon::prelude::*;
 
@@ -79,15 +80,14 @@ fn case(seed: u64, arc: bool) -> Case {
         },
         ..InstrumentsConfiguration::default()
     };
-    let setting = Setting {
-        noise: GyroNoise::from_field_units(n, b, k, r),
-        white_known: true,
+    let setting = Setting::new(Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r)),
         scale_sigma,
         g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
         g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,
         accelerometer_bias_sigma,
-        ..Setting::at(Latitude::from_degrees(latitude_deg).expect("it is one"))
-    };
+        ..Site::at(Latitude::from_degrees(latitude_deg).expect("it is one"))
+    });
     let step = (span / positions as f64).to_radians();
     let stops = (0..positions).map(|i| Stop::new(i as f64 * step, seconds).after(1.0)).collect();
     Case { world, setting, stops, seconds }
@@ -172,7 +172,8 @@ fn on_an_arc_sigma_is_true_for_any_instrument() {
 fn an_estimated_noise_gives_a_true_sigma_too() {
     let unknown = |seed| {
         let mut case = case(seed, seed % 2 == 0);
-        case.setting.white_known = false;
+        let noise = *case.setting.site.noise.model();
+        case.setting.site.noise = StatedNoise::ExceptWhite(noise);
         (case, Vec::new())
     };
     let (errors, refusals) = sweep(1000, unknown);
@@ -223,7 +224,7 @@ fn a_wrong_latitude_shows_in_the_earth_rate() {
         let mut case = case(seed, seed % 2 == 0);
         let latitude = 47.0 + 10.0 * (seed as f64 * 0.7).sin();
         case.world.latitude_deg = latitude;
-        case.setting.latitude = Latitude::from_degrees(latitude + 12.0).expect("it is one");
+        case.setting.site.latitude = Latitude::from_degrees(latitude + 12.0).expect("it is one");
         (case, Vec::new())
     };
     let (errors, refusals) = sweep(600, wrong);
@@ -238,11 +239,11 @@ fn sound() -> Case {
     case.world.latitude_deg = 50.0;
     case.world.pitch_deg = 0.5;
     case.world.roll_deg = 0.5;
-    case.setting.latitude = Latitude::from_degrees(50.0).expect("it is one");
+    case.setting.site.latitude = Latitude::from_degrees(50.0).expect("it is one");
     let gyro = GyroConfiguration { n_deg_sqrt_h: 0.001, ..GyroConfiguration::default() };
     case.world.gyro = gyro;
-    case.setting.noise = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);
-    case.setting.g_sensitivity = [0.0; 2];
+    *case.setting.site.noise.model_mut() = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);
+    case.setting.site.g_sensitivity = [0.0; 2];
     turned(&mut case, 12, 30.0);
     case
 }
@@ -286,9 +287,9 @@ fn a_short_arc_about_the_turning_point_cannot_tell() {
 #[test]
 fn an_accelerometer_bias_on_a_short_arc_makes_the_tilt_too_uncertain() {
     let mut case = sound();
-    case.setting.accelerometer_bias_sigma = 5.0;
+    case.setting.site.accelerometer_bias_sigma = 5.0;
     case.world.accelerometer.noise_m_s2_sqrt_hz = 0.5;
-    case.setting.required_sigma = 0.5_f64.to_radians();
+    case.setting.site.required_sigma = 0.5_f64.to_radians();
     turned(&mut case, 12, 4.0);
     let verdict = verdict(&case, &[], 5);
     assert!(matches!(verdict, Err(Refusal::TiltTooUncertain { .. })), "{verdict:?}");
@@ -346,7 +347,7 @@ fn an_accelerometer_that_does_not_feel_gravity_is_refused() {
     for bias in spoil {
         let mut case = sound();
         case.world.accelerometer.bias_m_s2 = bias(0.0);
-        case.setting.accelerometer_bias_sigma = 0.05;
+        case.setting.site.accelerometer_bias_sigma = 0.05;
         let verdict = verdict(&case, &[], 8);
         let refused = matches!(verdict, Err(Refusal::AccelerometerImplausible { .. }));
         assert!(refused, "{:?}: {verdict:?}", bias(0.0));
@@ -358,7 +359,7 @@ fn a_scale_error_that_is_not_stated_is_named_whichever_way_it_goes() {
     for scale_error in [-0.04, -0.03, 0.03, 0.04] {
         let mut case = sound();
         case.world.gyro.scale_error = scale_error;
-        case.setting.scale_sigma = 0.0;
+        case.setting.site.scale_sigma = 0.0;
         let verdict = verdict(&case, &[], 9);
         let named = matches!(verdict, Err(Refusal::EarthRateMismatch { .. }));
         assert!(named, "{scale_error}: {verdict:?}");
@@ -373,8 +374,8 @@ fn an_unknown_g_sensitivity_refuses_no_healthy_run_and_leaves_sigma_true() {
         case.world.roll_deg = 6.0 * generator.uniform() - 3.0;
         let kappa = [generator.gaussian(), generator.gaussian()];
         case.world.gyro.g_sensitivity_deg_h_g = kappa.map(|k| 10.0 * k);
-        case.setting.g_sensitivity_sigma = 10.0 * DEGREE_PER_HOUR;
-        case.setting.scale_sigma = 0.0;
+        case.setting.site.g_sensitivity_sigma = 10.0 * DEGREE_PER_HOUR;
+        case.setting.site.scale_sigma = 0.0;
         if seed % 2 == 0 {
             turned(case, 12, 15.0);
         }

@@ -11,12 +11,13 @@ use host::methods::stepwise::{drive, replay};
 use host::output::azimuth_error;
 use host::simulate::stage_path;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 
 use crate::support::files::recording;
 
@@ -42,13 +43,12 @@ impl Trial<'_> {
 
     fn session(&self, azimuth_deg: f64, seed: u64) -> Session {
         let [n, b, k, r] = self.gyro;
-        let setting = Setting {
-            noise: GyroNoise::from_field_units(n, b, k, r),
-            white_known: true,
-            half: self.half,
+        let site = Site {
+            noise: StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r)),
             required_sigma: 20.0_f64.to_radians(),
-            ..Setting::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
+            ..Site::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
         };
+        let setting = Setting { half: self.half, ..Setting::new(site) };
         let position = |angle: &f64| Position { angle: angle.to_radians(), seconds: self.seconds };
         let positions: Vec<Position> = self.angles_deg.iter().map(position).collect();
         let schedule = Schedule::listed(&positions).expect("they fit");

@@ -7,6 +7,7 @@ use host::output::azimuth_error;
 use host::simulate::run;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::setup::SetupError;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
 use orientation::alignment::stepwise::session::survey::Survey;
@@ -14,7 +15,7 @@ use orientation::alignment::stepwise::session::{Phase, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::fit::FitError;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::signal::dwell::Dwell;
@@ -23,11 +24,10 @@ const N_DEG_SQRT_H: f64 = 0.001;
 const LATITUDE_DEG: f64 = 47.58;
 
 fn setting() -> Setting {
-    Setting {
-        noise: GyroNoise::from_field_units(N_DEG_SQRT_H, 0.0, 0.0, 0.0),
-        white_known: true,
-        ..Setting::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
-    }
+    Setting::new(Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(N_DEG_SQRT_H, 0.0, 0.0, 0.0)),
+        ..Site::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
+    })
 }
 
 fn world(azimuth_deg: f64) -> InstrumentsConfiguration {
@@ -217,7 +217,7 @@ fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
 /// A plan for the gyro of these tests on a stage that takes a second to turn.
 fn planned(seconds: f64) -> Schedule {
     let conditions = Conditions {
-        noise: setting().noise,
+        noise: *setting().site.noise.model(),
         rotation: Rotation::fixed(1.0),
         shortest: 1.0,
         fewest: 8,
@@ -232,7 +232,8 @@ fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) 
     let required_sigma = sigma_deg.to_radians();
     let procedure = Procedure::new(planned(60.0), 0.01).until_accurate(seconds);
     let mut session =
-        Session::new(Setting { required_sigma, ..setting() }, procedure).expect("it begins");
+        Session::new(Setting::new(Site { required_sigma, ..setting().site }), procedure)
+            .expect("it begins");
     let mut configuration = world(123.4);
     configuration.gyro.n_deg_sqrt_h *= noise;
     run(&mut session, &configuration, &[], Rotation::fixed(1.0), 4.0 * seconds, seed);
@@ -292,9 +293,9 @@ fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64)
     };
     let procedure = Procedure { stop, ..circle().after(survey) };
     // What the data sheet says is five times what this gyro does.
-    let stated = GyroNoise::from_field_units(5.0 * N_DEG_SQRT_H, 0.0, 0.0, 0.0);
+    let stated = StatedNoise::Whole(GyroNoise::from_field_units(5.0 * N_DEG_SQRT_H, 0.0, 0.0, 0.0));
     let required_sigma = 0.05_f64.to_radians();
-    let setting = Setting { noise: stated, required_sigma, ..setting() };
+    let setting = Setting::new(Site { noise: stated, required_sigma, ..setting().site });
     let mut session = Session::new(setting, procedure).expect("it begins");
     run(&mut session, configuration, &[], Rotation::fixed(1.0), 2000.0, seed);
     session
@@ -311,7 +312,7 @@ fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
         assert!((plan.seconds - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions());
         // √2 N/(Ω_h √T) for the plan's dwells.
         let standing = plan.dwell * plan.positions() as f64 / 3600.0;
-        let rate = setting().latitude.horizontal_rate().to_degrees() * 3600.0;
+        let rate = setting().site.latitude.horizontal_rate().to_degrees() * 3600.0;
         let expected = 2.0_f64.sqrt() * N_DEG_SQRT_H / (rate * standing.sqrt());
         let sigma = session.conclusion().expect("done").verdict.expect("north").sigma;
         assert!((sigma / expected - 1.0).abs() < 0.05, "{sigma} against {expected}");

@@ -7,7 +7,7 @@ use host::methods::stops::floor::Spectrum;
 use host::methods::stops::{Replay, grade, noise, replay};
 use host::recording::{Body, Header, ImuRow};
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::session::{Event, Procedure, Session};
 use orientation::alignment::stops::stop_detector::Rests;
@@ -45,7 +45,7 @@ fn a_rate_that_the_times_contradict_by_more_than_a_per_cent_is_refused_with_both
     header.rate_hz = Some(25.1);
     let replay = replayed(&header, &rows).expect("within a per cent");
     // What is left of the contradiction is a scale error.
-    assert!(replay.session.setting().common.scale_sigma >= 0.003);
+    assert!(replay.session.setting().site.scale_sigma >= 0.003);
 }
 
 /// A session that is given one period and given another, s.
@@ -53,7 +53,7 @@ fn paced(reported: f64, given: f64, tolerance: f64) -> Option<Refusal> {
     let latitude = Latitude::from_degrees(50.0).expect("a latitude");
     let procedure =
         Procedure { period_tolerance: tolerance, ..Procedure::recorded(Rests::Whole, reported) };
-    let setting = Setting::new(Common::at(latitude));
+    let setting = Setting::new(Site::at(latitude));
     let mut session = Session::new(setting, procedure).expect("a procedure");
     for index in 1..2000 {
         let time = Instant::from_seconds(f64::from(index) * given);
@@ -166,7 +166,7 @@ fn noise_that_was_stated_too_small_is_taken_as_the_recording_shows_it() {
         let (mut header, rows) = recorded(name);
         header.gyro_n_deg_sqrt_h = Some(true_n / 10.0);
         let replay = replayed(&header, &rows).expect("it replays");
-        let walk = replay.session.setting().common.noise.angle_random_walk;
+        let walk = replay.session.setting().site.noise.model().angle_random_walk;
         let n = walk / orientation::units::DEGREE_PER_SQRT_HOUR;
         println!("{name}: {n:.4} °/√h of {true_n}");
         assert!((n / true_n - 1.0).abs() < 0.3, "{name}: {n}");

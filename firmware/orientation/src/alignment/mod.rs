@@ -6,6 +6,7 @@ pub mod period;
 pub mod refusal;
 pub mod rotating;
 pub mod setup;
+pub mod site;
 pub mod slow;
 pub mod stepwise;
 pub mod stops;

@@ -4,12 +4,12 @@
 //! signal. The work per sample is integer only, without branches or loops that depend on data.
 //!
 //! ```
-//! use orientation::{signal::butterworth::{Coefficients, Filter}, units::AngularRate};
+//! use orientation::{filter::{Coefficients, Filter}, units::AngularRate};
 //!
 //! let low_pass = Coefficients::<3>::low_pass(1.0, 100.0)?; // order 6, 1 Hz at 100 samples/s
 //! let mut filter = Filter::at_rest(AngularRate(72_921));
 //! assert_eq!(filter.update(&low_pass, AngularRate(72_921)), AngularRate(72_921));
-//! # Ok::<(), orientation::signal::butterworth::DesignError>(())
+//! # Ok::<(), orientation::filter::DesignError>(())
 //! ```
 
 mod design;
@@ -37,7 +37,7 @@ const OUTPUT_BITS: u32 = 28;
 ///
 /// Sections past 1 to 4 do not compile:
 /// ```compile_fail
-/// let filter = orientation::signal::butterworth::Filter::<5>::at_rest(Default::default());
+/// let filter = orientation::filter::Filter::<5>::at_rest(Default::default());
 /// ```
 #[derive(Clone, Debug)]
 pub struct Filter<const SECTIONS: usize> {

@@ -20,6 +20,38 @@ pub struct GyroNoise {
     pub rate_ramp: f64,
 }
 
+/// What is stated of a gyro's noise before an alignment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum StatedNoise {
+    /// The whole model.
+    Whole(GyroNoise),
+    /// All but the angle random walk N, which is estimated from the data.
+    ExceptWhite(GyroNoise),
+}
+
+impl StatedNoise {
+    /// The coefficients; N is without meaning where it is not stated.
+    pub const fn model(&self) -> &GyroNoise {
+        match self {
+            Self::Whole(model) | Self::ExceptWhite(model) => model,
+        }
+    }
+
+    /// The coefficients, to be changed.
+    pub const fn model_mut(&mut self) -> &mut GyroNoise {
+        match self {
+            Self::Whole(model) | Self::ExceptWhite(model) => model,
+        }
+    }
+
+    /// Whether N is stated.
+    #[must_use]
+    pub const fn is_white_known(&self) -> bool {
+        matches!(self, Self::Whole(_))
+    }
+}
+
 impl GyroNoise {
     /// Model from N in °/√h, B in °/h, K in °/h/√h and R in °/h²; the quantisation is zero.
     pub fn from_field_units(n: f64, b: f64, k: f64, r: f64) -> Self {

@@ -29,6 +29,7 @@ use orientation::alignment::period::CONVERTER_TOLERANCE;
 use orientation::alignment::rotating;
 use orientation::alignment::rotating::Sensor;
 use orientation::alignment::rotating::session::Procedure as Turning;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
 use orientation::alignment::stepwise::session::survey::Survey;
@@ -36,7 +37,7 @@ use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stops;
 use orientation::alignment::stops::session::Procedure as Driving;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
@@ -120,20 +121,24 @@ const ROTATION: Rotation = Rotation { rest: 0.75, speed: 0.35, wraps: false };
 /// Time for which the stage rings after an arrival, s.
 const RINGING: f64 = 0.25;
 
-/// Site and instrument, for the alignment.
-pub fn setting() -> Setting {
+/// Site and instrument.
+fn site() -> Site {
     let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
-    Setting {
-        noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
-        white_known: true,
+    Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0)),
         scale_sigma: GYRO_SCALE_SIGMA,
         g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
         g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
         accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
         encoder_sigma: ENCODER_SIGMA,
         required_sigma: ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE,
-        ..Setting::at(latitude)
+        ..Site::at(latitude)
     }
+}
+
+/// Site and instrument on a stage.
+pub fn setting() -> Setting {
+    Setting::new(site())
 }
 
 /// Procedure of the session on a stage.
@@ -181,7 +186,7 @@ const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
 /// Site and instrument on a rotating platform.
 pub fn turning_setting() -> rotating::Setting {
     let encoder_zero_sigma = ENCODER_ZERO_SIGMA;
-    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(setting(), SENSOR) }
+    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(site(), SENSOR) }
 }
 
 /// Procedure of the session on a rotating platform.
@@ -211,11 +216,11 @@ const FORCE_NOISE: f64 = 1.2 * 25e-6 * 9.80665;
 
 /// Site and instrument in a vehicle.
 pub fn driving_setting() -> stops::Setting {
-    let common = Setting { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..setting() };
+    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site() };
     stops::Setting {
         bias_sigma: Some(BIAS_SIGMA * DEGREE_PER_HOUR),
         force_noise: FORCE_NOISE,
-        ..stops::Setting::new(common)
+        ..stops::Setting::new(site)
     }
 }
 

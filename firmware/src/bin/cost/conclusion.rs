@@ -2,12 +2,13 @@
 //! deviation.
 
 use hal_mock::noise::Generator;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::filter::{Coefficients, DesignError};
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::signal::dwell::{Dwell, DwellAverage};
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
@@ -75,7 +76,8 @@ fn is_right(conclusion: &Conclusion) -> bool {
 fn setting([flicker, walk]: [f64; 2]) -> Option<Setting> {
     let noise = GyroNoise::from_field_units(WHITE, flicker, walk, 0.0);
     let latitude = Latitude::from_degrees(LATITUDE_DEG)?;
-    Some(Setting { noise, white_known: true, ..Setting::at(latitude) })
+    let site = Site { noise: StatedNoise::Whole(noise), ..Site::at(latitude) };
+    Some(Setting::new(site))
 }
 
 /// Fills dwells over the full circle, through the session's own average.

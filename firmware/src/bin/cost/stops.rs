@@ -3,13 +3,13 @@
 
 use core::hint::black_box;
 
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::Conclusion;
 use orientation::alignment::stops::inclination::Inclination;
 use orientation::alignment::stops::stop_detector::{Rests, StopDetector};
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce};
 
@@ -106,14 +106,14 @@ pub fn stack() -> usize {
 fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE).unwrap_or(Latitude::EQUATOR);
     let noise = GyroNoise::from_field_units(0.05, 0.0, 0.0, 0.0);
-    let common = Common { noise, white_known: true, ..Common::at(latitude) };
-    Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(common) }
+    let site = Site { noise: StatedNoise::Whole(noise), ..Site::at(latitude) };
+    Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(site) }
 }
 
 /// Stop detector at this sample rate, Hz.
 fn stop_detector(rate: u64) -> StopDetector {
     let setting = setting();
-    let gravity = setting.common.latitude.gravity();
+    let gravity = setting.site.latitude.gravity();
     StopDetector::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
 }
 
@@ -121,7 +121,7 @@ fn stop_detector(rate: u64) -> StopDetector {
 /// again, without noise.
 fn drive() -> StopDetector {
     let mut stop_detector = stop_detector(DRIVE_HZ);
-    let earth = setting().common.latitude;
+    let earth = setting().site.latitude;
     let (mut azimuth, mut carried) = (AZIMUTH, [0.0; 3]);
     for index in 0..(DRIVE[2] as u64) * DRIVE_HZ {
         let time = index as f64 / DRIVE_HZ as f64;
@@ -139,7 +139,7 @@ fn drive() -> StopDetector {
 
 /// Sample with these rates, rad/s, and gravity as the only force.
 fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> InertialSample {
-    let gravity = setting().common.latitude.gravity();
+    let gravity = setting().site.latitude.gravity();
     InertialSample {
         time: Instant((index + 1) * 1_000_000 / rate),
         turned: core::array::from_fn(|axis| {

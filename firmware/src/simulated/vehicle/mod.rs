@@ -16,7 +16,7 @@ use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
-use orientation::alignment::stepwise::setting;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::session::Procedure;
 use orientation::attitude as keep;
@@ -148,17 +148,17 @@ impl VehicleScenario {
     /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
-        let common = setting::Setting {
+        let site = Site {
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
             g_sensitivity: [0.0; 2],
             g_sensitivity_sigma: 0.0,
-            ..self.base.setting()?
+            ..self.base.site()?
         };
         let displacement_sigma = match self.place {
             Place::Known { sigma_m } => sigma_m,
             Place::Unknown => 0.0,
         };
-        let setting = Setting::new(common);
+        let setting = Setting::new(site);
         Some(Setting {
             bias_sigma: Some(self.base.gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
             force_noise: self.force_noise(),

@@ -10,12 +10,13 @@ use std::fmt;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Plan, Rotation};
 use orientation::units::DEGREE_PER_HOUR;
@@ -132,12 +133,11 @@ impl Trial {
     }
 
     fn setting(&self) -> Setting {
-        Setting {
-            noise: self.grade.noise(),
-            white_known: true,
+        Setting::new(Site {
+            noise: StatedNoise::Whole(self.grade.noise()),
             accelerometer_bias_sigma: FORCE_BIAS,
-            ..Setting::at(latitude())
-        }
+            ..Site::at(latitude())
+        })
     }
 
     fn world(&self, azimuth_deg: f64) -> InstrumentsConfiguration {

@@ -13,9 +13,9 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::solution::Fit;
 use orientation::alignment::rotating::{Sensor, Setting};
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
 use self::world::{LATITUDE_DEG, World};
@@ -78,11 +78,10 @@ impl Solved {
 
 fn setting(world: &World, sensor: Sensor) -> Option<Setting> {
     let walk = world.n_deg_sqrt_h.max(LEAST_WALK);
-    let common = Common {
-        noise: GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0),
-        white_known: true,
+    let site = Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0)),
         g_sensitivity: world.g_sensitivity_deg_h_g.map(|part| part * DEGREE_PER_HOUR),
-        ..Common::at(Latitude::from_degrees(LATITUDE_DEG)?)
+        ..Site::at(Latitude::from_degrees(LATITUDE_DEG)?)
     };
-    Some(Setting::new(common, sensor))
+    Some(Setting::new(site, sensor))
 }

@@ -13,6 +13,7 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::etalon;
@@ -25,7 +26,7 @@ use orientation::earth::Latitude;
 use orientation::math::reference_table as table;
 use orientation::math::reference_table::Table as Etalon;
 use orientation::math::reference_table::{ONE, STEP};
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::DEGREE_PER_HOUR;
@@ -94,11 +95,10 @@ impl Turn {
 /// Never: the latitude is a constant within ±90°.
 fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!());
-    Setting {
-        noise: GyroNoise::from_field_units(ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0),
-        white_known: true,
-        ..Setting::at(latitude)
-    }
+    Setting::new(Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0)),
+        ..Site::at(latitude)
+    })
 }
 
 /// The samples of one realisation.
@@ -304,7 +304,7 @@ fn paper_alpha(all: &[Vec<Dwell>]) -> Vec<AlphaRow> {
 }
 
 fn alpha_row(all: &[Vec<Dwell>], alpha_deg_h: f64) -> AlphaRow {
-    let rate = setting().latitude.horizontal_rate();
+    let rate = setting().site.latitude.horizontal_rate();
     let limit = Limit::WithinAbsolute((alpha_deg_h * DEGREE_PER_HOUR / rate * ONE) as u64);
     let step = (Turn::Arc.step() / STEP).round() as i32;
     let accepted: Vec<Accepted> = all

@@ -5,13 +5,13 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Vehicle, VehicleSample};
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::Conclusion;
 use orientation::alignment::stops::session::{Event, Procedure, Session};
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::statistics::Answer;
@@ -115,15 +115,14 @@ fn at_rate(day: &Scenario) -> Scenario {
 fn setting(day: &Scenario) -> Option<Setting> {
     let [gyro, ..]: [GyroConfiguration; 3] = day.vehicle.gyros;
     let accelerometer: AccelerometerConfiguration = day.vehicle.accelerometer;
-    let common = Common {
-        noise: GyroNoise::from_field_units(gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0),
-        white_known: true,
+    let site = Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0)),
         accelerometer_bias_sigma: accelerometer.bias_sigma_m_s2,
-        ..Common::at(Latitude::from_degrees(day.vehicle.latitude_deg)?)
+        ..Site::at(Latitude::from_degrees(day.vehicle.latitude_deg)?)
     };
     Some(Setting {
         bias_sigma: Some(gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
         force_noise: accelerometer.noise_m_s2_sqrt_hz,
-        ..Setting::new(common)
+        ..Setting::new(site)
     })
 }

@@ -17,7 +17,7 @@ use firmware::ports::Recorder;
 use firmware::simulated::scenario::Scenario;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::site::Site;
 use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 
 pub use turntable::turning_rows;
@@ -80,19 +80,19 @@ pub fn write<C: Carrier>(
 }
 
 /// Writes what a board was given of place and instrument, as far as keys of their own say it.
-fn header(to: &mut impl Write, kind: Kind, base: &Scenario, setting: &Setting) -> io::Result<()> {
-    let [along, across] = setting.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
-    let kappa_sigma = setting.g_sensitivity_sigma / DEGREE_PER_HOUR;
+fn header(to: &mut impl Write, kind: Kind, base: &Scenario, site: &Site) -> io::Result<()> {
+    let [along, across] = site.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
+    let kappa_sigma = site.g_sensitivity_sigma / DEGREE_PER_HOUR;
     writeln!(to, "# kind: {kind}")?;
     writeln!(to, "# latitude_deg: {}", base.latitude_deg)?;
     writeln!(to, "# rate_hz: {}", base.sample_rate_hz)?;
     writeln!(to, "# gyro_N_deg_sqrt_h: {}", base.gyro.n_deg_sqrt_h)?;
     writeln!(to, "# gyro_B_deg_h: {}", base.gyro.b_deg_h)?;
     writeln!(to, "# gyro_K_deg_h_sqrt_h: {}", base.gyro.k_deg_h_sqrt_h)?;
-    writeln!(to, "# gyro_scale_sigma: {}", setting.scale_sigma)?;
+    writeln!(to, "# gyro_scale_sigma: {}", site.scale_sigma)?;
     writeln!(to, "# g_sensitivity_deg_h_g: {along:.9},{across:.9}")?;
     writeln!(to, "# g_sensitivity_sigma_deg_h_g: {kappa_sigma:.9}")?;
-    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)
+    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", site.accelerometer_bias_sigma)
 }
 
 /// Writes a row, with all digits of its numbers; what is not a number leaves its field empty.

@@ -54,7 +54,7 @@ fn write(
     let setting = Setting { sway: run.replay.setting.sway, ..setting };
     let ended = run.conclusion().and_then(|conclusion| conclusion.verdict.err());
     let mut head = Vec::new();
-    header(&mut head, Kind::Stage, scenario, &setting)?;
+    header(&mut head, Kind::Stage, scenario, &setting.site)?;
     Given::new(setting, procedure, ended).write(to, &head)?;
     let is_mounted = of.iter().any(|sample| sample.elevation.is_some());
     let (groups, fields) = match (run.base.is_empty(), is_mounted) {

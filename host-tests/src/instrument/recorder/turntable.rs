@@ -21,7 +21,7 @@ impl Carrier for TurntableScenario {
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
         let mut head = Vec::new();
-        header(&mut head, Kind::Rotating, &self.base, &setting.common)?;
+        header(&mut head, Kind::Rotating, &self.base, &setting.site)?;
         let sensor = if self.molecular.is_some() { "met" } else { "gyro" };
         writeln!(head, "# sensor: {sensor}")?;
         let zero_sigma = setting.encoder_zero_sigma.to_degrees();

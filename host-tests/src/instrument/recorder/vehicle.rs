@@ -27,7 +27,7 @@ impl Carrier for VehicleScenario {
         let period_s = procedure.sample_seconds;
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
         let mut head = Vec::new();
-        header(&mut head, Kind::Imu, &self.base, &setting.common)?;
+        header(&mut head, Kind::Imu, &self.base, &setting.site)?;
         writeln!(head, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
         stops(&mut head, run)?;
         Given::new(setting, procedure, ended).write(to, &head)?;

@@ -10,7 +10,7 @@ use orientation::alignment::rotating::session::{Event, Procedure, Session};
 use orientation::alignment::rotating::turn::Stretch;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::setup::SetupError;
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
@@ -39,7 +39,7 @@ impl Replay {
     /// Whether the sensor's white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
-        self.session.setting().common.white_known
+        self.session.setting().site.noise.is_white_known()
     }
 
     /// The parts of the recording that the session made of it: what came before the first even turn, then
@@ -77,14 +77,14 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
         return again(given, rows, asked);
     }
-    let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
+    let Described { mut site, mut assumed } = asked.describe(header, body)?;
     let sensor = sensor(header, &mut assumed);
     // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
     let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);
     let rate = header.rate_hz.unwrap_or_else(of_times);
-    let rate_step = rounded(&mut common, sensor.is_flat, rows, rate);
+    let rate_step = rounded(&mut site, sensor.is_flat, rows, rate);
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
-    let setting = Setting::new(common, sensor);
+    let setting = Setting::new(site, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
     let session = follow(setting, rows, 1.0 / rate);
     let session = session.map_err(ReplayError::Procedure)?;
@@ -103,7 +103,7 @@ fn again(
     asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, procedure, ended } = given;
-    asked.change(&mut setting.common);
+    asked.change(&mut setting.site);
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     for row in rows {
         let rate = recording::rate(row.rate_rad_s);
@@ -119,7 +119,7 @@ const FIRST_HARMONIC: f64 = 6.0 / (PI * PI);
 /// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
 /// the staircase by e^(−2π²(σ/step)²). That part goes with the platform's turn and is no noise. What is stated of it is the
 /// sensor's input, of which one that is not flat passes less.
-fn rounded(common: &mut Common, is_flat: bool, rows: &[RotatingRow], rate_hz: f64) -> f64 {
+fn rounded(site: &mut Site, is_flat: bool, rows: &[RotatingRow], rate_hz: f64) -> f64 {
     let mut rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
     rates.sort_unstable_by(f64::total_cmp);
     let steps = rates.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
@@ -127,12 +127,13 @@ fn rounded(common: &mut Common, is_flat: bool, rows: &[RotatingRow], rate_hz: f6
     if step <= 0.0 {
         return 0.0;
     }
-    let walk = common.noise.angle_random_walk;
-    let is_stated = common.white_known && is_flat;
+    let walk = site.noise.model().angle_random_walk;
+    let is_stated = site.noise.is_white_known() && is_flat;
     let sigma = if is_stated { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
     let smoothed = (-0.5 * (TAU * sigma / step).powi(2)).exp();
     let scattered = 1.0 - FIRST_HARMONIC * smoothed * smoothed;
-    common.noise.angle_random_walk = walk.hypot(step * (scattered / (12.0 * rate_hz)).sqrt());
+    site.noise.model_mut().angle_random_walk =
+        walk.hypot(step * (scattered / (12.0 * rate_hz)).sqrt());
     step * smoothed
 }
 

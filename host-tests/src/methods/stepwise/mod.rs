@@ -69,7 +69,7 @@ impl Replay {
     /// Whether the gyro's white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
-        self.setting.white_known
+        self.setting.site.noise.is_white_known()
             || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
     }
 }
@@ -90,7 +90,8 @@ pub fn replay(
     {
         return again(given, rows, asked, progress);
     }
-    let Described { setting, mut assumed } = asked.describe(header, body)?;
+    let Described { site, mut assumed } = asked.describe(header, body)?;
+    let setting = Setting { half: asked.half, ..Setting::new(site) };
     assumed.extend(asked.half.map(|_| HALF.to_owned()));
     let criterion = asked.criterion.unwrap_or_default();
     let session = match stops {
@@ -111,7 +112,8 @@ fn again(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
-    asked.change(&mut setting);
+    asked.change(&mut setting.site);
+    setting.half = asked.half.or(setting.half);
     procedure.criterion = asked.criterion.unwrap_or(procedure.criterion);
     let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
     if is_mounted {

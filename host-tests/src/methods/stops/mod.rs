@@ -13,7 +13,7 @@ pub mod way;
 
 use firmware::ports::Recorder;
 use heapless::Vec as Few;
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::session::{Event, Procedure, Session};
 use orientation::alignment::stops::stop::STOPS;
@@ -85,7 +85,7 @@ impl Replay {
     /// Whether the gyros' white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
-        self.session.setting().common.white_known
+        self.session.setting().site.noise.is_white_known()
     }
 }
 
@@ -123,7 +123,7 @@ fn again(
     asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
-    asked.change(&mut setting.common);
+    asked.change(&mut setting.site);
     procedure.displacements = displacements(header, asked)?;
     let period_s = procedure.sample_seconds;
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
@@ -140,9 +140,9 @@ fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay,
     let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
     let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
-    let common = &replay.session.setting().common;
+    let site = &replay.session.setting().site;
     let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
-    let legs = way::legs(&rows, zero_s, period_s, stops, common, found.start.angle);
+    let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle);
     if let Some(leg) = legs.iter().position(|leg| !leg.is_as_stated()) {
         let (Leg { stated_m, driven_m, .. }, slip) = (legs[leg], Slip::of(&legs));
         return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });
@@ -199,13 +199,13 @@ fn follow(
     let displacements = displacements(header, asked)?;
     let mut substituted = Vec::new();
     let header = &grade::filled(header, &mut substituted);
-    let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
+    let Described { mut site, mut assumed } = asked.describe(header, body)?;
     assumed.append(&mut substituted);
     assumed.push(assumptions::AXES_OF_A_VEHICLE.to_owned());
     // Within what is accepted, the difference of a stated rate from the times is a scale error of every rotation.
     let rate_error = header.rate_hz.map_or(0.0, |rate| rate * period_s - 1.0);
-    common.scale_sigma = common.scale_sigma.hypot(rate_error);
-    let setting = setting(header, common, rows, period_s, method, &mut assumed)?;
+    site.scale_sigma = site.scale_sigma.hypot(rate_error);
+    let setting = setting(header, site, rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let mut watched = Watched::new(session);
@@ -331,7 +331,7 @@ const LEAST_WALK: f64 = 1e-3 * DEGREE_PER_SQRT_HOUR;
 /// small is taken as the recording shows it.
 fn setting(
     header: &Header,
-    mut common: Common,
+    mut site: Site,
     rows: &[ImuRow],
     period_s: f64,
     method: Method,
@@ -341,7 +341,7 @@ fn setting(
     let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
     let stood = if method == Method::Static { Some(&whole[..]) } else { stood };
     let white = noise::at_rest(rows, stood, period_s);
-    common.noise.angle_random_walk = walk(&common, white.as_ref(), assumed)?;
+    site.noise.model_mut().angle_random_walk = walk(&site, white.as_ref(), assumed)?;
     let force_noise = white.unwrap_or_default().force;
     assumed
         .push(format!("accelerometer noise {force_noise:.2e} m/s²/√Hz as the recording shows it"));
@@ -350,21 +350,21 @@ fn setting(
     if bias_sigma.is_none() {
         assumed.push("gyro biases unknown".to_owned());
     }
-    Ok(Setting { bias_sigma, force_noise, ..Setting::new(common) })
+    Ok(Setting { bias_sigma, force_noise, ..Setting::new(site) })
 }
 
 /// The gyros' N, rad/√s: as stated, or as the recording shows it.
-fn walk(
-    common: &Common,
-    white: Option<&White>,
-    assumed: &mut Vec<String>,
-) -> Result<f64, ReplayError> {
-    let stated = common.noise.angle_random_walk;
+fn walk(site: &Site, white: Option<&White>, assumed: &mut Vec<String>) -> Result<f64, ReplayError> {
+    let stated = site.noise.model().angle_random_walk;
     let Some(White { angle_random_walk: shown, relative_sigma, .. }) = white.copied() else {
-        return if common.white_known { Ok(stated) } else { Err(ReplayError::NoiseUnknown) };
+        return if site.noise.is_white_known() {
+            Ok(stated)
+        } else {
+            Err(ReplayError::NoiseUnknown)
+        };
     };
     let walk = shown / DEGREE_PER_SQRT_HOUR;
-    if !common.white_known {
+    if !site.noise.is_white_known() {
         assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
         return Ok((shown * (1.0 + relative_sigma)).max(LEAST_WALK));
     }

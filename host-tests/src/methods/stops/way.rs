@@ -5,7 +5,7 @@
 //! linearly growing acceleration, and is taken off. What is left is good to a tenth of the way: not enough for the
 //! azimuth, but enough to distinguish metres from kilometres and north from east.
 
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::stop::Stop;
 use orientation::math::rotation::{
     Matrix, Vector, about_down, by, cross, difference, length, levelled, product, scaled, sum,
@@ -115,7 +115,7 @@ pub fn legs(
     zero_s: f64,
     period_s: f64,
     stops: &[Stop],
-    common: &Common,
+    site: &Site,
     azimuth: f64,
 ) -> Vec<Leg> {
     let mut azimuth = azimuth;
@@ -130,7 +130,7 @@ pub fn legs(
         };
         let way = between(begin.to - MARGIN_S, end.from + MARGIN_S);
         let rest = between(end.from + MARGIN_S, end.to - MARGIN_S);
-        let mut drive = Drive::from(begin, common, azimuth, period_s);
+        let mut drive = Drive::from(begin, site, azimuth, period_s);
         for row in way {
             drive.push(row);
         }
@@ -158,18 +158,18 @@ struct Drive {
 
 impl Drive {
     /// From a stop, with an azimuth, rad.
-    fn from(stop: &Stop, common: &Common, azimuth: f64, period_s: f64) -> Self {
+    fn from(stop: &Stop, site: &Site, azimuth: f64, period_s: f64) -> Self {
         let force = stop.force.mean();
         let attitude = product(&about_down(azimuth), &levelled(&unit(&force)));
-        let earth = [common.latitude.horizontal_rate(), 0.0, -common.latitude.vertical_rate()];
+        let earth = [site.latitude.horizontal_rate(), 0.0, -site.latitude.vertical_rate()];
         let felt = turned(&transposed(&attitude), &earth);
         Self {
             attitude,
             bias: difference(&stop.turned.mean(), &felt),
             earth,
             gravity: length(&force),
-            force_bias: common.accelerometer_bias_sigma,
-            tangent: common.latitude.rad().tan(),
+            force_bias: site.accelerometer_bias_sigma,
+            tangent: site.latitude.rad().tan(),
             period_s,
             velocity: [0.0; 3],
             way: [0.0; 3],

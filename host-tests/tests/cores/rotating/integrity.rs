@@ -9,7 +9,7 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Harmonic, Ripple, Unevenness};
 use orientation::alignment::rotating::session::Procedure;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 
 use crate::support::campaign::{Extent, campaigns};
 
@@ -73,10 +73,10 @@ fn case(seed: u64, colour: Colour, is_by_encoder: bool) -> Case {
         ..InstrumentsConfiguration::default()
     };
     let mut setting = flat(latitude_deg, n);
-    setting.common.noise = GyroNoise::from_field_units(n, b, k, r);
-    setting.common.g_sensitivity = kappa.map(per_g);
-    setting.common.g_sensitivity_sigma = per_g(kappa_sigma);
-    setting.common.accelerometer_bias_sigma = 0.1;
+    setting.site.noise = StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r));
+    setting.site.g_sensitivity = kappa.map(per_g);
+    setting.site.g_sensitivity_sigma = per_g(kappa_sigma);
+    setting.site.accelerometer_bias_sigma = 0.1;
     Case {
         instruments: instruments.leaning(tilt_deg, uphill_deg),
         unevenness,
@@ -129,8 +129,7 @@ fn a_stated_sigma_is_true_and_healthy_platforms_are_not_refused(extent: Extent) 
 fn a_sigma_from_the_scatter_of_the_turns_is_true_where_the_noise_is_not_known() {
     let found = campaign(9000..9200, |seed| {
         let mut case = case(seed, Colour::White, false);
-        case.setting.common.white_known = false;
-        case.setting.common.noise = GyroNoise::default();
+        case.setting.site.noise = StatedNoise::ExceptWhite(GyroNoise::default());
         let speed = case.segments[1].rate_rad_s;
         case.segments = both_senses(speed, 10.1);
         case
@@ -144,7 +143,7 @@ fn a_session_that_turns_the_platform_itself_states_a_true_sigma() {
         let mut case = case(seed + 20_000, Colour::White, true);
         let speed = case.segments[1].rate_rad_s.max(0.4);
         // A session judges the tilt at rest by an accelerometer that is not calibrated.
-        case.setting.common.allowed_tilt = 0.1;
+        case.setting.site.allowed_tilt = 0.1;
         let turns = 3 + (seed % 6) as u32;
         let procedure = Procedure { turns, ..Procedure::new(&[speed], 0.02) };
         let driven = driven(&case, procedure, seed, |_, _| {});

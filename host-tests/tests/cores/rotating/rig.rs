@@ -11,9 +11,9 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::conclusion::Conclusion;
 use orientation::alignment::rotating::session::{Command, Event, Procedure, Session};
 use orientation::alignment::rotating::{Sensor, Setting};
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
@@ -77,11 +77,10 @@ pub fn both_senses(speed: f64, turns: f64) -> Vec<Segment> {
 
 /// A flat sensor at a latitude, of a known N in °/√h.
 pub fn flat(latitude_deg: f64, n: f64) -> Setting {
-    let mut common = Common::at(Latitude::from_degrees(latitude_deg).expect("a latitude"));
-    common.noise = GyroNoise::from_field_units(n, 0.0, 0.0, 0.0);
-    common.white_known = true;
-    common.required_sigma = PI;
-    Setting::new(common, Sensor::GYRO)
+    let mut site = Site::at(Latitude::from_degrees(latitude_deg).expect("a latitude"));
+    site.noise = StatedNoise::Whole(GyroNoise::from_field_units(n, 0.0, 0.0, 0.0));
+    site.required_sigma = PI;
+    Setting::new(site, Sensor::GYRO)
 }
 
 /// A molecular-electronic sensor there.

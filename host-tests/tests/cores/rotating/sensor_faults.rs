@@ -131,12 +131,12 @@ fn a_wrong_scale_or_latitude_is_refused_and_turns_no_azimuth() {
     }
     for latitude_deg in [10.0, 50.0, 60.0] {
         assert_refused(&["EarthRateMismatch"], |seed, mut case| {
-            case.setting.common.latitude = Latitude::from_degrees(latitude_deg).expect("one");
+            case.setting.site.latitude = Latitude::from_degrees(latitude_deg).expect("one");
             plain(seed, &case)
         });
     }
     assert_refused(&["LatitudeTooHigh"], |seed, mut case| {
-        case.setting.common.latitude = Latitude::from_degrees(86.0).expect("one");
+        case.setting.site.latitude = Latitude::from_degrees(86.0).expect("one");
         plain(seed, &case)
     });
 }
@@ -159,7 +159,7 @@ fn a_sensor_that_stands_badly_is_to_be_aligned_mechanically() {
 fn a_platform_too_steep_is_refused() {
     assert_refused(&["TiltTooGreat"], |seed, mut case| {
         case.instruments = case.instruments.leaning(16.0, 100.0);
-        case.setting.common.allowed_tilt = 10.0_f64.to_radians();
+        case.setting.site.allowed_tilt = 10.0_f64.to_radians();
         plain(seed, &case)
     });
 }

@@ -2,7 +2,7 @@
 
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Stop};
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
@@ -222,7 +222,7 @@ fn accelerometer_biases_are_covered_by_their_sigma(extent: Extent) {
     Figures::of(extent.of(60), |seed| {
         let mut day = quiet(two(seed));
         day.scenario.vehicle.accelerometer.bias_sigma_m_s2 = 0.01;
-        day.setting.common.accelerometer_bias_sigma = 0.01;
+        day.setting.site.accelerometer_bias_sigma = 0.01;
         day
     })
     .assert_calibrated("accelerometer biases of 1 mg", extent, 0.2);
@@ -234,7 +234,7 @@ fn scale_errors_are_covered_by_their_sigma(extent: Extent) {
         for gyro in &mut day.scenario.vehicle.gyros {
             gyro.scale_sigma = 3e-4;
         }
-        day.setting.common.scale_sigma = 3e-4;
+        day.setting.site.scale_sigma = 3e-4;
         day
     })
     .assert_calibrated("scale errors of 300 ppm", extent, 0.2);
@@ -246,7 +246,8 @@ fn biases_that_walk_are_covered(extent: Extent) {
         for gyro in &mut day.scenario.vehicle.gyros {
             gyro.k_deg_h_sqrt_h = 1.0;
         }
-        day.setting.common.noise = GyroNoise::from_field_units(0.01, 0.0, 1.0, 0.0);
+        day.setting.site.noise =
+            StatedNoise::Whole(GyroNoise::from_field_units(0.01, 0.0, 1.0, 0.0));
         day
     })
     .assert_calibrated("K 1 °/h/√h", extent, 0.2);
@@ -258,7 +259,8 @@ fn biases_that_flicker_are_covered(extent: Extent) {
         for gyro in &mut day.scenario.vehicle.gyros {
             gyro.b_deg_h = 0.3;
         }
-        day.setting.common.noise = GyroNoise::from_field_units(0.01, 0.3, 0.0, 0.0);
+        day.setting.site.noise =
+            StatedNoise::Whole(GyroNoise::from_field_units(0.01, 0.3, 0.0, 0.0));
         day
     })
     .assert_calibrated("B 0.3 °/h", extent, 0.25);
@@ -286,8 +288,8 @@ fn a_latitude_known_badly_is_covered_by_its_sigma() {
         // Errors of 1σ = 0.5°, the same for every tenth seed.
         let error =
             0.5 * [-1.6, -1.0, -0.7, -0.4, -0.1, 0.1, 0.4, 0.7, 1.0, 1.6][(seed % 10) as usize];
-        day.setting.common.latitude = known(52.0 + error, 0.0, None).common.latitude;
-        day.setting.common.latitude_sigma = 0.5f64.to_radians();
+        day.setting.site.latitude = known(52.0 + error, 0.0, None).site.latitude;
+        day.setting.site.latitude_sigma = 0.5f64.to_radians();
         day
     })
     .assert_covered("latitude ± 0.5°");

@@ -3,6 +3,7 @@
 use hal_mock::vehicle::{Drive, Leg, SensorFailure, SensorFault, VehicleSample};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::earth::Latitude;
 
 use super::criteria::{day, drive, stop};
 use super::drives::{quiet, three, two};
@@ -17,6 +18,13 @@ macro_rules! assert_refused {
         let verdict = $verdict;
         assert!(matches!(verdict, Err($pattern)), "{verdict:?}");
     };
+}
+
+#[test]
+fn a_latitude_near_a_pole_is_refused_whatever_the_stops_show() {
+    let mut day = two(1);
+    day.setting.site.latitude = Latitude::from_degrees(-85.1).expect("it is one");
+    assert_refused!(verdict(&day), Refusal::LatitudeTooHigh { .. });
 }
 
 #[test]
@@ -92,7 +100,7 @@ fn ten_degrees_of_latitude_show_in_gravity() {
 fn the_other_hemisphere_shows_in_the_rest_rates() {
     for seed in 0..4 {
         let mut day = quiet(two(seed));
-        day.setting.common.latitude = known(-52.0, 0.0, None).common.latitude;
+        day.setting.site.latitude = known(-52.0, 0.0, None).site.latitude;
         assert_refused!(verdict(&day), Refusal::EarthNotFelt { stops: 2, of: 2 });
     }
 }

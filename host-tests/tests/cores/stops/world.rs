@@ -3,7 +3,7 @@
 use hal_mock::noise::Generator;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{SensorFault, Vehicle, VehicleSample};
-use orientation::alignment::stepwise::setting::Setting as Common;
+use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::{Conclusion, Found};
 use orientation::alignment::stops::residual::Residual;
@@ -11,7 +11,7 @@ use orientation::alignment::stops::session::{Event, Procedure, Session};
 use orientation::alignment::stops::stop::Stop;
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce};
 
@@ -92,15 +92,14 @@ pub fn apart(a: f64, b: f64) -> f64 {
 /// What is known of [`hal_mock::vehicle::scenario::fog`] and `silicon` at a latitude, °.
 pub fn known(latitude_deg: f64, n_deg_sqrt_h: f64, bias_deg_h: Option<f64>) -> Setting {
     let latitude = Latitude::from_degrees(latitude_deg).expect("a latitude");
-    let common = Common {
-        noise: GyroNoise::from_field_units(n_deg_sqrt_h, 0.0, 0.0, 0.0),
-        white_known: true,
-        ..Common::at(latitude)
+    let site = Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(n_deg_sqrt_h, 0.0, 0.0, 0.0)),
+        ..Site::at(latitude)
     };
     Setting {
         bias_sigma: bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR),
         force_noise: 0.002_828_427,
-        ..Setting::new(common)
+        ..Setting::new(site)
     }
 }
 

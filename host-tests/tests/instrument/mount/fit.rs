@@ -1,13 +1,14 @@
 //! The fit with an axis that is not level and an accelerometer on the base: exact dwells in, azimuth
 //! out.
 
+use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::mount::{FrameAngles, TWO_FRAMES, TwoFrame};
 use orientation::alignment::stepwise::quality::Disturbance;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, DEGREE, DEGREE_PER_HOUR};
 
@@ -19,12 +20,8 @@ const MINUTE: f64 = DEGREE / 60.0;
 
 fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE_DEG).expect("it is one");
-    Setting {
-        mount: TWO_FRAMES,
-        noise: GyroNoise::from_field_units(1e-4, 0.0, 0.0, 0.0),
-        white_known: true,
-        ..Setting::at(latitude)
-    }
+    let noise = StatedNoise::Whole(GyroNoise::from_field_units(1e-4, 0.0, 0.0, 0.0));
+    Setting { mount: TWO_FRAMES, ..Setting::new(Site { noise, ..Site::at(latitude) }) }
 }
 
 /// What is true of the dwells.
@@ -50,7 +47,7 @@ fn dwells(world: &World) -> Vec<Dwell> {
     let inverse = core::array::from_fn(|i| core::array::from_fn(|j| body[j][i]));
     let earth = apply(&inverse, [OMEGA * latitude.cos(), 0.0, -OMEGA * latitude.sin()]);
     let force = apply(&inverse, [0.0, 0.0, -1.0]);
-    let gravity = setting().latitude.gravity();
+    let gravity = setting().site.latitude.gravity();
     let frames = [[0.0, 90.0], [0.0, -90.0], [-90.0, 0.0], [90.0, 0.0]];
     let dwell = |(index, [outer, inner]): (usize, &[f64; 2])| {
         let [outer, inner] = [outer, inner].map(|angle| angle.to_radians());
@@ -117,7 +114,8 @@ fn a_minute_of_elevation_left_out_turns_the_azimuth_by_its_tangent_of_the_latitu
 #[test]
 fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
     let kappa = [3.0, -2.0];
-    let reported = Setting { g_sensitivity: kappa.map(|k| k * DEGREE_PER_HOUR), ..setting() };
+    let mut reported = setting();
+    reported.site.g_sensitivity = kappa.map(|k| k * DEGREE_PER_HOUR);
     for azimuth_deg in [10.0, 100.0, 260.0] {
         let world = World { azimuth_deg, pitch_deg: 2.0, roll_deg: 5.0, kappa, ..World::default() };
         let [error, _] = found(&reported, &world, &dwells(&world));
@@ -130,7 +128,8 @@ fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
     let expected = -(0.01_f64 / horizontal).atan().to_degrees();
     assert!((error - expected).abs() < 1e-4, "{error}° is not {expected}°");
     // So its uncertainty costs that much on a level base already.
-    let unsure = Setting { g_sensitivity_sigma: 0.01 * DEGREE_PER_HOUR, ..setting() };
+    let mut unsure = setting();
+    unsure.site.g_sensitivity_sigma = 0.01 * DEGREE_PER_HOUR;
     let world = World::default();
     let [_, sigma] = found(&unsure, &world, &dwells(&world));
     let [_, alone] = found(&setting(), &world, &dwells(&world));
@@ -141,8 +140,9 @@ fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
 #[test]
 fn a_bias_of_the_accelerometer_on_the_base_is_tilt_and_stands_in_sigma() {
     let world = World { azimuth_deg: 40.0, bias: 1e-3, ..World::default() };
-    let gravity = setting().latitude.gravity();
-    let reported = Setting { accelerometer_bias_sigma: 1e-3 * gravity, ..setting() };
+    let gravity = setting().site.latitude.gravity();
+    let mut reported = setting();
+    reported.site.accelerometer_bias_sigma = 1e-3 * gravity;
     let [error, sigma] = found(&reported, &world, &dwells(&world));
     let expected = 1e-3 * LATITUDE_DEG.to_radians().tan().abs().to_degrees();
     assert!((sigma / expected - 1.0).abs() < 0.01, "σ {sigma}°, not {expected}°");

@@ -113,10 +113,7 @@ impl Conclusion {
     /// Sequence of checks and computations; the first failure is the refusal.
     fn decide(&mut self, evidence: &Evidence) -> Result<Azimuth, Refusal> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
-        let latitude = setting.common.latitude;
-        if !latitude.has_north() {
-            return Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES });
-        }
+        setting.site.check_latitude()?;
         self.couple(evidence)?;
         Self::judge_followed(turn_accumulator)?;
         let mut marks = Vec::new();
@@ -132,15 +129,16 @@ impl Conclusion {
         let fit = self.fit.ok_or(Refusal::MisalignmentUnknown)?;
         self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
-        within_budget(setting, &fit)
+        setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
+        Ok(Azimuth { angle: fit.azimuth, sigma: fit.sigma() })
     }
 
     /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.
     #[inline(never)]
     fn couple(&mut self, evidence: &Evidence) -> Result<(), Refusal> {
         let Evidence { setting, turn_accumulator, .. } = evidence;
-        let mut noise = setting.common.noise;
-        if !setting.common.white_known {
+        let mut noise = *setting.site.noise.model();
+        if !setting.site.noise.is_white_known() {
             noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
         }
         let stretches = turn_accumulator.modulated().iter();
@@ -149,7 +147,7 @@ impl Conclusion {
         if self.misalignments.is_empty() {
             self.misalignments = setting.misalignments.iter().flatten().copied().collect();
         }
-        if !setting.common.white_known {
+        if !setting.site.noise.is_white_known() {
             noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
         }
         self.angle_random_walk = noise.angle_random_walk;
@@ -172,7 +170,7 @@ impl Conclusion {
 
     /// Noise model of the gyro, with the N that is known or was estimated.
     fn noise(&self, setting: &Setting) -> GyroNoise {
-        GyroNoise { angle_random_walk: self.angle_random_walk, ..setting.common.noise }
+        GyroNoise { angle_random_walk: self.angle_random_walk, ..*setting.site.noise.model() }
     }
 
     /// Finds the averages of both senses for every speed.
@@ -215,7 +213,7 @@ impl Conclusion {
     ) -> Vec<Average, STRETCHES> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
         let (stretches, misalignments) = (turn_accumulator.stretches(), &self.misalignments);
-        let horizontal = setting.common.latitude.horizontal_rate();
+        let horizontal = setting.site.latitude.horizontal_rate();
         let steady = steady_part(stretches);
         let slow = stretches.first().map_or(0.0, Stretch::speed);
         let mut averages = Vec::new();
@@ -263,7 +261,7 @@ impl Conclusion {
     /// Tests chi-square of the turns about their means, and their drift in σ.
     fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), Refusal> {
         let degrees = f64::from(self.degrees.max(1));
-        let is_known = setting.common.white_known;
+        let is_known = setting.site.noise.is_white_known();
         let is_no_chance = chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY;
         if is_known && is_no_chance && self.chi_square > GREATEST_SCATTER * degrees {
             return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
@@ -288,7 +286,7 @@ impl Conclusion {
             }
             // A variance estimated from the same turns is itself uncertain, so half of the degrees
             // of freedom count.
-            let share = if setting.common.white_known { 1.0 } else { 0.5 };
+            let share = if setting.site.noise.is_white_known() { 1.0 } else { 0.5 };
             let is_chance = degrees == 0.0
                 || chi_square_tail(share * chi_square, share * degrees) >= EXCESS_PROBABILITY;
             if is_chance { 1.0 } else { libm::sqrt(chi_square / degrees) }
@@ -300,7 +298,7 @@ impl Conclusion {
 
     /// Variance of either part of a mark's phasor, (rad/s)².
     fn variance(&self, setting: &Setting, average: &Average) -> f64 {
-        let horizontal = setting.common.latitude.horizontal_rate();
+        let horizontal = setting.site.latitude.horizontal_rate();
         let is_it =
             |pair: &&Pair| (pair.speed() - average.speed).abs() <= EQUAL_SPEEDS * average.speed;
         let pair = self.pairs.iter().find(is_it).filter(|_| !setting.sensor.is_flat);
@@ -369,8 +367,8 @@ impl Conclusion {
 
     /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
     fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Result<(), Refusal> {
-        let gravity = setting.common.latitude.gravity();
-        let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
+        let gravity = setting.site.latitude.gravity();
+        let allowed = FORCE_TOLERANCE + DIFFERENT * setting.site.accelerometer_bias_sigma;
         let (density, degrees) = force_density(&self.pairs);
         let different = different(degrees);
         for average in self.pairs.iter().flat_map(Pair::senses) {
@@ -399,8 +397,8 @@ impl Conclusion {
 impl<'a> Evidence<'a> {
     /// Evidence of these turns under this configuration.
     fn of(setting: &'a Setting, turn_accumulator: &'a TurnAccumulator) -> Self {
-        let latitude = setting.common.latitude;
-        let [along, across] = setting.common.g_sensitivity;
+        let latitude = setting.site.latitude;
+        let [along, across] = setting.site.g_sensitivity;
         let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
         let tilting = Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt);
         Self { setting, turn_accumulator, tilting }
@@ -428,11 +426,7 @@ fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
 
 /// Applies every test that a fit must pass by itself.
 fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
-    let (tilt, allowed) = (libm::asin(fit.tilt.size().min(1.0)), setting.common.allowed_tilt);
-    if tilt > allowed {
-        let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
-        return Err(Refusal::TiltTooGreat { tilt, allowed });
-    }
+    setting.site.check_tilt(fit.tilt.size())?;
     if setting.sensor.is_flat {
         judge_flat(setting, fit, degrees)
     } else {
@@ -450,8 +444,8 @@ fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal>
         return Err(Refusal::SensesDisagree { sigmas });
     }
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
-    let sigma_and_scale = libm::hypot(sigma, setting.common.amplitude_sigma());
-    let tolerance = if setting.common.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
+    let sigma_and_scale = libm::hypot(sigma, setting.site.amplitude_sigma());
+    let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
     let tolerance = DIFFERENT * sigma_and_scale + tolerance;
     // A gyro that lags shows a smaller rate; one that is late does not.
     if ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance) {
@@ -479,14 +473,4 @@ fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         return Err(Refusal::MolecularTooGreat { ratio });
     }
     Ok(())
-}
-
-/// Azimuth of the fit, unless its standard deviation is greater than accepted.
-fn within_budget(setting: &Setting, fit: &Fit) -> Result<Azimuth, Refusal> {
-    let (sigma, required) = (fit.sigma(), setting.common.required_sigma);
-    if sigma <= required {
-        return Ok(Azimuth { angle: fit.azimuth, sigma });
-    }
-    let source = fit.budget.greatest().0;
-    Err(Refusal::BudgetNotMet { sigma: sigma * DEGREES, required: required * DEGREES, source })
 }

@@ -93,7 +93,7 @@ impl Directions<'_> {
             }
         }
         let odd = if self.is_flat() { Column::Prior(self.lag_sigma()) } else { Column::Free };
-        let is_known = self.problem.setting.common.white_known;
+        let is_known = self.problem.setting.site.noise.is_white_known();
         Some(Record::of_angles(marks, odd, (variance, is_known), self.lever()))
     }
 

@@ -28,7 +28,7 @@ pub mod turn_accumulator;
 use self::misalignment::AxisMisalignment;
 use self::solution::SPEEDS;
 use super::refusal::Refusal;
-use super::stepwise::setting::Setting as Common;
+use super::site::Site;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
 /// Kind of sensor on the platform.
@@ -61,7 +61,7 @@ impl Sensor {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Site, gyro, accelerometer and requirements.
-    pub common: Common,
+    pub site: Site,
     /// Kind of sensor.
     pub sensor: Sensor,
     /// Stored axis misalignments, one for each speed; rate-modulated turns replace them.
@@ -85,9 +85,9 @@ const MISALIGNMENT_LIMIT: f64 = 2.0 * DEGREE;
 impl Setting {
     /// Configuration without stored misalignments, for an exact encoder.
     #[must_use]
-    pub const fn new(common: Common, sensor: Sensor) -> Self {
+    pub const fn new(site: Site, sensor: Sensor) -> Self {
         Self {
-            common,
+            site,
             sensor,
             misalignments: [None; SPEEDS],
             misalignment_limit: MISALIGNMENT_LIMIT,

@@ -224,7 +224,7 @@ impl Problem<'_> {
     /// Spectral density of the gyro's white noise, (rad/s)²/Hz; zero where it is not known.
     fn white(&self) -> f64 {
         let walk = self.noise.angle_random_walk;
-        if self.setting.common.white_known { walk * walk } else { 0.0 }
+        if self.setting.site.noise.is_white_known() { walk * walk } else { 0.0 }
     }
 
     /// Solves for the azimuth; `None` without a pair, or without a solution on the horizon.
@@ -251,14 +251,14 @@ impl Problem<'_> {
     /// Horizontal and vertical Earth rate that the misaligned axis can measure, rad/s.
     #[must_use]
     pub fn earth(&self) -> [f64; 2] {
-        let latitude = self.setting.common.latitude;
+        let latitude = self.setting.site.latitude;
         let along = self.misalignments.first().map_or(1.0, |found| libm::cos(found.angle()));
         [latitude.horizontal_rate() * along, latitude.vertical_rate()]
     }
 
     /// Tilt phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
-        let gravity = self.setting.common.latitude.gravity();
+        let gravity = self.setting.site.latitude.gravity();
         let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
             sum += average.force.scaled(average.seconds);
@@ -270,7 +270,7 @@ impl Problem<'_> {
 
     /// Factor of the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
     fn per_tilt(&self, ratio: f64) -> Complex {
-        let [along, across] = self.setting.common.g_sensitivity;
+        let [along, across] = self.setting.site.g_sensitivity;
         Complex::new(ratio * self.earth()[1] + along, across)
     }
 
@@ -281,7 +281,7 @@ impl Problem<'_> {
         for pair in self.pairs {
             let found = misalignment::nearest(self.misalignments, pair.speed());
             let sigma = found.map_or(UNKNOWN_LAG, AxisMisalignment::lag_sigma).min(UNKNOWN_LAG);
-            let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
+            let harmonic = ENCODER_HARMONIC + self.setting.site.encoder_sigma;
             let shown = match found {
                 Some(found) => harmonic * found.sine.abs() * pair.speed() / horizontal,
                 // Without a misalignment the response to the platform's unevenness cancels between
@@ -436,12 +436,12 @@ impl Problem<'_> {
 
     /// Error budget of the azimuth.
     fn budget(&self, fit: &Fit, turned: &Turned) -> Budget {
-        let common = &self.setting.common;
+        let site = &self.setting.site;
         let [horizontal, _] = self.earth();
         let size = fit.tilt.size();
         let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
         let across = (fit.tilt * Complex::unit(-turned.angle)).im;
-        let cosine = libm::cos(common.latitude.rad());
+        let cosine = libm::cos(site.latitude.rad());
         Budget {
             noise: libm::sqrt(turned.noise * white),
             drift: libm::sqrt(
@@ -449,16 +449,16 @@ impl Problem<'_> {
                     + self.tilting.inflation(&fit.lean, turned.angle, horizontal),
             ),
             g_sensitivity: libm::hypot(
-                common.kappa_sigma(self.noise.angle_random_walk) * size / horizontal,
+                site.kappa_sigma(self.noise.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
             encoder: libm::hypot(self.encoder_sigma(turned.angle), self.misalignment_sigma(fit)),
-            latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
+            latitude: across.abs() * site.latitude_sigma / (cosine * cosine),
             // A flat sensor's scale is estimated with the azimuth, but it still scales the rotation
             // of a tilting base.
             scale: libm::hypot(
-                self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
+                self.tilting.scale(site.scale_sigma, &fit.lean, turned.angle, horizontal),
                 turned.rounded,
             ),
             temperature: 0.0,
@@ -469,7 +469,7 @@ impl Problem<'_> {
     /// Contribution of the encoder to the azimuth, 1σ, rad: of its zero, and, where the harmonics
     /// are unknown, of an error twice per turn, (ε/2) e^{j(ψ − 2A)} relative to the Earth rate.
     fn encoder_sigma(&self, azimuth: f64) -> f64 {
-        let known = libm::hypot(self.setting.common.encoder_sigma, self.setting.encoder_zero_sigma);
+        let known = libm::hypot(self.setting.site.encoder_sigma, self.setting.encoder_zero_sigma);
         if self.setting.harmonics_known {
             return known;
         }

@@ -59,14 +59,15 @@ fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
     let is_alike = |ratio: &f64| (usual / ALIKE..usual * ALIKE).contains(ratio);
     let alike = ratios().filter(is_alike).count() as f64;
     let is_white = WHITE.contains(&median_of(quiet().map(neighbours)));
-    let is_found = setting.white_known && is_white && alike >= MOST * dwells.len() as f64;
+    let is_found =
+        setting.site.noise.is_white_known() && is_white && alike >= MOST * dwells.len() as f64;
     let has_white_means = || means(dwells).is_some_and(|means| means > LEAST_MEANS);
     (is_found && usual > LEAST && has_white_means()).then_some(usual)
 }
 
 /// Configured noise power plus the remainder of sway compensation, (rad/s)²·s.
 fn stated(setting: &Setting, statistics: &BlockStatistics) -> f64 {
-    let (walk, seconds) = (setting.noise.angle_random_walk, statistics.block_seconds);
+    let (walk, seconds) = (setting.site.noise.model().angle_random_walk, statistics.block_seconds);
     walk * walk + setting.sway.mean_variance(seconds) * seconds
 }
 

@@ -104,12 +104,12 @@ impl Conclusion {
     pub fn draw(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) {
         let lag = self.begin(setting, dwells);
         self.verdict = match lag {
-            _ if !setting.latitude.has_north() => {
-                Err(Refusal::LatitudeTooHigh { latitude: degrees(setting.latitude.rad()) })
-            }
             Some(seconds) => Err(Refusal::GyroLags { seconds }),
             None => self.decide(setting, dwells, criterion),
         };
+        if let Err(reason) = setting.site.check_latitude() {
+            self.verdict = Err(reason);
+        }
     }
 
     /// Fit, tests and choice of the azimuth, in that order; the first failure is the refusal.
@@ -145,7 +145,8 @@ impl Conclusion {
     /// Tilt from the dwells that are not excluded.
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
-        let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
+        let (gravity, bias) =
+            (setting.site.latitude.gravity(), setting.site.accelerometer_bias_sigma);
         self.tilt = level::tilt(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
     }
 
@@ -159,7 +160,7 @@ impl Conclusion {
             let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
             Self::enough(setting, dwells.len(), &kept)
                 .map_err(|why| cause::of(why, setting, dwells))?;
-            if !setting.white_known {
+            if !setting.site.noise.is_white_known() {
                 self.angle_random_walk = libm::sqrt(white_of(&kept));
             }
             let white = self.angle_random_walk * self.angle_random_walk;
@@ -274,13 +275,13 @@ impl Conclusion {
         if fit.direction.margin < SECOND_MINIMUM {
             return Err(Refusal::AzimuthUnobservable);
         }
-        within_budget(setting, fit, fit.sigma())?;
+        setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
         self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
         // Two positions do not measure the Earth rate but assume it.
         let is_seen = !fit.model.is_single_axis;
-        let tolerance = if setting.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
+        let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
         if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + tolerance {
             return Err(Refusal::EarthRateMismatch { ratio, sigma });
         }
@@ -290,10 +291,10 @@ impl Conclusion {
     /// Refuses an accelerometer that does not measure gravity: one that is dead, inverted or in
     /// other units shows a false tilt.
     fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
-        let gravity = setting.latitude.gravity();
+        let gravity = setting.site.latitude.gravity();
         let kept = self.kept(dwells).map(|(_, dwell)| dwell);
         let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
-        let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.accelerometer_bias_sigma / gravity;
+        let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.site.accelerometer_bias_sigma / gravity;
         if (ratio - 1.0).abs() > tolerance {
             return Err(Refusal::AccelerometerImplausible { ratio });
         }
@@ -302,12 +303,9 @@ impl Conclusion {
 
     /// Refuses a tilt that is too large, too uncertain, stepped, or inconsistent with the encoder.
     fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
-        let (tilt, allowed) = (libm::asin(self.tilt.magnitude().min(1.0)), setting.allowed_tilt);
-        if tilt > allowed {
-            return Err(Refusal::TiltTooGreat { tilt: degrees(tilt), allowed: degrees(allowed) });
-        }
+        setting.site.check_tilt(self.tilt.magnitude())?;
         let (sigma, required) =
-            (degrees(fit.budget.accelerometer), degrees(setting.required_sigma));
+            (degrees(fit.budget.accelerometer), degrees(setting.site.required_sigma));
         if sigma > required {
             return Err(Refusal::TiltTooUncertain { sigma, required });
         }
@@ -392,7 +390,7 @@ impl Conclusion {
             }
             paper => criterion::azimuth(&problem, fit, paper)?,
         };
-        within_budget(setting, fit, azimuth.sigma)?;
+        setting.site.check_sigma(azimuth.sigma, fit.budget.greatest().0)?;
         Ok(azimuth)
     }
 }
@@ -442,16 +440,6 @@ fn white_of(kept: &[&Dwell]) -> f64 {
         freedom += statistics.count() - 2.0;
     }
     if freedom > 0.0 { power / freedom } else { 0.0 }
-}
-
-/// Refuses a standard deviation (rad) that is zero, not a number, or greater than accepted.
-fn within_budget(setting: &Setting, fit: &Fit, sigma: f64) -> Result<(), Refusal> {
-    let (sigma, required) = (degrees(sigma), degrees(setting.required_sigma));
-    if sigma > 0.0 && sigma <= required {
-        return Ok(());
-    }
-    let (source, _) = fit.budget.greatest();
-    Err(Refusal::BudgetNotMet { sigma, required, source })
 }
 
 /// Converts radians to degrees.

@@ -60,7 +60,7 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
     let row = Row::of(problem.dwells).ok_or(Refusal::StepsUneven)?;
     let ratios = row.dwells.iter().map(|dwell| problem.level_ratio(fit, dwell));
     let series = Series::new(ratios, row.step).map_err(|_| Refusal::StepsUneven)?;
-    let rate = problem.setting.latitude.horizontal_rate();
+    let rate = problem.setting.site.latitude.horizontal_rate();
     let (first, width) = match criterion {
         Criterion::MaximumLikelihood | Criterion::OnTable => {
             searched(&series, etalon::Criterion::MaximumLikelihood)

@@ -90,10 +90,10 @@ impl ExpectedScatter {
     #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, dwells: &[Dwell]) -> Self {
-        let noise = &setting.noise;
+        let noise = setting.site.noise.model();
         let known = noise.angle_random_walk * noise.angle_random_walk;
         let estimated = || white_median(dwells);
-        let white = if setting.white_known { known } else { estimated() };
+        let white = if setting.site.noise.is_white_known() { known } else { estimated() };
         Self {
             white,
             sway: setting.sway,
@@ -199,7 +199,7 @@ impl ExpectedScatter {
 /// Sensor properties for the stop criteria: the gyro's noise, its possible drift, and the scatter
 /// of the forces.
 fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
-    let noise = &setting.noise;
+    let noise = setting.site.noise.model();
     let seconds = dwells.last().map_or(0.0, Dwell::end) - dwells.first().map_or(0.0, Dwell::start);
     let walk = noise.rate_random_walk * libm::sqrt(seconds);
     let drift = libm::hypot(walk, noise.rate_ramp * seconds);
@@ -395,7 +395,7 @@ fn is_moved(mark: &Disturbance) -> bool {
 
 /// Deviation of a dwell's mean force from that of the tilt and the biases, g.
 fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
-    let gravity = setting.latitude.gravity();
+    let gravity = setting.site.latitude.gravity();
     let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
     let bias = tilt.bias_at(dwell.middle);
     [0, 1].map(|i| force[i] / gravity - expected[i] - bias[i])

@@ -24,7 +24,7 @@ use crate::math::rotation::{
     IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
 };
 use crate::signal::rest::Criteria;
-use crate::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, wrapped};
+use crate::units::{DEGREE_PER_HOUR, wrapped};
 
 /// Least time at rest of a stop, s: the length of the stop criteria's average.
 const LEAST_REST: f64 = WINDOW as f64;
@@ -141,7 +141,7 @@ impl Conclusion {
         let Found { start_attitude, biases, .. } = self.found.as_ref()?;
         let path = path(setting, stop_detector);
         path.stops.get(stop).filter(|at| stop == 0 || at.displacement.is_some())?;
-        let walk = setting.common.noise.angle_random_walk;
+        let walk = setting.site.noise.model().angle_random_walk;
         Some(Residual::of(&path, stop, start_attitude, biases, walk))
     }
 
@@ -155,8 +155,8 @@ impl Conclusion {
 fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
     let (now, carried) = stop_detector.now();
     Path {
-        place: Place::new(setting.common.latitude),
-        gravity: setting.common.latitude.gravity(),
+        place: Place::new(setting.site.latitude),
+        gravity: setting.site.latitude.gravity(),
         start: stop_detector.start(),
         stops: stop_detector.stops(),
         blocks: &stop_detector.blocks,
@@ -167,8 +167,10 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
     }
 }
 
-/// Refuses lost rotation, missing or short stops, and drives that are too short.
+/// Refuses a latitude without north, lost rotation, missing or short stops, and drives that are too
+/// short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
+    setting.site.check_latitude()?;
     match stop_detector.loss {
         Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
         Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
@@ -211,7 +213,7 @@ fn inspect_stop(
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
-    let gravity = setting.common.latitude.gravity();
+    let gravity = setting.site.latitude.gravity();
     let ratio = -stop.force.mean()[2] / gravity;
     if ratio < UPRIGHT {
         return Err(Refusal::AccelerometerImplausible { ratio });
@@ -261,15 +263,9 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
     if (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE {
         return Err(Refusal::EarthRateMismatch { ratio, sigma });
     }
-    let required = setting.common.required_sigma;
-    let sigma = found.azimuth.sigma;
-    // A σ that is not a number does not pass either.
-    if sigma <= required {
-        return Ok(());
-    }
     let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
     let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
-    Err(Refusal::BudgetNotMet { sigma: sigma * DEGREES, required: required * DEGREES, source })
+    setting.site.check_sigma(found.azimuth.sigma, source)
 }
 
 impl Found {
@@ -401,12 +397,12 @@ fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widenin
         }));
         if sigma > 0.0 { together / sigma } else { 0.0 }
     };
-    let common = &setting.common;
+    let site = &setting.site;
     let mut budget = Budget {
         drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma()),
-        scale: part(SCALE..SCALE + 3, common.scale_sigma),
-        accelerometer: part(FORCE..FORCE + 3, common.accelerometer_bias_sigma),
-        latitude: part(LATITUDE..LATITUDE + 1, common.latitude_sigma),
+        scale: part(SCALE..SCALE + 3, site.scale_sigma),
+        accelerometer: part(FORCE..FORCE + 3, site.accelerometer_bias_sigma),
+        latitude: part(LATITUDE..LATITUDE + 1, site.latitude_sigma),
         displacement: part(PLACE..PLACE + 2, path.displacement_sigma(setting)),
         ..Budget::default()
     };

@@ -27,7 +27,7 @@ pub mod solution;
 pub mod stop;
 pub mod stop_detector;
 
-use super::stepwise::setting::Setting as Common;
+use super::site::Site;
 use crate::signal::rest::Sensors;
 use crate::units::DEGREE_PER_HOUR;
 
@@ -36,7 +36,7 @@ use crate::units::DEGREE_PER_HOUR;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Site of the first stop, the gyros' noise, the accelerometers' biases, and the requirements.
-    pub common: Common,
+    pub site: Site,
     /// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, rad/s; none where
     /// it is unknown.
     pub bias_sigma: Option<f64>,
@@ -59,9 +59,9 @@ const SPEED_SIGMA: f64 = 10.0;
 impl Setting {
     /// Configuration without knowledge of the gyros' biases, for noiseless accelerometers.
     #[must_use]
-    pub const fn new(common: Common) -> Self {
+    pub const fn new(site: Site) -> Self {
         Self {
-            common,
+            site,
             bias_sigma: None,
             force_noise: 0.0,
             displacement_sigma: DISPLACEMENT_SIGMA,
@@ -72,17 +72,17 @@ impl Setting {
     /// Prior 1σ of the gyros' biases, rad/s, bias instability included.
     #[must_use]
     pub fn bias_sigma(&self) -> f64 {
-        libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS), self.common.noise.bias_instability)
+        libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS), self.site.noise.model().bias_instability)
     }
 
     /// Sensor properties for the stop criteria.
     #[must_use]
     pub fn sensors(&self) -> Sensors {
         Sensors {
-            angle_random_walk: self.common.noise.angle_random_walk,
+            angle_random_walk: self.site.noise.model().angle_random_walk,
             bias_sigma: self.bias_sigma(),
             force_noise: self.force_noise,
-            force_bias_sigma: self.common.accelerometer_bias_sigma,
+            force_bias_sigma: self.site.accelerometer_bias_sigma,
         }
     }
 }

@@ -153,12 +153,12 @@ fn sigmas(setting: &Setting, path: &Path, first: &End, last: &End, turn: f64) ->
     let sigma = |direction: &Vector| {
         // A rotation φ of the frame moves the up vector along a direction p by φ·(up × p).
         let about = cross(&last.up(), direction);
-        let common = &setting.common;
+        let site = &setting.site;
         let bias = setting.bias_sigma() * length(&weighted(&about, &last.bias, &first.bias));
-        let scale = common.scale_sigma * length(&path.turned_about(&about));
-        let force = common.accelerometer_bias_sigma / path.gravity
+        let scale = site.scale_sigma * length(&path.turned_about(&about));
+        let force = site.accelerometer_bias_sigma / path.gravity
             * length(&weighted(direction, &last.attitude, &first.attitude));
-        let walk = common.noise.angle_random_walk;
+        let walk = site.noise.model().angle_random_walk;
         let noise = walk * walk * (last.middle - first.middle)
             + path.density() / (path.gravity * path.gravity)
                 * (1.0 / first.seconds + 1.0 / last.seconds);

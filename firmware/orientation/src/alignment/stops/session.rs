@@ -162,7 +162,7 @@ impl Session {
     #[must_use]
     #[inline]
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
-        let gravity = setting.common.latitude.gravity();
+        let gravity = setting.site.latitude.gravity();
         let period = procedure.sample_seconds;
         let stop_detector =
             StopDetector::new(procedure.rests.clone(), &setting.sensors(), gravity, period);

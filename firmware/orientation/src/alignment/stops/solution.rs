@@ -240,16 +240,16 @@ impl Solution {
     /// One run of the filter along the path.
     #[inline(never)]
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
-        let common = &setting.common;
+        let site = &setting.site;
         (self.tally, self.steady) = (Tally::default(), 0.0);
         self.filter.begin(
             &start_covariance(&self.frame),
             self.widening * setting.bias_sigma(),
-            common.scale_sigma,
-            common.accelerometer_bias_sigma,
-            common.latitude_sigma,
+            site.scale_sigma,
+            site.accelerometer_bias_sigma,
+            site.latitude_sigma,
         );
-        let is_exact = common.latitude_sigma <= 0.0;
+        let is_exact = site.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let mut run = Run {
             setting,
@@ -259,7 +259,7 @@ impl Solution {
             } else {
                 self.roughness * self.colour * path.density()
             },
-            north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
+            north: (!is_exact).then(|| Place::moved(site.latitude, LATITUDE_STEP)),
             belief,
             last: Moment { at: path.start, ..Moment::default() },
             before: [0.0; 2],
@@ -302,10 +302,10 @@ impl Run<'_> {
     /// Propagates the filter to a moment.
     fn carry(&mut self, solution: &mut Solution, to: Moment) {
         let seconds = (to.at - self.last.at).max(0.0);
-        let noise = &self.setting.common.noise;
+        let noise = self.setting.site.noise.model();
         let walk = noise.angle_random_walk.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
-        let has_scale = self.setting.common.scale_sigma > 0.0;
+        let has_scale = self.setting.site.scale_sigma > 0.0;
         let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
         solution.filter.carry(&bias, &scale, walk * walk * seconds);
         solution.filter.walk(self.bias_walk() * seconds);
@@ -319,7 +319,7 @@ impl Run<'_> {
         let whole = (self.path.now - self.path.start).max(1.0);
         let stood: f64 = self.path.stops.iter().map(Stop::seconds).sum();
         let part = (stood / self.path.stops.len() as f64).max(1.0);
-        let [_, _, b, k, r] = self.setting.common.noise.coefficients();
+        let [_, _, b, k, r] = self.setting.site.noise.model().coefficients();
         k * k
             + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / part
             + 1.5 * r * r * whole
@@ -479,7 +479,7 @@ impl Run<'_> {
             return [LEAST_SWAY; 3];
         }
         let (excess, swinging) = (self.excess(stop), stop.swinging());
-        let walk = self.setting.common.noise.angle_random_walk;
+        let walk = self.setting.site.noise.model().angle_random_walk;
         core::array::from_fn(|axis| {
             let swung = 0.25 * swinging[axis] - walk * walk;
             (SLOW_SWAY * excess[axis]).max(swung).max(0.0) + LEAST_SWAY
@@ -488,7 +488,7 @@ impl Run<'_> {
 
     /// Variance of the rotation in the seconds of a stop beyond the gyros' noise, (rad/s)².
     fn excess(&self, stop: &Stop) -> Vector {
-        let walk = self.setting.common.noise.angle_random_walk;
+        let walk = self.setting.site.noise.model().angle_random_walk;
         stop.turned.variance().map(|variance| (variance - walk * walk).max(0.0))
     }
 

@@ -173,17 +173,17 @@ fn aligned(session: &Session, truth_deg: f64) -> Aligned {
 /// The azimuth of plain least squares, °.
 fn plain_deg(session: &Session) -> Option<f64> {
     let setting = session.setting();
-    let gravity = setting.latitude.gravity();
+    let gravity = setting.site.latitude.gravity();
     let tilt = level::tilt(
         &setting.mount,
         session.dwells().iter(),
         gravity,
-        setting.accelerometer_bias_sigma,
+        setting.site.accelerometer_bias_sigma,
     );
     let mut regression = Regression::<3>::default();
     for dwell in session.dwells() {
         let axis = tilt.sensitive_axis(dwell.stage.rad());
-        let left = dwell.rate + setting.latitude.vertical_rate() * axis[2];
+        let left = dwell.rate + setting.site.latitude.vertical_rate() * axis[2];
         regression.push(&[axis[0], -axis[1], 1.0], left);
     }
     let [north, east, _] = regression.solve(&[Coefficient::Free; 3])?.coefficients;

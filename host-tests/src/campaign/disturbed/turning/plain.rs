@@ -21,7 +21,7 @@ type Pair<'a> = [&'a Stretch; 2];
 
 /// The azimuth, °; `None` where a stretch has no turns.
 pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
-    let latitude = session.setting().common.latitude;
+    let latitude = session.setting().site.latitude;
     let pairs = pairs(session.turn_accumulator().stretches())?;
     let first = *pairs.first()?;
     let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));

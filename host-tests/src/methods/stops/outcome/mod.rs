@@ -126,14 +126,14 @@ impl Replay {
     /// The names of what a solution finds, all of it together.
     fn columns(&self) -> Vec<&'static str> {
         let setting = self.session.setting();
-        let common = &setting.common;
+        let site = &setting.site;
         let parts = [
             (true, "azimuth"),
             (true, "level"),
             (setting.bias_sigma() > 0.0, "gyro biases"),
-            (common.scale_sigma > 0.0, "gyro scale factors"),
-            (common.accelerometer_bias_sigma > 0.0, "accelerometer biases"),
-            (common.latitude_sigma > 0.0, "latitude"),
+            (site.scale_sigma > 0.0, "gyro scale factors"),
+            (site.accelerometer_bias_sigma > 0.0, "accelerometer biases"),
+            (site.latitude_sigma > 0.0, "latitude"),
             (self.session.stops().len() > 1, "displacement"),
         ];
         parts.into_iter().filter_map(|(is_there, name)| is_there.then_some(name)).collect()
@@ -240,7 +240,7 @@ impl Finished for Replay {
         if let Some(found) = self.found() {
             let plain = &found.plain;
             parts.extend(figures::inclinations(plain).map(Part::from));
-            let latitude = self.session.setting().common.latitude;
+            let latitude = self.session.setting().site.latitude;
             let drive = seconds(&details.stops).map(|seconds| (plain, seconds));
             parts.push(figures::heading_error(latitude, drive).into());
         }

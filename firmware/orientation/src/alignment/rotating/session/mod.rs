@@ -203,7 +203,7 @@ impl Session {
         let temperature = self.level.temperature.unwrap_or(f32::NAN);
         let found = self.turn_accumulator.modulated().iter();
         found
-            .filter_map(|stretch| stretch.misalignment(&self.setting.common.noise))
+            .filter_map(|stretch| stretch.misalignment(self.setting.site.noise.model()))
             .map(move |it| AxisMisalignment { date: self.procedure.date, temperature, ..it })
     }
 
@@ -263,14 +263,12 @@ impl Session {
         if elapsed < self.end {
             return Command::Wait;
         }
-        let common = &self.setting.common;
+        let site = &self.setting.site;
         let [x, y, _] = self.force().unwrap_or_default();
-        let tilt = libm::asin((libm::hypot(x, y) / common.latitude.gravity()).min(1.0));
-        if tilt > common.allowed_tilt {
-            let [tilt, allowed] = [tilt, common.allowed_tilt].map(|angle| angle * DEGREES);
-            return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        match site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
+            Ok(()) => self.begin_speed(0),
+            Err(reason) => self.conclude(Some(reason)),
         }
-        self.begin_speed(0)
     }
 
     /// Begins with a speed: with rate-modulated turns first, where they are configured.

@@ -113,7 +113,7 @@ impl Hypothesis {
         match self {
             Self::Steady => [0.0; 2],
             Self::Yawing => {
-                let vertical = axis[2] / (3600.0 * problem.setting.latitude.horizontal_rate());
+                let vertical = axis[2] / (3600.0 * problem.setting.site.latitude.horizontal_rate());
                 [problem.hours_to_end(dwell) * turning + vertical, 0.0]
             }
             Self::Curved | Self::Winding => {
@@ -367,7 +367,8 @@ impl Problem<'_> {
         let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
         let mut rounds = 0;
         loop {
-            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            let regression =
+                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
             let trial = self.trial(&regression, model)?;
             let (known, turn) = match model.hypothesis {
                 Hypothesis::Stepped { .. } => (&mut bent.turn, trial.coefficient),
@@ -390,7 +391,7 @@ impl Problem<'_> {
     #[inline(never)]
     fn likeliest_step(&self, model: &Model, fit: &Fit) -> Option<f64> {
         let bent = fit.bent(Hypothesis::Steady);
-        let noise = self.setting.noise.white_part();
+        let noise = self.setting.site.noise.model().white_part();
         let regression = self.regression(&noise, Dwell::taper_factor, &bent);
         let solution = regression.solve(&model.columns())?;
         let (mut power, mut score, mut shared) = (0.0, 0.0, Row::default());

@@ -170,7 +170,7 @@ impl Problem<'_> {
 
     /// Regression for a base that stands.
     pub(super) fn steady(&self) -> Regression<COLUMNS> {
-        self.regression(&self.setting.noise, Dwell::taper_factor, &Bent::default())
+        self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &Bent::default())
     }
 
     /// Fits with a hypothesis iteratively: its columns follow the azimuth and the rate, which it
@@ -179,14 +179,16 @@ impl Problem<'_> {
     fn fit_under(&self, model: &Model, steady: &Fit) -> Option<Found> {
         let mut bent = Bent { hypothesis: model.hypothesis, ..steady.bent };
         for _ in 0..ROUNDS {
-            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            let regression =
+                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
             let trial = self.trial(&regression, model)?;
             bent.along = trial.direction.along();
             if model.hypothesis == Hypothesis::Yawing {
                 bent.rate += trial.coefficient;
             }
         }
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let regression =
+            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
         let found = self.fit_model(&regression, &self.freed(&regression, model)?, &bent)?;
         let Fit { step, protection, .. } = *steady;
         Some((Fit { step, protection, ..found.0 }, found.1))
@@ -252,15 +254,20 @@ impl Problem<'_> {
 
     /// Passes each dwell's residual to `each`, in their order, for the result of [`Self::fit`].
     pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
-        let horizontal = self.setting.latitude.horizontal_rate();
+        let horizontal = self.setting.site.latitude.horizontal_rate();
         let bent = fit.bent(fit.model.hypothesis);
-        self.whiten(&self.setting.noise, Dwell::taper_factor, &bent, &mut |row, white| {
-            let rate = remainder(row, &fit.coefficients) * horizontal;
-            let normalised = remainder(white, &fit.coefficients);
-            let leverage = leverage(white, covariance);
-            let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
-            each(Residual { rate, normalised, studentised });
-        });
+        self.whiten(
+            self.setting.site.noise.model(),
+            Dwell::taper_factor,
+            &bent,
+            &mut |row, white| {
+                let rate = remainder(row, &fit.coefficients) * horizontal;
+                let normalised = remainder(white, &fit.coefficients);
+                let leverage = leverage(white, covariance);
+                let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
+                each(Residual { rate, normalised, studentised });
+            },
+        );
     }
 
     /// Row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and the
@@ -270,11 +277,11 @@ impl Problem<'_> {
         let tilt = self.tilt.at(dwell.middle);
         let axis = (mount.axis)(&tilt, dwell);
         let force = (mount.force)(&tilt, dwell);
-        let latitude = self.setting.latitude;
+        let latitude = self.setting.site.latitude;
         let first = self.dwells[0];
         let [forward, right] = tilt.turning(tilt.rate.value);
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
-            - dot(self.setting.g_sensitivity, force)
+            - dot(self.setting.site.g_sensitivity, force)
             - (axis[0] * forward + axis[1] * right);
         let yaw = bent.rate * self.hours_to_end(dwell) - bent.turn_before(dwell);
         let left = left - bent.rate / 3600.0 * axis[2];
@@ -299,7 +306,7 @@ impl Problem<'_> {
     /// and those of the vertical one through the tilt.
     fn noise_components(&self, solution: &Solution<COLUMNS>) -> Components {
         let [a, b, ..] = solution.coefficients;
-        let slope = libm::tan(self.setting.latitude.rad());
+        let slope = libm::tan(self.setting.site.latitude.rad());
         let vertical = [slope * self.tilt.real, slope * self.tilt.imaginary];
         let covariance = block(&solution.covariance);
         Components { value: [a, b], covariance, vertical, half: self.setting.half }
@@ -320,7 +327,7 @@ impl Problem<'_> {
 
     /// Variance of a dwell's mean without drift, in units of `Ω_h`².
     pub(super) fn white_variance(&self, dwell: &Dwell) -> f64 {
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let sway = self.setting.sway.angle_mean_variance(dwell.seconds);
         (self.own_variance(dwell) * dwell.taper + sway) / (rate * rate)
     }
@@ -340,7 +347,7 @@ impl Problem<'_> {
     fn own_variance(&self, dwell: &Dwell) -> f64 {
         let seconds = dwell.seconds;
         let noise = || {
-            let rounding = self.setting.noise.rounding_variance(seconds);
+            let rounding = self.setting.site.noise.model().rounding_variance(seconds);
             self.white / seconds + rounding + self.setting.sway.residual_mean_variance(seconds)
         };
         dwell.stated_variance.get().unwrap_or_else(noise)
@@ -348,7 +355,7 @@ impl Problem<'_> {
 
     /// Whitening filter for this noise, in units of `Ω_h`.
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
-        let scale = 1.0 / self.setting.latitude.horizontal_rate();
+        let scale = 1.0 / self.setting.site.latitude.horizontal_rate();
         let shortest = self.dwells.iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min);
         let relative = GyroNoise {
             bias_instability: noise.bias_instability * scale,
@@ -371,7 +378,7 @@ impl Problem<'_> {
         bent: &Bent,
         each: &mut dyn FnMut(&Row, &Row),
     ) {
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let mut whitener = self.whitener(noise);
         for dwell in self.dwells {
             let own = self.own_variance(dwell) * taper(dwell);

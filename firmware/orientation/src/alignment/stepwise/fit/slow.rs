@@ -21,7 +21,8 @@ impl Problem<'_> {
         }
         let azimuth = |rate: f64| {
             let bent = Bent { rate, ..fit.bent(fit.model.hypothesis) };
-            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            let regression =
+                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
             Some(self.trial(&regression, &fit.model)?.direction.azimuth)
         };
         let lever = (azimuth(SLOW)? - azimuth(-SLOW)?) / (2.0 * SLOW) * 3600.0;
@@ -35,7 +36,8 @@ impl Problem<'_> {
     fn rate_sigma(&self, fit: &Fit) -> Option<f64> {
         let model = Model { hypothesis: Hypothesis::Yawing, ..fit.model };
         let bent = fit.bent(Hypothesis::Yawing);
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let regression =
+            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
         let solution = regression.solve(&model.columns())?;
         let variance = solution.covariance[COLUMNS - 2][COLUMNS - 2];
         Some(libm::sqrt(variance) * fit.excess / 3600.0)
@@ -49,10 +51,10 @@ impl Problem<'_> {
             return None;
         }
         let (gravity, bias) =
-            (self.setting.latitude.gravity(), self.setting.accelerometer_bias_sigma);
+            (self.setting.site.latitude.gravity(), self.setting.site.accelerometer_bias_sigma);
         let shown = level::tilting(&self.setting.mount, self.dwells.iter().copied(), gravity, bias);
         let Some(shown) = shown.filter(|_| self.tilt.measured) else {
-            let lever = 1.0 / self.setting.latitude.horizontal_rate();
+            let lever = 1.0 / self.setting.site.latitude.horizontal_rate();
             return Some(SlowMotion { sigma: f64::INFINITY, lever });
         };
         let [[a, _], [_, b]] = shown.covariance;

@@ -25,7 +25,7 @@ impl Problem<'_> {
     /// with the Earth rate free.
     #[inline(never)]
     pub(super) fn limits(&self, model: &Model, bent: &Bent) -> Option<[f64; 2]> {
-        let regression = self.regression(&self.setting.noise, |_| 1.0, bent);
+        let regression = self.regression(self.setting.site.noise.model(), |_| 1.0, bent);
         let components = self.noise_components(&regression.solve(&model.columns())?);
         let sigma = |direction: Direction| libm::sqrt(direction.variance);
         Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
@@ -45,7 +45,11 @@ impl Problem<'_> {
         let of = |regression: &Regression<COLUMNS>, model: &Model| {
             regression.solve(&model.columns()).map(|solution| through(&block(&solution.covariance)))
         };
-        let white = self.regression(&self.setting.noise.white_part(), Dwell::taper_factor, bent);
+        let white = self.regression(
+            &self.setting.site.noise.model().white_part(),
+            Dwell::taper_factor,
+            bent,
+        );
         let cold = Model { temperature: Column::Absent, ..*model };
         let all = of(coloured, model)?;
         let drifting = of(coloured, &cold)?.min(all);
@@ -62,14 +66,14 @@ impl Problem<'_> {
             latitude: libm::sqrt(amplitude * (1.0 - share)),
             g_sensitivity: libm::sqrt(kappa),
             accelerometer: libm::sqrt(tilt),
-            encoder: self.setting.encoder_sigma,
+            encoder: self.setting.site.encoder_sigma,
         })
     }
 
     /// Part of the amplitude's variance that is due to the scale factor.
     fn scale_share(&self) -> f64 {
-        let share = self.setting.scale_sigma / self.setting.amplitude_sigma().max(1e-30);
-        if self.setting.amplitude_sigma() > 0.0 { share * share } else { 1.0 }
+        let share = self.setting.site.scale_sigma / self.setting.site.amplitude_sigma().max(1e-30);
+        if self.setting.site.amplitude_sigma() > 0.0 { share * share } else { 1.0 }
     }
 
     /// Covariances of the components from κ, from the tilt, and from a tilting base: all rotate
@@ -79,14 +83,16 @@ impl Problem<'_> {
     /// two-frame mount it acts through `k_s` alone; the other parts of κ act on the vertical force
     /// ([`crate::alignment::stepwise::mount`]).
     pub(super) fn component_errors(&self) -> [Covariance; 3] {
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let (force, across) = if self.setting.mount.is_on_base {
             (1.0, 0.0)
         } else {
-            (self.tilt.magnitude(), self.setting.g_sensitivity[1])
+            (self.tilt.magnitude(), self.setting.site.g_sensitivity[1])
         };
-        let kappa = self.setting.kappa_sigma(libm::sqrt(self.white)) * force / rate;
-        let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
+        let kappa = self.setting.site.kappa_sigma(libm::sqrt(self.white)) * force / rate;
+        let real = (self.setting.site.latitude.vertical_rate()
+            + self.setting.site.g_sensitivity[0])
+            / rate;
         let imaginary = across / rate;
         let rows = [[real, -imaginary], [imaginary, real]];
         let tilt = rows.map(|row| {
@@ -101,7 +107,7 @@ impl Problem<'_> {
     /// by the imaginary part of F′ and about right by its real part, which is opposite to the sign
     /// of the east column.
     pub(super) fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let scale = 1.0 / (rate * rate * self.tilt.upward() * self.tilt.upward());
         [[d * scale, -b * scale], [-b * scale, a * scale]]
     }
@@ -109,7 +115,7 @@ impl Problem<'_> {
     /// Standard deviation, 1σ, of the Earth-rate ratio of `free`: that of the components, of scale
     /// and of latitude.
     pub(super) fn ratio_sigma(&self, free: &Direction) -> f64 {
-        let amplitude = self.setting.amplitude_sigma();
+        let amplitude = self.setting.site.amplitude_sigma();
         libm::sqrt(free.amplitude_variance + amplitude * amplitude)
     }
 }
@@ -154,7 +160,7 @@ impl Problem<'_> {
     /// rad.
     fn tilting_protection(&self, fit: &Fit) -> f64 {
         let TiltRate { value: [real, imaginary], covariance } = self.tilt.unproven;
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let scale = 1.0 / (rate * self.tilt.upward());
         let apart = dot(fit.direction.gain, [imaginary * scale, -real * scale]).abs();
         let variance = quadratic(&self.tilting(&covariance), fit.direction.gain).max(0.0);
@@ -168,7 +174,8 @@ impl Problem<'_> {
             return None;
         }
         let bent = fit.bent(fit.model.hypothesis);
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let regression =
+            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
         let free = Model { amplitude: Amplitude::Free, ..fit.model };
         self.trial(&regression, &free)
     }
@@ -187,9 +194,9 @@ impl Problem<'_> {
             (model, Bent { along: fit.bent.along, ..Bent::default() })
         };
         let span = self.dwells.last()?.end() - self.dwells.first()?.start();
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let own = self.white_variance(self.dwells.first()?) * rate * rate / span;
-        let stated = self.setting.noise;
+        let stated = *self.setting.site.noise.model();
         let (mut power, mut factor) = (own, 4.0);
         let mut found = None;
         for _ in 0..DRIFT_ROUNDS {

@@ -35,9 +35,9 @@ impl Session {
     /// Concludes where the accuracy is reached or out of reach; `None` to continue.
     #[inline(never)]
     fn weigh(&mut self, seconds: f64, left: f64) -> Option<Command> {
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let noise = self.noise();
-        let required = self.setting.required_sigma;
+        let required = self.setting.site.required_sigma;
         let sigma =
             rate_sigma(&noise, self.shortest(), self.dwells().iter().map(Visit::from))? / rate;
         if sigma <= required {
@@ -71,7 +71,7 @@ impl Session {
     fn noise(&self) -> GyroNoise {
         let norm = ExpectedScatter::of(&self.setting, self.dwells());
         let white = norm.white.max(norm.observed_white(self.dwells()));
-        GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
+        GyroNoise { angle_random_walk: libm::sqrt(white), ..*self.setting.site.noise.model() }
     }
 
     /// Rate uncertainty after all positions that still fit into the time left, 1σ, rad/s.

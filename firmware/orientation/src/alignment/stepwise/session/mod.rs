@@ -243,10 +243,9 @@ impl Session {
         else {
             return Command::Wait;
         };
-        let tilt = libm::asin((libm::hypot(x, y) / self.setting.latitude.gravity()).min(1.0));
-        if tilt > self.setting.allowed_tilt {
-            let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
-            return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        let site = &self.setting.site;
+        if let Err(reason) = site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
+            return self.conclude(Some(reason));
         }
         if self.must_survey() {
             self.store.begin_survey();

@@ -11,7 +11,7 @@ use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::CAPACITY;
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
-use crate::noise::model::GyroNoise;
+use crate::noise::model::{GyroNoise, StatedNoise};
 use crate::planner::order::Order;
 use crate::planner::{Conditions, FEWEST, PlanError, Rotation, for_sigma, for_time};
 use crate::signal::Sample;
@@ -131,8 +131,8 @@ impl Session {
         let fit = self.store.fit(self.procedure.sample_seconds);
         let Some(fit) = fit else { return Ok(Command::Wait) };
         let found = fit.map_err(Refusal::NoiseUnknown)?;
-        self.setting.noise = known(&found, &self.setting.noise);
-        self.setting.white_known = true;
+        let noise = known(&found, self.setting.site.noise.model());
+        self.setting.site.noise = StatedNoise::Whole(noise);
         self.surveyed = Some(found);
         // The time allowed counts from the end of the survey.
         self.begun = Some(now);
@@ -155,16 +155,16 @@ impl Session {
     fn plan(&mut self) -> Result<(), Refusal> {
         let Some(survey) = self.procedure.survey else { return Ok(()) };
         let conditions = Conditions {
-            noise: self.setting.noise,
+            noise: *self.setting.site.noise.model(),
             rotation: survey.rotation,
             shortest: survey.shortest,
             fewest: FEWEST,
             orders: survey.orders,
         };
-        let rate = self.setting.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate();
         let (plan, allowed) = match self.procedure.stop {
             StopRule::Accuracy { seconds } => {
-                let wanted = RESERVE * self.setting.required_sigma * rate;
+                let wanted = RESERVE * self.setting.site.required_sigma * rate;
                 (for_sigma(&conditions, wanted, seconds), seconds)
             }
             _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
@@ -184,8 +184,8 @@ impl Session {
         let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
         match error {
             PlanError::OutOfReach(rate) => Refusal::OutOfReach {
-                sigma: degrees(rate / self.setting.latitude.horizontal_rate()),
-                required: degrees(self.setting.required_sigma),
+                sigma: degrees(rate / self.setting.site.latitude.horizontal_rate()),
+                required: degrees(self.setting.site.required_sigma),
                 seconds,
             },
             PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },

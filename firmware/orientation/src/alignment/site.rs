@@ -1,0 +1,128 @@
+//! Site of an alignment, gyro and requirements, and the checks that every method makes of them.
+
+use super::budget::Source;
+use super::refusal::Refusal;
+use crate::earth::Latitude;
+use crate::noise::model::{GyroNoise, StatedNoise};
+use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as DEGREES, TURN};
+
+/// Site, instrument and requirements. A standard deviation of zero means exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Site {
+    /// Geodetic latitude.
+    pub latitude: Latitude,
+    /// Standard deviation of the latitude, 1σ, rad.
+    pub latitude_sigma: f64,
+    /// Noise of the gyro; where its white part is unknown, the data show it.
+    pub noise: StatedNoise,
+    /// Standard deviation of the gyro's scale factor, 1σ, relative.
+    pub scale_sigma: f64,
+    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; on a
+    /// two-frame mount along the inner frame's axis instead.
+    pub g_sensitivity: [f64; 2],
+    /// Standard deviation of either part of κ, 1σ, rad/s per g; on a two-frame mount also of the
+    /// third part, which is taken as zero.
+    pub g_sensitivity_sigma: f64,
+    /// Whether κ and its σ are known; otherwise κ is taken as zero and its σ follows from the
+    /// gyro's noise ([`Self::kappa_sigma`]).
+    pub g_sensitivity_known: bool,
+    /// Standard deviation of each accelerometer bias, 1σ, m/s².
+    pub accelerometer_bias_sigma: f64,
+    /// Standard deviation of the azimuth due to the encoder's zero and harmonics, 1σ, rad; on a
+    /// two-frame mount including the residual of its calibration ([`super::stepwise::mount::azimuth_sigma`]).
+    pub encoder_sigma: f64,
+    /// Greatest standard deviation of the azimuth that is accepted, rad.
+    pub required_sigma: f64,
+    /// Greatest tilt of the platform that is accepted, rad.
+    pub allowed_tilt: f64,
+}
+
+/// Relative uncertainty of the Earth rate below which it counts as exact: it has no effect on the
+/// azimuth.
+const EXACT_AMPLITUDE: f64 = 1e-9;
+
+/// Standard deviation of an unknown g-sensitivity, rad/s per g for each (rad/√s)² of N²: 50 000
+/// °/h/g for each (°/√h)², which is 0.05 °/h/g for a fibre-optic gyro of 0.001 °/√h and 20 °/h/g
+/// for a micromachined one of 0.02 °/√h.
+const KAPPA_OF_NOISE: f64 =
+    50_000.0 * DEGREE_PER_HOUR / (DEGREE_PER_SQRT_HOUR * DEGREE_PER_SQRT_HOUR);
+/// Upper limit of that standard deviation, rad/s per g: 100 °/h/g, half of the greatest value in
+/// data sheets of micromachined gyros.
+const GREATEST_KAPPA: f64 = 100.0 * DEGREE_PER_HOUR;
+
+impl Site {
+    /// Ideal instrument at a latitude: nothing is uncertain, N is estimated, an azimuth of 10° (1σ)
+    /// and a tilt of 15° are accepted.
+    #[must_use]
+    pub fn at(latitude: Latitude) -> Self {
+        Self {
+            latitude,
+            latitude_sigma: 0.0,
+            noise: StatedNoise::ExceptWhite(GyroNoise::default()),
+            scale_sigma: 0.0,
+            g_sensitivity: [0.0; 2],
+            g_sensitivity_sigma: 0.0,
+            g_sensitivity_known: true,
+            accelerometer_bias_sigma: 0.0,
+            encoder_sigma: 0.0,
+            required_sigma: 10.0 / 360.0 * TURN,
+            allowed_tilt: 15.0 / 360.0 * TURN,
+        }
+    }
+
+    /// Standard deviation of either part of κ, 1σ, rad/s per g, for a gyro with this N, rad/√s.
+    #[must_use]
+    pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
+        if self.g_sensitivity_known {
+            self.g_sensitivity_sigma
+        } else {
+            (KAPPA_OF_NOISE * angle_random_walk * angle_random_walk).min(GREATEST_KAPPA)
+        }
+    }
+
+    /// Relative 1σ of the horizontal Earth rate as the gyro measures it: scale factor and latitude.
+    #[must_use]
+    pub fn amplitude_sigma(&self) -> f64 {
+        let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma;
+        let sigma = libm::hypot(self.scale_sigma, latitude);
+        if sigma < EXACT_AMPLITUDE { 0.0 } else { sigma }
+    }
+
+    /// Refuses a latitude at which too little of the Earth rate is horizontal.
+    ///
+    /// # Errors
+    /// [`Refusal::LatitudeTooHigh`].
+    pub fn check_latitude(&self) -> Result<(), Refusal> {
+        if self.latitude.has_north() {
+            return Ok(());
+        }
+        Err(Refusal::LatitudeTooHigh { latitude: self.latitude.rad() * DEGREES })
+    }
+
+    /// Refuses a tilt of the platform, given by its sine: the horizontal force over gravity.
+    ///
+    /// # Errors
+    /// [`Refusal::TiltTooGreat`].
+    pub fn check_tilt(&self, sine: f64) -> Result<(), Refusal> {
+        let (tilt, allowed) = (libm::asin(sine.min(1.0)), self.allowed_tilt);
+        if tilt > allowed {
+            let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
+            return Err(Refusal::TiltTooGreat { tilt, allowed });
+        }
+        Ok(())
+    }
+
+    /// Refuses a standard deviation of the azimuth, rad, that is zero, not a number, or greater
+    /// than required; the source is that of its greatest part.
+    ///
+    /// # Errors
+    /// [`Refusal::BudgetNotMet`].
+    pub fn check_sigma(&self, sigma: f64, source: Source) -> Result<(), Refusal> {
+        if sigma > 0.0 && sigma <= self.required_sigma {
+            return Ok(());
+        }
+        let [sigma, required] = [sigma, self.required_sigma].map(|angle| angle * DEGREES);
+        Err(Refusal::BudgetNotMet { sigma, required, source })
+    }
+}
