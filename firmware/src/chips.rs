@@ -18,8 +18,8 @@ use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
-    Accelerometer, Actuator, BaseReading, BaseSensors, Code, Encoder, ForceReading, Gyro, InStep,
-    Motion, RateReading, Request, Startable, clipped,
+    Accelerometer, Actuator, BaseReading, BaseSensors, Code, Command, Encoder, ForceReading, Gyro,
+    InStep, Motion, RateReading, Startable, clipped,
 };
 
 /// A gyro with an analogue rate output, behind its analogue-to-digital converter.
@@ -195,16 +195,16 @@ impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
-    async fn execute(&mut self, request: Request) -> Result<Option<Motion>, Fault> {
+    async fn execute(&mut self, request: Command) -> Result<Option<Motion>, Fault> {
         match request {
-            Request::GoTo(angle) => self.0.go_to(microsteps(angle)).await?,
-            Request::Seek(rate) => self.0.run(Velocity(microsteps(rate))).await?,
-            Request::SetAngle(angle) => self.0.set_position(microsteps(angle)).await?,
-            Request::Release => {
+            Command::GoTo(angle) => self.0.go_to(microsteps(angle)).await?,
+            Command::Seek(rate) => self.0.run(Velocity(microsteps(rate))).await?,
+            Command::SetAngle(angle) => self.0.set_position(microsteps(angle)).await?,
+            Command::Release => {
                 self.0.stop().await?;
                 self.0.clear_stall().await?;
             }
-            Request::Look => {
+            Command::Look => {
                 let status = self.0.status().await?;
                 return Ok(Some(Motion {
                     angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,

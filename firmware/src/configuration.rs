@@ -1,12 +1,10 @@
-//! The configuration of the instrument: mechanics, sampling rates, and the policy after the
-//! alignment.
+//! The configuration of the instrument: mechanics and sampling rates.
 //!
 //! All values are read once at the start. Angles are in rad, rates in rad/s, unless a line says
 //! otherwise.
 
 use embassy_time::Duration;
 use orientation::alignment::stepwise::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
-use orientation::attitude as keep;
 use orientation::units::DEGREE;
 
 use crate::calibration::Harmonics;
@@ -210,47 +208,4 @@ impl VehicleConfiguration {
         let forces = ratio(sample_rate / f64::from(force_divider), MEAN_FORCE_RATE);
         Self { sample_rate, force_divider, forces }
     }
-}
-
-/// The policy that renews a kept azimuth, whose σ grows with time (heading hold).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Realignment {
-    /// The azimuth is not renewed by the instrument; only a handover from outside renews it.
-    Never,
-    /// On a stage or a two-frame mount: a new alignment begins at every stop that lasts.
-    AtStops {
-        /// Time at rest after which the alignment begins.
-        after: Duration,
-    },
-    /// In a vehicle: a new session begins at the stop that ended the one before.
-    BetweenStops,
-}
-
-/// Whether an alignment runs although the azimuth is known already, by a handover or from before a
-/// restart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Alignment {
-    /// An alignment runs, and its azimuth is compared with the known one.
-    Always,
-    /// The alignment is skipped.
-    UnlessKnown,
-}
-
-/// Operation of the attitude keeper after, and beside, the alignment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KeepConfiguration {
-    /// Duration of keeping after the first session; zero for none, [`Duration::MAX`] for ever.
-    pub hold: Duration,
-    /// The policy at stops.
-    pub realignment: Realignment,
-    /// Whether the session itself distinguishes rest from motion, as inertial-frame alignment from
-    /// stop to stop does. Any other session is aborted if the vehicle sets off before it concludes.
-    pub knows_stops: bool,
-    /// The policy where the azimuth is known already.
-    pub alignment: Alignment,
-    /// Stated errors of the gyro about the down axis that is read beside the two others.
-    pub beside: keep::Gyro,
-    /// Stated errors of the precise gyro, which measures about the down axis once a mount has
-    /// turned it to the vertical.
-    pub precise: keep::Gyro,
 }

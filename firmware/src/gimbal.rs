@@ -7,7 +7,8 @@
 use core::convert::Infallible;
 
 use embassy_futures::join::join;
-use embassy_futures::select::{Either, select};
+use embassy_futures::select::select;
+use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::Station;
 use orientation::device::{Device, Trouble};
@@ -71,6 +72,15 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
         Ok(())
     }
 
+    /// Points the sensitive axis to a heading, rad; one that is not a multiple of 90° lies beyond
+    /// the travel of this mount.
+    async fn point(&mut self, heading: f64) -> Result<(), Refusal> {
+        let station = Station::at_heading(heading).map_err(|_| {
+            self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
+        })?;
+        self.go_to(station).await
+    }
+
     /// Turns both frames to an orientation at the same time.
     async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
         let angles = self.configuration.angles(station);
@@ -90,17 +100,11 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
         self.go_to(Station::Forward).await?;
         self.shared.homed.signal(());
         loop {
-            let Either::First(heading) =
-                select(self.shared.wanted.wait(), self.shared.keep.store.wait()).await
-            else {
-                self.store().await?;
-                continue;
-            };
-            // A heading that is not a multiple of 90° lies beyond the travel of this mount.
-            let station = Station::at_heading(heading).map_err(|_| {
-                self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
-            })?;
-            self.go_to(station).await?;
+            match self.shared.wanted.wait().await {
+                Request::Point(heading) => self.point(heading).await?,
+                Request::Vertical => self.store().await?,
+                _ => {}
+            }
         }
     }
 
@@ -108,7 +112,7 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     /// azimuth; a keeper has requested that already.
     async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
         let is_found = matches!(self.shared.status.get(), Status::Concluded { .. });
-        if is_found && !self.shared.keep.is_wanted.get() {
+        if is_found && !self.shared.is_kept.get() {
             // If this fails, the log has the reason; the azimuth is valid nevertheless.
             select(self.store(), meanwhile).await;
         }

@@ -26,6 +26,7 @@ pub mod ports;
 pub mod chips;
 
 pub mod acquire;
+pub mod align;
 pub mod budget;
 pub mod calibration;
 pub mod guarded;
@@ -37,7 +38,6 @@ pub mod gimbal;
 pub mod keep;
 pub mod mechanism;
 pub mod motor;
-pub mod runner;
 pub mod stage;
 pub mod sway;
 pub mod turntable;

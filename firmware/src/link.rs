@@ -14,6 +14,11 @@ use embassy_futures::select::select;
 use embassy_time::{Duration, Timer, with_timeout};
 use embedded_io_async::Write;
 use heapless::String;
+use orientation::alignment::{Progress, Solution, rotating, stepwise, stops};
+use orientation::attitude::State;
+use orientation::navigation::navigator::Attitude;
+use orientation::roll::{self, Condition};
+use orientation::units::{DEGREES_PER_RADIAN as DEGREES, wrapped};
 use orientation::words;
 
 use crate::event::Event;
@@ -29,7 +34,7 @@ const LONGEST: Duration = Duration::from_millis(500);
 const LENGTH: usize = 160;
 
 /// Status of the instrument. Angles are in thousandths of a degree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Status {
     /// Devices are being started.
     Starting,
@@ -59,31 +64,84 @@ pub enum Status {
     },
     /// The alignment has concluded without an azimuth; the log has the reason.
     Refused,
+    /// The attitude is kept.
+    Keeping {
+        /// Azimuth of body x, 0–359 999, and its 1σ, rounded up; [`None`] if the azimuth is unknown.
+        azimuth: Option<[u32; 2]>,
+        /// Pitch and roll.
+        level: [i32; 2],
+        /// The navigator's state; [`None`] if no inertial samples arrive.
+        state: Option<State>,
+        /// Whether the azimuth is that saved before the loss of supply.
+        is_recalled: bool,
+    },
     /// The roll angle of a spinning body is tracked.
     Rolling {
         /// Roll angle and its 1σ, rounded up; [`None`] if the roll is unknown.
         roll: Option<[u32; 2]>,
-        /// The state of the tracking, in a word.
-        state: &'static str,
+        /// The source of the roll.
+        condition: Condition,
     },
     /// The tracking of the roll has ended; the log has the reason.
     RollEnded,
 }
 
 impl Status {
-    /// The status of a found azimuth with its 1σ, both in degrees.
+    /// The status after a progress of the alignment.
     #[must_use]
-    pub fn concluded(azimuth: f64, sigma: f64) -> Self {
-        // The azimuth is rounded to nearest and wrapped at a full turn; the 1σ is rounded up.
-        let azimuth = libm::round(azimuth * 1e3) as u32 % 360_000;
-        Self::Concluded { azimuth, sigma: libm::ceil(sigma * 1e3) as u32 }
+    pub fn after(self, progress: &Progress) -> Self {
+        let measuring =
+            |done: usize, of: usize| Self::Measuring { done: done as u16, of: of as u16 };
+        match *progress {
+            // An attitude that is kept says more.
+            _ if matches!(self, Self::Keeping { .. }) => self,
+            Progress::Stepwise(
+                stepwise::Progress::Begun { positions, .. }
+                | stepwise::Progress::Planned { positions, .. },
+            ) => measuring(0, positions),
+            Progress::Stepwise(stepwise::Progress::Surveying(_)) => Self::Surveying,
+            Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => measuring(done, of),
+            Progress::Rotating(rotating::Progress::Begun { turns, .. }) => {
+                measuring(0, turns as usize)
+            }
+            Progress::Rotating(rotating::Progress::Turned(done, of)) => {
+                measuring(done as usize, of as usize)
+            }
+            Progress::Stops(stops::Progress::Standing) => Self::Levelling(1),
+            Progress::Stops(stops::Progress::Stopped(stop, _)) => Self::Levelling(stop as u16),
+            Progress::Stops(stops::Progress::MayDrive(stop, ..)) => Self::MayDrive(stop as u16),
+            Progress::Stops(stops::Progress::Driving) => Self::Driving,
+            Progress::Roll(roll::Progress::Tracked(angle, sigma, condition)) => {
+                let angle = thousandths(wrapped(angle));
+                Self::Rolling { roll: sigma.map(|sigma| [angle, bound(sigma)]), condition }
+            }
+            Progress::Roll(roll::Progress::Ended(_)) => Self::RollEnded,
+            Progress::Concluded(Solution { azimuth, .. }) => {
+                Self::Concluded { azimuth: thousandths(azimuth.angle), sigma: bound(azimuth.sigma) }
+            }
+            Progress::Refused(_) => Self::Refused,
+            _ => self,
+        }
     }
+}
 
-    /// Whether no other status follows.
-    #[must_use]
-    pub fn is_last(&self) -> bool {
-        matches!(self, Self::Concluded { .. } | Self::Refused | Self::RollEnded)
+impl From<&Attitude> for Status {
+    fn from(attitude: &Attitude) -> Self {
+        let Attitude { azimuth, pitch, roll, state, is_recalled } = *attitude;
+        let azimuth = azimuth.map(|it| [thousandths(it.angle), bound(it.sigma)]);
+        let level = [pitch, roll].map(|angle| libm::round(angle * DEGREES * 1e3) as i32);
+        Self::Keeping { azimuth, level, state, is_recalled }
     }
+}
+
+/// An angle, rad, in thousandths of a degree, rounded to nearest and wrapped at a full turn.
+fn thousandths(angle: f64) -> u32 {
+    (libm::round(angle * DEGREES * 1e3) as i32).rem_euclid(360_000).unsigned_abs()
+}
+
+/// A 1σ, rad, in thousandths of a degree, rounded up: never less than the estimated one.
+fn bound(sigma: f64) -> u32 {
+    libm::ceil(sigma * DEGREES * 1e3) as u32
 }
 
 words! { Status:
@@ -97,24 +155,76 @@ words! { Status:
     Self::Concluded { azimuth, sigma } =>
         "azimuth {} sigma {}", Thousandths(azimuth), Thousandths(sigma);
     Self::Refused => "no azimuth";
-    Self::Rolling { roll: Some([roll, sigma]), state } =>
-        "roll {} sigma {} {}", Thousandths(roll), Thousandths(sigma), state;
-    Self::Rolling { roll: None, state } => "roll unknown, {}", state;
+    Self::Keeping { azimuth, level: [pitch, roll], state, is_recalled } =>
+        "{}pitch {} roll {} {}{}",
+        Kept(azimuth), Signed(pitch), Signed(roll), Motion(state), Recalled(is_recalled);
+    Self::Rolling { roll: Some([roll, sigma]), condition } =>
+        "roll {} sigma {} {}", Thousandths(roll), Thousandths(sigma), word(condition);
+    Self::Rolling { roll: None, condition } => "roll unknown, {}", word(condition);
     Self::RollEnded => "no roll";
 }
 
 /// A number of thousandths, written as a decimal fraction.
-pub(crate) struct Thousandths(pub(crate) u32);
+struct Thousandths(u32);
 
 words! { Thousandths:
     Self(number) => "{}.{:03}", number / 1000, number % 1000;
 }
 
-/// Sends a status line every second until the conclusion of the session has been sent. Runs for
-/// ever beside a keeper.
+/// A number of thousandths with its sign, which is written apart: −0.310 has a whole part of zero.
+struct Signed(i32);
+
+words! { Signed:
+    Self(number) if number < 0 => "-{}", Thousandths(number.unsigned_abs());
+    Self(number) => "{}", Thousandths(number.unsigned_abs());
+}
+
+/// A kept azimuth with its 1σ.
+struct Kept(Option<[u32; 2]>);
+
+words! { Kept:
+    Self(Some([azimuth, sigma])) =>
+        "azimuth {} sigma {} ", Thousandths(azimuth), Thousandths(sigma);
+    Self(None) => "no azimuth, ";
+}
+
+/// The state of a kept attitude.
+struct Motion(Option<State>);
+
+words! { Motion:
+    Self(Some(state)) => "{}", state;
+    Self(None) => "no motion measured";
+}
+
+/// Whether an azimuth is that from before a restart.
+struct Recalled(bool);
+
+words! { Recalled:
+    Self(true) => ", recalled";
+    Self(false) => "";
+}
+
+/// The source of a roll, in a word.
+fn word(condition: Condition) -> &'static str {
+    match condition {
+        Condition::Searching => "searching",
+        Condition::Locked => "locked",
+        Condition::Holding => "holding",
+        Condition::NotSpinning => "not spinning",
+        Condition::ForceLost => "force lost",
+        Condition::RotationLost => "rotation lost",
+        Condition::AccelerometerStuck(_) => "accelerometer stuck",
+        Condition::GyroStuck => "gyro stuck",
+        Condition::Mirrored => "forces mirrored",
+        Condition::Elliptic => "forces elliptic",
+        Condition::Contradicted => "forces contradict",
+    }
+}
+
+/// Sends a status line every second until nothing more will happen and that has been sent.
 pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
     loop {
-        let is_last = shared.status.get().is_last() && !shared.keep.is_wanted.get();
+        let is_last = shared.is_over();
         send(link, shared).await;
         if is_last {
             return;
@@ -128,11 +238,9 @@ pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
 pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
+    let status = if shared.homed.signaled() { shared.status.get() } else { Status::Homing };
     // The capacity holds the longest line; a longer one would be cut.
-    let _ = match shared.keep.attitude.get() {
-        Some(kept) => write!(line, "{kept}, faults {faults}\r\n"),
-        None => write!(line, "{}, faults {faults}\r\n", shared.status.get()),
-    };
+    let _ = write!(line, "{status}, faults {faults}\r\n");
     if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {
         if shared.health.get().unsent == 0 {
             shared.report(Event::LinkSilent);

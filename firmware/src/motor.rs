@@ -8,7 +8,7 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::ports::{Actuator, Motion, Request};
+use crate::ports::{Actuator, Command, Motion};
 use crate::shared::{LatestAngle, Shared};
 
 /// Period at which the motor's status is read.
@@ -81,7 +81,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
     ///
     /// # Errors
     /// [`Break::Lost`] if the driver had to be started again, [`Break::Refused`] if it is given up.
-    pub(crate) async fn ask(&mut self, request: Request) -> Result<(), Break> {
+    pub(crate) async fn ask(&mut self, request: Command) -> Result<(), Break> {
         let restarts = self.actuator.restarts();
         loop {
             let begun = Instant::now();
@@ -104,7 +104,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
     /// # Errors
     /// [`Break::Stalled`] if the motor has stalled, and the errors of [`Self::ask`].
     pub(crate) async fn look(&mut self) -> Result<(), Break> {
-        self.ask(Request::Look).await?;
+        self.ask(Command::Look).await?;
         if self.motion.is_stalled { Err(Break::Stalled) } else { Ok(()) }
     }
 

@@ -6,10 +6,8 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::alignment::rotating::session as rotating;
-use orientation::alignment::stepwise::session::Session;
-use orientation::alignment::stops::session as stops;
-use orientation::attitude::{Handover, Report};
+use orientation::alignment::Azimuth;
+use orientation::attitude::Report;
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -158,7 +156,7 @@ pub struct Motion {
 
 /// A request to the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
+pub enum Command {
     /// Move to an angle by the motor's step count, rad, not wrapped.
     GoTo(f64),
     /// Turn at a rate, rad/s, clockwise positive, until another request or an end switch; permitted
@@ -176,7 +174,7 @@ pub enum Request {
 pub trait Actuator: Startable {
     /// Executes a request, and returns the motor's status if the request was for it. Returns at
     /// once; a movement goes on.
-    async fn execute(&mut self, request: Request) -> Result<Option<Motion>, Fault>;
+    async fn execute(&mut self, request: Command) -> Result<Option<Motion>, Fault>;
 }
 
 /// Non-volatile storage of items, each in a slot of its own: calibrations, and the heading of a
@@ -211,27 +209,29 @@ impl Store for () {
     }
 }
 
-/// Aiding from outside, read once a second: quantities that the keeper cannot measure, from an
-/// operator, another vehicle's instrument or an odometer.
+/// Aiding from outside: quantities that the instrument cannot measure, from an operator, another
+/// vehicle's instrument, an odometer or a satellite receiver; [`None`] where they are unknown.
 pub trait Aiding {
     /// A new azimuth of body x at this moment with its 1σ; [`None`] if there is none since the last
-    /// call.
-    fn azimuth(&mut self) -> Option<Handover>;
+    /// call. Asked once a second.
+    fn azimuth(&self) -> Option<Azimuth> {
+        None
+    }
 
-    /// Velocity over ground north and east, m/s; [`None`] if it is unknown.
-    fn velocity(&mut self) -> Option<[f64; 2]>;
+    /// Velocity over ground north and east, m/s. Asked once a second.
+    fn velocity(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// Displacement of the vehicle, north and east, m, from a point that stays the same. Asked at
+    /// every stop until it is known.
+    fn displacement(&self) -> Option<[f64; 2]> {
+        None
+    }
 }
 
 /// No aiding from outside.
-impl Aiding for () {
-    fn azimuth(&mut self) -> Option<Handover> {
-        None
-    }
-
-    fn velocity(&mut self) -> Option<[f64; 2]> {
-        None
-    }
-}
+impl Aiding for () {}
 
 /// A recorder of raw samples. A slow recorder delays the session; samples queue meanwhile.
 pub trait Recorder<S = Sample> {
@@ -247,33 +247,10 @@ impl<S> Recorder<S> for NoRecorder {
     async fn record(&mut self, _: &S) {}
 }
 
-/// Position aiding of a vehicle: a satellite receiver, an odometer, a map.
-pub trait PositionAiding {
-    /// Displacement of the vehicle from its first stop, north and east, m; [`None`] if it is
-    /// unknown. At every stop the session asks again until it is known.
-    fn displacement(&mut self) -> Option<[f64; 2]>;
-}
-
-/// No position aiding.
-impl PositionAiding for () {
-    fn displacement(&mut self) -> Option<[f64; 2]> {
-        None
-    }
-}
-
 /// The observer of the instrument: a log, or a test.
 pub trait Observer {
     /// An event at a time of the instrument's clock.
     fn event(&self, at: Instant, event: &Event);
-
-    /// The multi-position session has completed one more dwell.
-    fn progress(&self, _: &Session) {}
-
-    /// The session of continuous rotation has completed one more turn.
-    fn turned(&self, _: &rotating::Session) {}
-
-    /// The session in a vehicle has begun or ended a stop.
-    fn stopped(&self, _: &stops::Session) {}
 
     /// The keeper's report, once a second.
     fn kept(&self, _: &Report) {}

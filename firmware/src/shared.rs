@@ -1,35 +1,38 @@
-//! Communication between the parts of the instrument: one bounded queue of samples, signals and
-//! cells.
+//! Communication between the parts of the instrument: bounded queues of samples, signals and cells.
 
 use core::cell::Cell;
+use core::future::pending;
 
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant, Timer};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::{Azimuth, Progress, Request};
 use orientation::device::{Device, Trouble};
+use orientation::navigation::Order;
+use orientation::roll;
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
-use orientation::units::Angle;
+use orientation::units::{self, Angle};
 
 use crate::event::Event;
 use crate::health::Health;
-use crate::keep::KeeperChannels;
+use crate::keep::{Motion, RETRY};
 use crate::link::Status;
 use crate::ports::Observer;
 use crate::retry_budget::Symptom;
 
-/// Capacity of the queue of samples: 8 ms at 2 kHz.
+/// Capacity of the queues: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
 
-/// The queue of samples from acquisition to the session.
+/// The queue of samples from acquisition to the aligner.
 pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
 
 /// All channels of an instrument whose samples are of the type `S`. Only acquisition and the
-/// session depend on that type.
+/// aligner depend on that type.
 pub struct Channels<'a, S = Sample> {
-    /// The samples from acquisition to the session.
+    /// The samples from acquisition to the aligner.
     pub samples: Queue<S>,
     /// All other signals and cells.
     pub shared: Shared<'a>,
@@ -45,26 +48,52 @@ impl<'a, S> Channels<'a, S> {
 /// The latest corrected angle of an axis' encoder and the time of its reading.
 pub type LatestAngle = Cell<(Angle, Instant)>;
 
+/// How far the alignments are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Alignments {
+    /// The first alignment runs.
+    First,
+    /// The latest alignment is over, and no other has begun.
+    Idle,
+    /// A later alignment runs.
+    Again,
+}
+
 /// Signals and cells between the parts. All parts run in one executor, so no lock is needed.
 pub struct Shared<'a> {
-    /// From the session to the drive: the requested angle, rad, or on a turntable the requested
-    /// rate, rad/s. A new request replaces the one before.
-    pub wanted: Signal<NoopRawMutex, f64>,
-    /// From acquisition to the drive: the sensors give data.
+    /// From the aligner and the navigator to the mechanism: the request to obey. A new request
+    /// replaces the one before.
+    pub wanted: Signal<NoopRawMutex, Request>,
+    /// From any part to the aligner: what it is to do with its alignment.
+    pub orders: Signal<NoopRawMutex, Order>,
+    /// From acquisition to the mechanism: the sensors give data.
     pub sensing: Signal<NoopRawMutex, ()>,
-    /// From the drive to the session: the angles are valid. Without a stage they are valid from the
-    /// begin.
+    /// From the mechanism to the aligner: the angles are valid. Without a mechanism they are valid
+    /// from the begin.
     pub homed: Signal<NoopRawMutex, ()>,
-    /// From any part to the session: the session cannot continue.
-    pub failure: Signal<NoopRawMutex, Refusal>,
-    /// From the session to the link: the status is final.
+    /// From acquisition to the navigator: the inertial samples, in the order of time.
+    pub motions: Channel<NoopRawMutex, Motion, QUEUE>,
+    /// From the aligner to the navigator: an azimuth, and the time of the sample to which it
+    /// belongs.
+    pub found: Signal<NoopRawMutex, (units::Instant, Azimuth)>,
+    /// From the aligner to the navigator: all samples of the queue have been taken.
+    pub caught_up: Signal<NoopRawMutex, ()>,
+    /// Whether there are samples that the aligner has not taken yet.
+    pub is_behind: Cell<bool>,
+    /// From the aligner to the link: an alignment is over.
     pub concluded: Signal<NoopRawMutex, ()>,
+    /// How far the alignments are.
+    alignments: Cell<Alignments>,
+    /// Whether a navigator keeps the attitude.
+    pub is_kept: Cell<bool>,
+    /// Whether the body is at rest, by the navigator's detection.
+    pub is_at_rest: Cell<bool>,
+    /// Sampling period.
+    pub period: Cell<Duration>,
     /// The latest angle of the stage's encoder.
     pub angle: LatestAngle,
     /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
     pub sway: Cell<SwayNoise>,
-    /// The channels between acquisition, session and attitude keeper.
-    pub keep: KeeperChannels,
     /// Counters of faults.
     pub health: Cell<Health>,
     /// The status that the link reports.
@@ -78,23 +107,94 @@ impl<'a> Shared<'a> {
     pub fn new(observer: &'a dyn Observer) -> Self {
         Self {
             wanted: Signal::new(),
+            orders: Signal::new(),
             sensing: Signal::new(),
             homed: Signal::new(),
-            failure: Signal::new(),
+            motions: Channel::new(),
+            found: Signal::new(),
+            caught_up: Signal::new(),
+            is_behind: Cell::new(false),
             concluded: Signal::new(),
+            alignments: Cell::new(Alignments::First),
+            is_kept: Cell::new(false),
+            is_at_rest: Cell::new(false),
+            period: Cell::new(Duration::MAX),
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
-            keep: KeeperChannels::new(),
             health: Cell::default(),
             status: Cell::new(Status::Starting),
             observer,
         }
     }
 
-    /// Ends the session with a reason. The first reason is kept.
+    /// Gives the aligner an order, unless it has one that it has not obeyed yet.
+    pub fn order(&self, order: Order) {
+        if !self.orders.signaled() {
+            self.orders.signal(order);
+        }
+    }
+
+    /// Ends the alignment with a reason.
     pub fn fail(&self, reason: Refusal) {
-        if !self.failure.signaled() {
-            self.failure.signal(reason);
+        self.order(Order::Fail(reason));
+    }
+
+    /// Notes that the aligner obeys an order.
+    pub(crate) fn obey(&self, order: &Order) {
+        if *order == Order::Restart && self.is_idle() {
+            self.alignments.set(Alignments::Again);
+        }
+    }
+
+    /// Ends an alignment: hands an azimuth over to the navigator, and wakes the link.
+    pub(crate) fn conclude(&self, found: Option<(units::Instant, Azimuth)>) {
+        self.alignments.set(Alignments::Idle);
+        if let Some(found) = found {
+            self.found.signal(found);
+        }
+        self.concluded.signal(());
+    }
+
+    /// Whether the latest alignment is over, and no other has begun.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.alignments.get() == Alignments::Idle
+    }
+
+    /// Whether the first alignment is over, and its azimuth is kept. From then on, a device that is
+    /// given up does not end the operation; it is tried again after a pause.
+    #[must_use]
+    pub fn is_holding(&self) -> bool {
+        self.is_kept.get() && self.alignments.get() != Alignments::First
+    }
+
+    /// Whether nothing more will happen.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.is_idle() && !self.is_kept.get()
+    }
+
+    /// Signals the navigator that the aligner has taken all samples of the queue.
+    pub(crate) fn catch_up(&self) {
+        self.is_behind.set(false);
+        self.caught_up.signal(());
+    }
+
+    /// Waits before sensors that were given up are tried again: 10 s while a navigator runs,
+    /// otherwise for ever.
+    pub(crate) async fn rest(&self) {
+        if self.is_kept.get() {
+            Timer::after(RETRY).await;
+        } else {
+            pending::<()>().await;
+        }
+    }
+
+    /// Queues an increment for the navigator, if one runs. If the queue is full, the increment is
+    /// discarded and counted; the navigator sees the gap in the time stamps.
+    pub(crate) fn move_on(&self, motion: Motion) {
+        if self.is_kept.get() && self.motions.try_send(motion).is_err() {
+            self.count(|health| health.unkept = health.unkept.saturating_add(1));
         }
     }
 
@@ -103,6 +203,14 @@ impl<'a> Shared<'a> {
     #[inline(never)]
     pub fn report(&self, event: Event) {
         self.observer.event(Instant::now(), &event);
+    }
+
+    /// Reports an alignment's progress, and updates the status that the link sends.
+    pub fn progress(&self, progress: Progress) {
+        self.status.set(self.status.get().after(&progress));
+        if !matches!(progress, Progress::Roll(roll::Progress::Tracked(..))) {
+            self.report(Event::Alignment(progress));
+        }
     }
 
     /// Changes the counters of faults.
@@ -124,7 +232,7 @@ impl<'a> Shared<'a> {
         self.report(Event::Restarting(device, symptom));
     }
 
-    /// Reports that a device is given up, and returns the refusal that ends the session.
+    /// Reports that a device is given up, and returns the refusal that ends the alignment.
     pub fn give_up(&self, device: Device, trouble: Trouble) -> Refusal {
         self.report(Event::GivenUp(device, trouble));
         Refusal::Device { device, trouble }

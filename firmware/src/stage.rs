@@ -9,6 +9,7 @@
 use core::convert::Infallible;
 
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
@@ -17,7 +18,7 @@ use crate::configuration::StageConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
 use crate::motor::{Axis, Break, Motor, STALL_REST};
-use crate::ports::{Actuator, Motion, Request};
+use crate::ports::{Actuator, Command, Motion};
 use crate::shared::{LatestAngle, Shared};
 
 /// Number of repetitions of the search for the index after a stall.
@@ -83,11 +84,11 @@ impl<'a, M: Actuator> Stage<'a, M> {
     /// Approaches the index from above, so that backlash always has the same sign, and takes over
     /// the encoder's angle there.
     async fn find_index(&mut self) -> Result<(), Break> {
-        self.motor.ask(Request::Release).await?;
-        self.motor.ask(Request::Look).await?;
+        self.motor.ask(Command::Release).await?;
+        self.motor.ask(Command::Look).await?;
         if self.motor.motion.at_index {
             self.seek(1.0, |motion| !motion.at_index).await?;
-            self.motor.ask(Request::Release).await?;
+            self.motor.ask(Command::Release).await?;
         }
         self.seek(-1.0, |motion| motion.is_standing).await?;
         if !self.motor.motion.at_index {
@@ -98,7 +99,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
 
     /// Turns up (`way` = 1) or down (−1) at the search rate until the condition holds.
     async fn seek(&mut self, way: f64, is_done: fn(&Motion) -> bool) -> Result<(), Break> {
-        self.motor.ask(Request::Seek(way * self.configuration.seek_rate)).await?;
+        self.motor.ask(Command::Seek(way * self.configuration.seek_rate)).await?;
         self.motor.follow(Trouble::NoIndex, self.configuration.longest, is_done).await
     }
 
@@ -109,7 +110,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
         let index = self.configuration.index;
         let shown = self.motor.shown_near(index).await?;
         self.motor.check(shown - index, self.configuration.index_tolerance)?;
-        self.motor.ask(Request::SetAngle(shown)).await?;
+        self.motor.ask(Command::SetAngle(shown)).await?;
         self.motor.report(|axis| Event::Homed(axis, shown * DEGREES));
         Ok(())
     }
@@ -159,7 +160,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
         let has_arrived = |motion: &Motion| motion.has_reached && motion.is_standing;
         let before = self.motor.shown();
-        self.motor.ask(Request::GoTo(aim)).await?;
+        self.motor.ask(Command::GoTo(aim)).await?;
         self.motor.follow(Trouble::Restless, self.configuration.longest, has_arrived).await?;
         Timer::after(self.configuration.settle).await;
         let shown = self.motor.shown_near(self.motor.motion.angle).await?;
@@ -198,8 +199,9 @@ impl<M: Actuator> Mechanism for Stage<'_, M> {
         self.turn_to(self.configuration.home).await?;
         shared.homed.signal(());
         loop {
-            let target = shared.wanted.wait().await;
-            self.turn_to(target).await?;
+            if let Request::Point(target) = shared.wanted.wait().await {
+                self.turn_to(target).await?;
+            }
         }
     }
 }

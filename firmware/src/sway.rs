@@ -188,7 +188,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
         let is_subtracted = matches!(self.sway.decision(), Decision::Swaying(..));
         match outcome {
-            Err(reason) if is_subtracted && !shared.keep.is_kept.get() => return Err(reason),
+            Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
             Err(_) => self.lose(shared),
             Ok(()) => {}
         }
@@ -206,7 +206,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
     fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
-        if self.is_lost && shared.keep.is_kept.get() && self.lost.elapsed() >= RETRY {
+        if self.is_lost && shared.is_holding() && self.lost.elapsed() >= RETRY {
             self.renew();
         }
         self.is_lost

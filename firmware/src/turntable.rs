@@ -12,6 +12,7 @@ use core::convert::Infallible;
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
+use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
 use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
@@ -20,7 +21,7 @@ use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
 use crate::motor::{Axis, Break, Motor, POLL, STALL_REST};
-use crate::ports::{Actuator, Request};
+use crate::ports::{Actuator, Command};
 use crate::shared::Shared;
 
 /// Number of stalls in a session after which the platform may turn on.
@@ -85,7 +86,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
             return Ok(());
         }
         self.motor.report(|axis| Event::Revolving(axis, 0.0));
-        self.motor.ask(Request::Seek(0.0)).await?;
+        self.motor.ask(Command::Seek(0.0)).await?;
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
     }
 
@@ -111,10 +112,11 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         self.align().await?;
         let shared = self.motor.shared;
         shared.homed.signal(());
-        self.motor.ask(Request::Seek(self.rate)).await?;
+        self.motor.ask(Command::Seek(self.rate)).await?;
         loop {
             match select(shared.wanted.wait(), Timer::at(self.looked + POLL)).await {
-                Either::First(rate) => self.turn_at(rate).await?,
+                Either::First(Request::Turn(rate)) => self.turn_at(rate).await?,
+                Either::First(_) => {}
                 Either::Second(()) => self.watch().await?,
             }
         }
@@ -123,14 +125,14 @@ impl<'a, M: Actuator> Turntable<'a, M> {
     /// Sets the motor's step count by the encoder while the platform stands. Waits between two
     /// readings, so that an obstacle can come free; an encoder that changes meanwhile slips.
     async fn align(&mut self) -> Result<(), Break> {
-        self.motor.ask(Request::Release).await?;
+        self.motor.ask(Command::Release).await?;
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await?;
         Timer::after(self.configuration.settle).await;
         let before = self.motor.shown_near(0.0).await?;
         Timer::after(STALL_REST).await;
         let shown = self.motor.shown_near(before).await?;
         self.motor.check(shown - before, self.configuration.agreement)?;
-        self.motor.ask(Request::SetAngle(shown)).await?;
+        self.motor.ask(Command::SetAngle(shown)).await?;
         self.motor.look().await?;
         self.looked = Instant::now();
         self.comparison = Comparison::at(Angle::from_rad(shown));
@@ -147,7 +149,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
             self.motor.report(|axis| Event::Revolving(axis, rate * DEGREES));
         }
         self.rate = rate;
-        self.motor.ask(Request::Seek(rate)).await
+        self.motor.ask(Command::Seek(rate)).await
     }
 
     /// Reads the motor's status and compares the motor with the encoder. A platform that has not

@@ -3,7 +3,8 @@
 use hal_mock::disturbance::{self, Disturbance};
 use hal_mock::instruments::{Instruments, InstrumentsConfiguration, Sample as Reading};
 use hal_mock::stage::{StageState, minimum_jerk};
-use orientation::alignment::stepwise::session::{Command, Event, Phase, Session};
+use orientation::alignment::stepwise::session::{Phase, Session};
+use orientation::alignment::{Input, Method, Request};
 use orientation::planner::Rotation;
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
@@ -63,17 +64,17 @@ pub fn run(
         let now = index as f64 / configuration.rate_hz;
         instruments.turn(stage.state(now));
         let reading = instruments.sample(now, &disturbance::total(disturbances, now));
-        match session.handle(Event::Sample(&stage_path(&reading))) {
-            Command::Rotate(to) => {
+        match session.feed(Input::Sample(&stage_path(&reading))) {
+            Request::Point(to) => {
                 sent.push(to);
                 stage.send(to, now);
             }
-            Command::Finished => break,
-            Command::Wait => {}
+            Request::Done => break,
+            _ => {}
         }
     }
     if session.phase() != Phase::Done {
-        session.handle(Event::End);
+        session.feed(Input::End);
     }
     sent
 }

@@ -40,6 +40,9 @@ pub enum Device {
     Base,
 }
 
+/// The gyros about the axes forward, right, down of a body.
+pub const TRIAD: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
+
 crate::words! { Device:
     Self::Gyro => "gyro";
     Self::ForwardGyro => "forward gyro";

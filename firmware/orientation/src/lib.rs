@@ -87,3 +87,5 @@ pub mod alignment;
 
 pub mod attitude;
 pub mod roll;
+
+pub mod navigation;

@@ -32,11 +32,11 @@ impl<const PLACES: usize> defmt::Format for Rounded<PLACES> {
 /// the calling crate has a feature `defmt`.
 #[macro_export]
 macro_rules! words {
-    ($type:ty: $($pattern:pat => $sentence:tt $(, $argument:expr)*;)+) => {
+    ($type:ty: $($pattern:pat $(if $guard:expr)? => $sentence:tt $(, $argument:expr)*;)+) => {
         impl core::fmt::Display for $type {
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
                 match *self {
-                    $($pattern => write!(f, $sentence $(, $argument)*),)+
+                    $($pattern $(if $guard)? => write!(f, $sentence $(, $argument)*),)+
                 }
             }
         }
@@ -45,7 +45,7 @@ macro_rules! words {
         impl defmt::Format for $type {
             fn format(&self, f: defmt::Formatter) {
                 match *self {
-                    $($pattern => defmt::write!(f, $sentence $(, $argument)*),)+
+                    $($pattern $(if $guard)? => defmt::write!(f, $sentence $(, $argument)*),)+
                 }
             }
         }

@@ -7,7 +7,9 @@ use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
 use super::increments;
-use crate::keep::{Motion, VerticalGyro};
+use orientation::navigation::progress::VerticalGyro;
+
+use crate::keep::Motion;
 use crate::ports::BaseReading;
 use crate::shared::Shared;
 

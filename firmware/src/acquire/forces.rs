@@ -20,7 +20,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Whether an azimuth is held and the body moves. Rotation during the restart of a device would be
 /// lost, so the gyros alone carry the attitude, and the accelerometer is repaired at the next rest.
 fn is_on_the_way(shared: &Shared<'_>) -> bool {
-    shared.keep.is_kept.get() && !shared.keep.is_at_rest.get()
+    shared.is_holding() && !shared.is_at_rest.get()
 }
 
 /// State of the accelerometer's readings.
@@ -78,7 +78,7 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
             Ok(Err(symptom)) => self.accelerometer.mend(symptom, shared).await.map(|()| None),
             Err(reason) => Err(reason),
         };
-        if outcome.is_err() && shared.keep.is_kept.get() {
+        if outcome.is_err() && shared.is_holding() {
             self.renew();
             self.absent = Some(Instant::now() + RETRY);
             return Ok(None);

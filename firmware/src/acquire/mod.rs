@@ -24,7 +24,6 @@ mod triad;
 
 pub use spin::SpinAcquisition;
 pub use stage::{on_mount, on_stage};
-pub(crate) use triad::TRIAD;
 pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;
@@ -83,7 +82,7 @@ pub async fn acquire<'a>(source: &mut impl Source<'a>) {
         let Err(reason) = sample_for_ever(source).await;
         let shared = source.outlet().shared();
         shared.fail(reason);
-        shared.keep.rest().await;
+        shared.rest().await;
         source.renew();
     }
 }

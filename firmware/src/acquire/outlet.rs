@@ -1,6 +1,6 @@
 //! Outlet of samples: queued for the session, counted, and reported where they are missing or late.
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 
 use crate::event::Event;
 use crate::shared::{Channels, Shared};
@@ -19,6 +19,7 @@ pub struct Outlet<'a, S> {
 impl<'a, S> Outlet<'a, S> {
     /// Outlet of samples with this period, µs.
     pub(super) fn new(period: u32, channels: &'a Channels<'a, S>) -> Self {
+        channels.shared.period.set(Duration::from_micros(period.into()));
         Self { channels, timeline: Timeline::new(period), overflowed: 0 }
     }
 
@@ -30,7 +31,7 @@ impl<'a, S> Outlet<'a, S> {
     /// Queues a sample for the session, and reports an overflow of the queue.
     pub(super) fn hand_over(&mut self, sample: S) {
         self.channels.shared.count(|health| health.samples = health.samples.saturating_add(1));
-        self.channels.shared.keep.is_behind.set(true);
+        self.channels.shared.is_behind.set(true);
         if self.channels.samples.try_send(sample).is_err() {
             self.overflowed += 1;
             self.channels.shared.count(|health| health.overflowed += 1);

@@ -163,18 +163,18 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
     /// the others may be tried again.
     async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
         let shared = self.outlet.shared();
-        if !shared.keep.is_kept.get() {
+        if !shared.is_holding() {
             return Err(reason);
         }
         self.coarse.lose_precise();
         let until = Instant::now() + RETRY;
         let mut ticker = Ticker::every(self.rates.period);
-        while Instant::now() < until || !shared.keep.is_at_rest.get() {
+        while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
             self.compensation.follow(shared).await?;
             self.pass_on();
             shared.count(|health| health.samples = health.samples.saturating_add(1));
-            if !shared.keep.is_idle.get() {
+            if !shared.is_idle() {
                 shared.fail(reason);
             }
         }

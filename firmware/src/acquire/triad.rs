@@ -6,7 +6,7 @@
 
 use embassy_time::{Duration, Instant};
 use orientation::alignment::refusal::Refusal;
-use orientation::device::Device;
+use orientation::device::TRIAD;
 use orientation::signal::InertialSample;
 use orientation::units::SpecificForce;
 
@@ -18,9 +18,6 @@ use crate::configuration::{VehicleConfiguration, period};
 use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
 use crate::shared::Channels;
-
-/// Names in the log of the gyros about the axes forward, right, down.
-pub(crate) const TRIAD: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
 /// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A> {

@@ -2,22 +2,22 @@
 
 use core::cell::Cell;
 
-use embassy_time::{Duration, Instant};
+use embassy_time::Instant;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::vehicle::{Leg, SensorFault, Stop};
+use orientation::alignment::Azimuth;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::attitude as keep;
-use orientation::attitude::Handover;
 use orientation::earth::Latitude;
+use orientation::navigation::{Policy, Realignment};
 use orientation::units::{DEGREE, DEGREE_PER_HOUR};
 
 use super::base;
 use super::scenario::{self, Scenario};
-use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::ports::Aiding;
 
 /// How long a vehicle stands before it is aligned anew on a stage, s.
-const STAND_SECONDS: u64 = 30;
+const STAND_SECONDS: f64 = 30.0;
 /// What a movement of a stage takes at most on a usual schedule, s; the way back from the last position is one.
 const MOVEMENT_SECONDS: f64 = 1.7;
 /// From power-on to the first position, and from the last one until the vehicle sets off, s.
@@ -54,18 +54,17 @@ impl Hold {
 
     /// What the instrument is given, with what realigns it where it may, and the gyros about down: beside
     /// the two others, and the precise one.
-    pub(super) fn configuration(
+    pub(super) fn policy(
         &self,
         realignment: Realignment,
         beside: keep::Gyro,
         precise: keep::Gyro,
-    ) -> KeepConfiguration {
-        let is_handed_over = self.handover.is_some();
-        KeepConfiguration {
-            hold: Duration::from_micros((self.seconds * 1e6) as u64),
+    ) -> Policy {
+        Policy {
+            hold_seconds: self.seconds,
             knows_stops: realignment == Realignment::BetweenStops,
             realignment: if self.realigns { realignment } else { Realignment::Never },
-            alignment: if is_handed_over { Alignment::UnlessKnown } else { Alignment::Always },
+            skips_known: self.handover.is_some(),
             beside,
             precise,
         }
@@ -85,17 +84,13 @@ pub struct HandoverAiding {
 }
 
 impl Aiding for HandoverAiding {
-    fn azimuth(&mut self) -> Option<Handover> {
+    fn azimuth(&self) -> Option<Azimuth> {
         let ([azimuth, sigma], at_s) = self.pending.get()?;
         if Instant::now().as_micros() as f64 * 1e-6 < at_s {
             return None;
         }
         self.pending.set(None);
-        Some(Handover { azimuth: azimuth * DEGREE, sigma: sigma * DEGREE })
-    }
-
-    fn velocity(&mut self) -> Option<[f64; 2]> {
-        None
+        Some(Azimuth { angle: azimuth * DEGREE, sigma: sigma * DEGREE })
     }
 }
 
@@ -121,11 +116,9 @@ impl Scenario {
 
     /// How the instrument on a base goes on; none where the latitude is none.
     #[must_use]
-    pub fn keeping(&self) -> Option<KeepConfiguration> {
+    pub fn policy(&self) -> Option<Policy> {
         let [_, _, down] = self.keeper()?.gyros;
-        let after = Duration::from_secs(STAND_SECONDS);
-        let realignment = Realignment::AtStops { after };
-        Some(self.hold.configuration(realignment, down, self.precise()))
+        Some(self.hold.policy(Realignment::AtStops(STAND_SECONDS), down, self.precise()))
     }
 
     /// Where the base goes after the alignment on a stage.

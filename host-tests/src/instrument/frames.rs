@@ -7,7 +7,6 @@ use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::ports::{Frames, NoBase, Observer, Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::runner::Stepwise;
 use firmware::simulated::Wires;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
@@ -107,16 +106,15 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     let Ports { mut actuator, mut link, mut recorder } =
         wires.frame_ports(harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
-    let keep = scenario.base.keeping().ok_or_else(outside)?;
-    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.aiding(), store);
+    let policy = scenario.base.policy().ok_or_else(outside)?;
     let ended = harness::run(
         acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
         navigate(
             &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
-            &mut Stepwise::new(&mut session),
-            &mut link,
-            &mut recorder,
-            &mut keeping,
+            &mut session,
+            Some(Keeping { keeper: &mut keeper, policy, store }),
+            &scenario.base.hold.aiding(),
+            (&mut link, &mut recorder),
             &channels,
         ),
     )?;

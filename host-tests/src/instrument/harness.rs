@@ -9,9 +9,7 @@ use firmware::health::Health;
 use firmware::ports::{BaseReading, Observer};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
-use orientation::alignment::rotating::session as rotating;
-use orientation::alignment::stepwise::session::Session;
-use orientation::alignment::stops::session as stops;
+use orientation::alignment::Progress;
 use orientation::attitude::Report;
 
 use super::kept::Kept;
@@ -32,25 +30,15 @@ impl<W: Observer> Observer for Log<'_, W> {
         self.watch.event(at, event);
     }
 
-    fn progress(&self, session: &Session) {
-        self.watch.progress(session);
-    }
-
-    fn turned(&self, session: &rotating::Session) {
-        self.watch.turned(session);
-    }
-
-    fn stopped(&self, session: &stops::Session) {
-        self.watch.stopped(session);
-    }
-
     fn kept(&self, report: &Report) {
         self.reports.borrow_mut().push(*report);
         self.watch.kept(report);
     }
 
     fn sensed(&self, at: Instant, reading: &BaseReading) {
-        let is_end = |event: &Event| matches!(event, Event::Concluded(..) | Event::Refused(_));
+        let is_end = |event: &Event| {
+            matches!(event, Event::Alignment(Progress::Concluded(_) | Progress::Refused(_)))
+        };
         if !self.events.borrow().iter().any(|(_, event)| is_end(event)) {
             self.base.borrow_mut().push((at, *reading));
         }

@@ -4,15 +4,18 @@ use std::cell::RefCell;
 
 use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::event::Event;
+use firmware::keep::Keeping;
+use firmware::mechanism::Strapdown;
 use firmware::ports::Observer;
-use firmware::run::run_spin;
+use firmware::run::navigate;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::SpinScenario;
-use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
+use orientation::alignment::Progress;
 use orientation::alignment::refusal::Refusal;
+use orientation::roll::{self, Flight};
 use orientation::signal::SpinSample;
 use orientation::units::Instant;
 
@@ -40,7 +43,7 @@ impl Run<Flight> {
     #[must_use]
     pub fn ended(&self) -> Option<Refusal> {
         self.events.iter().find_map(|(_, event)| match event {
-            Event::RollEnded(reason) => Some(*reason),
+            Event::Alignment(Progress::Roll(roll::Progress::Ended(reason))) => Some(*reason),
             _ => None,
         })
     }
@@ -64,7 +67,14 @@ pub fn follow_spin<W: Observer>(
     let mut sensors = Wires(&board, &injection).spinning();
     let ended = harness::run(
         acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
-        run_spin(&mut harness.wire(), &mut &mut kept, &mut flight, &channels),
+        navigate(
+            &mut Strapdown::new(&channels.shared),
+            &mut flight,
+            None::<Keeping<'_, ()>>,
+            &(),
+            (&mut harness.wire(), &mut &mut kept),
+            &channels,
+        ),
     )?;
     drop(channels);
     let run = harness.clear(&ended, &board, flight);

@@ -7,7 +7,6 @@ use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
 use firmware::ports::{NoBase, Observer, Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::runner::Stepwise;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
@@ -111,16 +110,15 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     let Ports { mut actuator, mut link, mut recorder } =
         wires.ports(Motor::default(), harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
-    let keep = scenario.keeping().ok_or_else(outside)?;
-    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.aiding(), store);
+    let policy = scenario.policy().ok_or_else(outside)?;
     let ended = harness::run(
         acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
         navigate(
             &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
-            &mut Stepwise::new(&mut session),
-            &mut link,
-            &mut recorder,
-            &mut keeping,
+            &mut session,
+            Some(Keeping { keeper: &mut keeper, policy, store }),
+            &scenario.hold.aiding(),
+            (&mut link, &mut recorder),
             &channels,
         ),
     )?;

@@ -6,7 +6,6 @@ use firmware::acquire::{acquire, on_stage};
 use firmware::configuration::TurntableConfiguration;
 use firmware::ports::{Observer, Ports, Recorder};
 use firmware::run::navigate;
-use firmware::runner::Rotating;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::flash::Flash;
@@ -82,10 +81,10 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let instrument = async {
         let health = navigate(
             &mut Turntable::new(&mut actuator, &platform, &channels.shared),
-            &mut Rotating::new(&mut session),
-            &mut link,
-            &mut recorder,
-            &mut (),
+            &mut session,
+            None::<firmware::keep::Keeping<'_, ()>>,
+            &(),
+            (&mut link, &mut recorder),
             &channels,
         )
         .await;

@@ -8,13 +8,12 @@ use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Observer, Recorder, Store};
 use firmware::run::navigate;
-use firmware::runner::Stops;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::vehicle::{Day, KnownPlace, VehicleScenario};
+use firmware::simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
-use orientation::alignment::stops::session as stops;
+use orientation::alignment::{Progress, stops};
 use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 
@@ -35,7 +34,8 @@ impl VehicleRun {
     /// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.
     #[must_use]
     pub fn azimuth_rad(&self) -> f64 {
-        let is_conclusion = |event: &Event| matches!(event, Event::Concluded(..));
+        let is_conclusion =
+            |event: &Event| matches!(event, Event::Alignment(Progress::Concluded(_)));
         let mut events = self.run.events.iter();
         let at =
             events.find(|(_, event)| is_conclusion(event)).map(|(at, _)| at.as_micros() as f64);
@@ -95,19 +95,17 @@ pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let mut sensors = Wires(board, injection).triad(scenario);
-    let mut place = KnownPlace::new(board, scenario.place, scenario.base.seed);
+    let aiding = VehicleAiding::new(board, scenario);
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);
-    let aiding = scenario.base.hold.aiding();
-    let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), aiding, store);
     let ended = harness::run(
         acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
         navigate(
             &mut Strapdown::new(&channels.shared),
-            &mut Stops::new(&mut session, &mut place),
-            &mut harness.wire(),
-            &mut FaultyRecorder::new(recorder, injection.hang),
-            &mut keeping,
+            &mut session,
+            Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store }),
+            &aiding,
+            (&mut harness.wire(), &mut FaultyRecorder::new(recorder, injection.hang)),
             &channels,
         ),
     )?;

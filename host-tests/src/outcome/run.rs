@@ -6,6 +6,7 @@ use firmware::event::Event;
 use firmware::health::Health;
 use firmware::storage::Remembered;
 use orientation::attitude::Realigned;
+use orientation::navigation::Progress;
 use serde::Serialize;
 
 use crate::instrument::Run;
@@ -168,8 +169,9 @@ impl KeptDetails {
         let (kept, last) = (&run.kept, run.kept.last()?);
         let errors = last.azimuth_error();
         let greatest = kept.with_azimuth().map(|(_, [error, sigma])| error.abs() / sigma);
-        let fused =
-            |event: &Event| matches!(event, Event::HandedOver(_, _, Realigned::Fused { .. }));
+        let fused = |event: &Event| {
+            matches!(event, Event::Navigation(Progress::HandedOver(_, Realigned::Fused { .. })))
+        };
         Some(Self {
             seconds: last.report.seconds,
             azimuth_deg: last.report.azimuth.map(|azimuth| degrees(azimuth.angle)),

@@ -43,10 +43,10 @@ impl Progress {
         self.show(|| so_far(session));
     }
 
-    /// Shows how many of the planned steps are done: a platform's turns, a vehicle's stops.
-    pub fn steps(&self, (done, planned): (u32, u32)) {
-        self.bar.set_length(u64::from(planned));
-        self.bar.set_position(u64::from(done));
+    /// Shows how many of the planned steps are done: dwells, a platform's turns, a vehicle's stops.
+    pub fn steps(&self, (done, planned): (u64, u64)) {
+        self.bar.set_length(planned);
+        self.bar.set_position(done);
         self.show(String::new);
     }
 

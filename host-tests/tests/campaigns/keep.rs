@@ -9,7 +9,8 @@ use host::campaign::statistics::NORMAL_COVERAGE;
 use host::campaign::statistics::Spread;
 use host::methods::stops::samples::Converter;
 use host::output::azimuth_error;
-use orientation::attitude::{Gyro, Handover, Keeper, Setting};
+use orientation::alignment::Azimuth;
+use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::units::DEGREE_PER_HOUR;
@@ -64,7 +65,7 @@ fn stored(latitude_deg: f64, bias: f64, turning: f64) -> f64 {
     for index in 0..rest {
         push(&mut keeper, index, 0.0);
     }
-    keeper.hand_over(Handover { azimuth: 70.0_f64.to_radians(), sigma: 1e-4 });
+    keeper.hand_over(Azimuth { angle: 70.0_f64.to_radians(), sigma: 1e-4 });
     for index in rest..rest + (600.0 * RATE_HZ) as u32 {
         push(&mut keeper, index, turning);
     }

@@ -4,8 +4,9 @@ use hal_mock::noise::Generator;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
-use orientation::alignment::stepwise::session::{Event, Phase, Session};
+use orientation::alignment::stepwise::session::{Phase, Session};
 use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::filter::Coefficients;
 use orientation::signal::Sample;
@@ -81,11 +82,11 @@ fn the_platform_counts_as_level_only_once_a_force_has_said_so() {
         let mut noise = Generator::new(3);
         // The look at the tilt is due after 125 samples.
         for index in 0..200 {
-            session.handle(Event::Sample(&bare(index, &mut noise)));
+            session.feed(Input::Sample(&bare(index, &mut noise)));
             assert_eq!(session.phase(), Phase::Level, "{index}");
         }
         let force = Some([across, 0.0, -9.81].map(SpecificForce::from_m_per_s2));
-        session.handle(Event::Sample(&Sample { force, ..bare(200, &mut noise) }));
+        session.feed(Input::Sample(&Sample { force, ..bare(200, &mut noise) }));
         assert_eq!(session.phase(), if is_level { Phase::Dwell } else { Phase::Done });
         let verdict = session.conclusion().map(|conclusion| conclusion.verdict);
         assert_eq!(matches!(verdict, Some(Err(Refusal::TiltTooGreat { .. }))), !is_level);

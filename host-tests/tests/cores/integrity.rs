@@ -14,11 +14,12 @@ use host::methods::stepwise::drive;
 use host::output::azimuth_error;
 use host::simulate::stage_path;
 use orientation::alignment::Azimuth;
+use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
-use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
@@ -105,7 +106,7 @@ fn verdict(case: &Case, disturbances: &[Disturbance], seed: u64) -> Result<Azimu
     let configuration =
         WorldConfiguration { instruments: case.world, stops: &case.stops, disturbances };
     let world = World::new(configuration, seed);
-    drive(&mut session, world.map(|reading| stage_path(&reading)), Event::End, |_| {});
+    drive(&mut session, world.map(|reading| stage_path(&reading)), Input::End, |_| {});
     session.conclusion().expect("it has ended").verdict
 }
 

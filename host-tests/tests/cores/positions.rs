@@ -10,11 +10,12 @@ use host::methods::stepwise::positions::autocompensation;
 use host::methods::stepwise::{drive, replay};
 use host::output::azimuth_error;
 use host::simulate::stage_path;
+use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
-use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
@@ -72,7 +73,7 @@ impl Trial<'_> {
         let stops = self.stops();
         let world =
             World::new(WorldConfiguration { instruments, stops: &stops, disturbances: &[] }, seed);
-        drive(&mut session, world.map(|reading| stage_path(&reading)), Event::End, |_| {});
+        drive(&mut session, world.map(|reading| stage_path(&reading)), Input::End, |_| {});
         session
     }
 

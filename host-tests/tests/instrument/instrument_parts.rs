@@ -8,13 +8,13 @@ use embedded_io_async::{ErrorKind, ErrorType, Write};
 use firmware::calibration::{Calibration, Harmonics};
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::keep::AttitudeReport;
 use firmware::link::{self, Status};
 use firmware::ports::Observer;
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use host::virtual_time;
+use orientation::alignment::{Azimuth, Progress, Solution};
 use orientation::attitude::{State, Trust};
 use orientation::device::{Device, Trouble};
 use orientation::units::Angle;
@@ -130,7 +130,8 @@ fn every_fault_counts_once() {
 
 #[test]
 fn a_status_never_tells_a_smaller_sigma_than_there_is() {
-    let status = Status::concluded(359.9996, 0.012_01);
+    let azimuth = Azimuth { angle: 359.9996_f64.to_radians(), sigma: 0.012_01_f64.to_radians() };
+    let status = Status::Starting.after(&Progress::Concluded(Solution { azimuth, limit: 0.0 }));
     assert_eq!(status.to_string(), "azimuth 0.000 sigma 0.013");
     assert_eq!(Status::Measuring { done: 5, of: 24 }.to_string(), "measuring 5/24");
 }
@@ -219,11 +220,11 @@ fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault
     let reported = Recorded::default();
     let shared = Shared::new(&reported);
     shared.count(|health| health.unsent = u32::MAX);
+    shared.homed.signal(());
     for state in states.map(Some).into_iter().chain([None]) {
         let level = [-90_000, -180_000];
-        let kept =
-            AttitudeReport { azimuth: Some([359_999, 180_000]), level, state, is_recalled: true };
-        shared.keep.attitude.set(Some(kept));
+        let azimuth = Some([359_999, 180_000]);
+        shared.status.set(Status::Keeping { azimuth, level, state, is_recalled: true });
         let mut heard = Heard::default();
         virtual_time::run(link::send(&mut heard, &shared)).expect("time wakes everybody");
         let line = String::from_utf8(heard.0).expect("text");

@@ -20,8 +20,10 @@ use host::methods::spin::{Known, follow};
 use host::methods::{rotating, spin, stepwise, stops};
 use host::outcome::Finished;
 use host::recording::{self, Body, Header, Truth};
+use orientation::alignment::Progress;
 use orientation::alignment::rotating::session as rotating_session;
 use orientation::alignment::stops::session as stops_session;
+use orientation::roll;
 use orientation::units::DEGREE;
 use serde_json::Value;
 
@@ -152,7 +154,7 @@ fn of_spin(scenario: &SpinScenario, run: &SpinRun, assumed: &[String]) -> spin::
     let (setting, assumed) = (scenario.setting(), assumed.to_vec());
     let known = Known { setting, required_sigma: REQUIRED_SIGMA, assumed };
     let ended = run.run.events.iter().find_map(|(_, event)| match event {
-        Event::RollEnded(_) => Some(event.to_string()),
+        Event::Alignment(Progress::Roll(roll::Progress::Ended(_))) => Some(event.to_string()),
         _ => None,
     });
     spin::Replay { ended, ..follow(&run.samples, known) }

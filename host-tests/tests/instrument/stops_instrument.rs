@@ -8,6 +8,7 @@ use firmware::simulated::vehicle::{Place, VehicleScenario};
 use host::instrument::{VehicleRun, align_stops};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::{Progress, stops};
 
 fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
     align_stops(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
@@ -99,10 +100,10 @@ fn a_stop_is_levelled_as_the_ground_lies_there() {
     let day = scenario.day(None);
     let hal_mock::vehicle::Leg::Stop(first) = day.legs[0] else { panic!("a day begins at rest") };
     let level = found.run.events.iter().find_map(|(_, event)| match event {
-        Event::MayDrive(1, _, level) => Some(*level),
+        Event::Alignment(Progress::Stops(stops::Progress::MayDrive(1, _, level))) => Some(*level),
         _ => None,
     });
-    let [pitch, roll] = level.expect("the first stop is levelled");
+    let [pitch, roll] = level.expect("the first stop is levelled").map(f64::to_degrees);
     // 0.1 mg of bias is 0.006°; the road itself rocks for the first seconds.
     assert!((pitch - first.pitch_deg).abs() < 0.03, "{pitch} is not {}", first.pitch_deg);
     assert!((roll - first.roll_deg).abs() < 0.03, "{roll} is not {}", first.roll_deg);

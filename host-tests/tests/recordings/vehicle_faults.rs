@@ -9,8 +9,9 @@ use host::recording::{Body, Header, ImuRow};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
-use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::session::{Procedure, Session};
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::signal::InertialSample;
 use orientation::units::Instant;
@@ -58,9 +59,9 @@ fn paced(reported: f64, given: f64, tolerance: f64) -> Option<Refusal> {
     for index in 1..2000 {
         let time = Instant::from_seconds(f64::from(index) * given);
         let sample = InertialSample { time, ..InertialSample::default() };
-        session.handle(Event::Sample(&sample));
+        session.feed(Input::Sample(&sample));
     }
-    session.handle(Event::End);
+    session.feed(Input::End);
     session.conclusion().and_then(|conclusion| conclusion.verdict.err())
 }
 

@@ -2,7 +2,9 @@
 //! azimuth with its standard deviation.
 
 pub mod budget;
+pub mod method;
 pub mod period;
+pub mod progress;
 pub mod refusal;
 pub mod rotating;
 pub mod setup;
@@ -12,4 +14,6 @@ pub mod stepwise;
 pub mod stops;
 pub mod verdict;
 
-pub use verdict::Azimuth;
+pub use method::{Input, Method, Request};
+pub use progress::Progress;
+pub use verdict::{Azimuth, Solution, Verdict};

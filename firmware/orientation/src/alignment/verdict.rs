@@ -1,5 +1,7 @@
 //! Verdict of an alignment: an azimuth with its standard deviation, or the reason for none.
 
+use super::refusal::Refusal;
+
 /// An azimuth that passed every test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Azimuth {
@@ -8,3 +10,15 @@ pub struct Azimuth {
     /// Standard deviation of the azimuth, 1σ, rad: the whole error budget.
     pub sigma: f64,
 }
+
+/// An azimuth beside the least standard deviation that its data allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution {
+    /// The azimuth with its 1σ.
+    pub azimuth: Azimuth,
+    /// Cramér–Rao bound of the 1σ for the same data and unknowns, rad.
+    pub limit: f64,
+}
+
+/// Outcome of an alignment.
+pub type Verdict = Result<Solution, Refusal>;

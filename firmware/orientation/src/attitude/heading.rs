@@ -14,15 +14,6 @@ use crate::units::{TURN, wrapped};
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other.
 const BOUND: f64 = 4.0;
 
-/// An azimuth with its standard deviation, as an alignment or an external source hands it over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Handover {
-    /// Azimuth of body x, rad.
-    pub azimuth: f64,
-    /// Standard deviation of the azimuth, 1σ, rad.
-    pub sigma: f64,
-}
-
 /// Outcome of a new alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Realigned {
@@ -55,11 +46,11 @@ pub(super) struct Heading {
 
 impl Heading {
     /// Begins with an azimuth of body x, and restarts the error of the turn.
-    pub(super) fn begin(handover: Handover, gyro: &Gyro, vertical: &mut Vertical) -> Self {
+    pub(super) fn begin(azimuth: Azimuth, gyro: &Gyro, vertical: &mut Vertical) -> Self {
         vertical.begin_course();
         Self {
-            frame: wrapped(handover.azimuth - course(vertical)),
-            variance: handover.sigma * handover.sigma,
+            frame: wrapped(azimuth.angle - course(vertical)),
+            variance: azimuth.sigma * azimuth.sigma,
             scale: gyro.scale_sigma,
             ramp: gyro.noise.rate_ramp,
         }
@@ -82,20 +73,20 @@ impl Heading {
     /// Combines a new alignment with the held azimuth.
     pub(super) fn realign(
         &mut self,
-        handover: Handover,
+        azimuth: Azimuth,
         gyro: &Gyro,
         vertical: &mut Vertical,
     ) -> Realigned {
         let kept = self.azimuth(vertical);
-        let off = difference(handover.azimuth, kept.angle);
-        let (old, new) = (kept.sigma * kept.sigma, handover.sigma * handover.sigma);
+        let off = difference(azimuth.angle, kept.angle);
+        let (old, new) = (kept.sigma * kept.sigma, azimuth.sigma * azimuth.sigma);
         let sigmas = off.abs() / libm::sqrt(old + new);
         if sigmas > BOUND || sigmas.is_nan() {
             return Realigned::Disagrees { sigmas };
         }
-        let azimuth = kept.angle + off * old / (old + new);
+        let angle = kept.angle + off * old / (old + new);
         let sigma = libm::sqrt(old * new / (old + new));
-        *self = Self::begin(Handover { azimuth, sigma }, gyro, vertical);
+        *self = Self::begin(Azimuth { angle, sigma }, gyro, vertical);
         Realigned::Fused { sigmas }
     }
 }

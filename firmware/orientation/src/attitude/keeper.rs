@@ -1,7 +1,7 @@
 //! Attitude and heading reference (AHRS): gyrovertical and heading hold together. It takes samples
 //! from switch-on and reports pitch, roll and azimuth.
 
-use super::heading::{Handover, Heading, Realigned, frame_rate};
+use super::heading::{Heading, Realigned, frame_rate};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, quaternion as attitude};
@@ -132,10 +132,10 @@ impl Keeper {
     }
 
     /// Adopts an azimuth of body x at the present time, in place of any previous one.
-    pub fn hand_over(&mut self, handover: Handover) {
+    pub fn hand_over(&mut self, azimuth: Azimuth) {
         let [.., gyro] = &self.setting.gyros;
         let is_first = self.heading.is_none();
-        self.heading = Some(Heading::begin(handover, gyro, &mut self.vertical));
+        self.heading = Some(Heading::begin(azimuth, gyro, &mut self.vertical));
         self.handed = self.vertical.time();
         if is_first {
             self.vertical.find_north(self.frame_rate());
@@ -146,14 +146,14 @@ impl Keeper {
 
     /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
     /// is withdrawn.
-    pub fn realign(&mut self, handover: Handover) -> Realigned {
+    pub fn realign(&mut self, azimuth: Azimuth) -> Realigned {
         let [.., gyro] = &self.setting.gyros;
         let realigned = match &mut self.heading {
             None => Realigned::Taken,
-            Some(heading) => heading.realign(handover, gyro, &mut self.vertical),
+            Some(heading) => heading.realign(azimuth, gyro, &mut self.vertical),
         };
         match realigned {
-            Realigned::Taken => self.hand_over(handover),
+            Realigned::Taken => self.hand_over(azimuth),
             Realigned::Fused { .. } => self.turn_frame(),
             Realigned::Disagrees { .. } => self.withdraw(),
         }
@@ -228,7 +228,7 @@ impl Keeper {
         let rest = f64::from(self.vertical.course.stood);
         let now = restart::Now { pitch: report.pitch, roll: report.roll, rates, rest };
         restart::check(remembered, &now, &self.setting)?;
-        self.hand_over(Handover { azimuth: remembered.azimuth, sigma: remembered.sigma });
+        self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ pub mod quaternion;
 pub mod restart;
 pub mod vertical;
 
-pub use heading::{Handover, Realigned};
+pub use heading::Realigned;
 pub use keeper::{Azimuth, Keeper, Report, State};
 pub use vertical::Trust;
 

@@ -16,13 +16,17 @@ pub mod attitude;
 mod circle;
 mod extrema;
 mod fit;
+mod flight;
 mod harmonics;
 mod lock;
 mod phase_accumulator;
 mod plausibility;
+pub mod progress;
 
 pub use self::extrema::Signal;
+pub use self::flight::Flight;
 pub use self::phase_accumulator::Roll;
+pub use self::progress::Progress;
 
 use self::extrema::Extrema;
 use self::lock::Lock;

@@ -13,6 +13,12 @@ use crate::units::{
     Angle, AngleIncrement, AngularRate, Instant, SpecificForce, SpinForce, Temperature,
 };
 
+/// A sample that carries its time.
+pub trait Timed {
+    /// Time at which the sample was taken, or its interval ended.
+    fn time(&self) -> Instant;
+}
+
 /// One sample of the stage path: the precise gyro and the values that belong to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
@@ -60,4 +66,22 @@ pub struct SpinSample {
     /// Specific forces on y and z at this moment; none where a sensor stood at the limit of its
     /// range.
     pub force: Option<[SpinForce; 2]>,
+}
+
+impl Timed for Sample {
+    fn time(&self) -> Instant {
+        self.time
+    }
+}
+
+impl Timed for InertialSample {
+    fn time(&self) -> Instant {
+        self.time
+    }
+}
+
+impl Timed for SpinSample {
+    fn time(&self) -> Instant {
+        self.time
+    }
 }

@@ -3,7 +3,6 @@
 use embassy_executor::Spawner;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
-use firmware::runner::Stepwise;
 use firmware::stage::Stage;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::session::{Prepared, Session};
@@ -23,8 +22,9 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let channels = sample(spawner, sensors);
     let mut motor = ports::motor(motor);
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
-    let session = &mut Stepwise::new(session);
-    let health = navigate(&mut stage, session, &mut link, &mut NoRecorder, &mut (), channels).await;
+    let health =
+        navigate(&mut stage, (session, &mut ()), &mut link, &mut NoRecorder, &mut (), channels)
+            .await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

@@ -8,7 +8,6 @@ use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
-use firmware::runner::Stops;
 use firmware::shared::Channels;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
@@ -35,10 +34,9 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let configuration = configuration::keeping();
     let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));
     let mut body = Strapdown::new(&channels.shared);
-    let position_aiding = &mut ();
-    let session = &mut Stops::new(session, position_aiding);
     let health =
-        navigate(&mut body, session, &mut link, &mut NoRecorder, &mut keeping, channels).await;
+        navigate(&mut body, (session, &mut ()), &mut link, &mut NoRecorder, &mut keeping, channels)
+            .await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

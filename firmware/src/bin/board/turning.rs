@@ -4,7 +4,6 @@
 use embassy_executor::Spawner;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
-use firmware::runner::Rotating;
 use firmware::storage::{Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
 use orientation::alignment::rotating::session::{Session, check};
@@ -26,9 +25,15 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let Some(session) = session(&mut store, channels).await else { return };
     let mut motor = ports::motor(motor);
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
-    let rotating = &mut Rotating::new(session);
-    let health =
-        navigate(&mut platform, rotating, &mut link, &mut NoRecorder, &mut (), channels).await;
+    let health = navigate(
+        &mut platform,
+        (&mut *session, &mut ()),
+        &mut link,
+        &mut NoRecorder,
+        &mut (),
+        channels,
+    )
+    .await;
     save_calibration(&mut store, session, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }

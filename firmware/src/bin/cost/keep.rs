@@ -4,7 +4,7 @@
 use core::hint::black_box;
 
 use hal_mock::noise::Generator;
-use orientation::attitude::Handover;
+use orientation::alignment::Azimuth;
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
@@ -67,7 +67,7 @@ pub fn report(counter: &Counter, report: &mut Report) {
     let noise = GyroNoise::from_field_units(0.001, 0.007, 0.0, 0.0);
     let gyro = Gyro { noise, bias_sigma: DEGREE_PER_HOUR, scale_sigma: 1e-4 };
     let mut keeper = Keeper::new(&Setting::precise(latitude, 1.0 / PRECISE_HZ as f64, gyro));
-    keeper.hand_over(Handover { azimuth: 1.0, sigma: 0.1 * DEGREE });
+    keeper.hand_over(Azimuth { angle: 1.0, sigma: 0.1 * DEGREE });
     let [mean, worst] = kept(counter, keeper, PRECISE_HZ, report);
     let name = "heading from three precise gyros, a sample at 2 kHz";
     report.budget(name, mean, HEADING_INSTRUCTIONS);

@@ -20,9 +20,7 @@ use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::fault::PortWrapper;
 use hal_mock::chip::Select;
-use orientation::alignment::rotating::session as rotating;
-use orientation::alignment::stepwise::session::Session;
-use orientation::alignment::stops::session as stops;
+use orientation::alignment::{Progress, rotating, stepwise, stops};
 use orientation::attitude::Report;
 
 use crate::clock;
@@ -127,23 +125,31 @@ impl Observer for Log {
     // Formatting and semihosting are booked on the simulation's account.
     fn event(&self, at: Instant, event: &Event) {
         self.0.outside(|| DefmtLog.event(at, event));
-    }
-
-    fn progress(&self, _: &Session) {
-        self.0.mark(clock::now());
-    }
-
-    fn turned(&self, _: &rotating::Session) {
-        self.0.mark(clock::now());
-    }
-
-    fn stopped(&self, _: &stops::Session) {
-        self.0.mark(clock::now());
+        if let Event::Alignment(progress) = event
+            && is_step(progress)
+        {
+            self.0.mark(clock::now());
+        }
     }
 
     fn kept(&self, report: &Report) {
         self.0.outside(|| results::kept(report));
     }
+}
+
+/// Whether a dwell, a turn or a stop has ended, or a stop has begun.
+fn is_step(progress: &Progress) -> bool {
+    matches!(
+        progress,
+        Progress::Stepwise(stepwise::Progress::Dwelled(..))
+            | Progress::Rotating(rotating::Progress::Turned(..))
+            | Progress::Stops(
+                stops::Progress::Standing
+                    | stops::Progress::Stopped(..)
+                    | stops::Progress::MayDrive(..)
+                    | stops::Progress::Driving
+            )
+    )
 }
 
 /// A link that accepts and discards every byte: the emulated board has no serial port.

@@ -14,7 +14,6 @@ use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{NoRecorder, Ports};
 use firmware::run::navigate;
-use firmware::runner::{Rotating, Stepwise, Stops};
 use firmware::shared::Channels;
 use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
@@ -180,7 +179,7 @@ impl Running {
             Self::Stepwise(session, outputs, configuration, channels) => {
                 let Ports { actuator, link, recorder } = outputs;
                 let mut stage = Stage::new(actuator, &configuration.stage, &channels.shared);
-                let aligned = &mut Stepwise::new(session);
+                let aligned = (&mut *session as _, &mut () as _);
                 navigate(&mut stage, aligned, link, recorder, &mut (), channels).await;
                 Finished::Stepwise(session)
             }
@@ -188,13 +187,13 @@ impl Running {
                 let Ports { actuator, link, recorder } = outputs;
                 let tolerances = TurntableConfiguration::default();
                 let mut platform = Turntable::new(actuator, &tolerances, &channels.shared);
-                let aligned = &mut Rotating::new(session);
+                let aligned = (&mut *session as _, &mut () as _);
                 navigate(&mut platform, aligned, link, recorder, &mut (), channels).await;
                 Finished::Turning(session)
             }
             Self::Stops(session, place, mut keeping, channels) => {
                 let mut body = Strapdown::new(&channels.shared);
-                let aligned = &mut Stops::new(session, place);
+                let aligned = (&mut *session as _, place as _);
                 let (link, recorder) = (&mut NoLink, &mut NoRecorder);
                 navigate(&mut body, aligned, link, recorder, &mut keeping, channels).await;
                 Finished::Stops(session)

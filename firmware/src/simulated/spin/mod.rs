@@ -14,14 +14,13 @@ use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
 use hal_mock::spin::profile::Profile;
-use orientation::roll::{Method, Setting};
+use orientation::roll::{Flight, Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};
 use super::{Bus, Line, Wires, scenario};
 use crate::chips::AnalogueSensor;
 use crate::ports::SpinSensors;
-use crate::spin::Flight;
 use crate::spin::budget::SAMPLE_HERTZ;
 use crate::spin::configuration::{Channel, SpinConfiguration};
 

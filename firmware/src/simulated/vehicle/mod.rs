@@ -5,7 +5,7 @@
 
 mod site;
 
-pub use site::{KnownPlace, Place};
+pub use site::{Place, VehicleAiding};
 
 use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
@@ -21,6 +21,7 @@ use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::session::Procedure;
 use orientation::attitude as keep;
 use orientation::earth::Latitude;
+use orientation::navigation::{Policy, Realignment};
 use orientation::units::DEGREE_PER_HOUR;
 
 use super::fault::{Fault, Injection, PortWrapper};
@@ -28,7 +29,7 @@ use super::keep::Hold;
 use super::scenario::{self, Scenario};
 use super::{Bus, SimulatedGyro, Wires};
 use crate::chips;
-use crate::configuration::{self, KeepConfiguration, Realignment};
+use crate::configuration;
 use crate::ports::VehicleSensors;
 
 /// 1σ of the accelerometers, m/s²: in a vehicle their biases are tilt, so they are calibrated, to 0.1 mg.
@@ -194,12 +195,8 @@ impl VehicleScenario {
 
     /// How the instrument goes on after its alignment.
     #[must_use]
-    pub fn keeping(&self) -> KeepConfiguration {
-        self.base.hold.configuration(
-            Realignment::BetweenStops,
-            self.base.precise(),
-            self.base.precise(),
-        )
+    pub fn policy(&self) -> Policy {
+        self.base.hold.policy(Realignment::BetweenStops, self.base.precise(), self.base.precise())
     }
 
     /// What the board is given about its devices.

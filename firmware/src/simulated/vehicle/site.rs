@@ -1,12 +1,15 @@
-//! Who knows where the simulated vehicle is.
+//! What a simulated vehicle is aided with from outside.
 
 use core::cell::RefCell;
 
 use embassy_time::Instant;
 use hal_mock::noise::Generator;
 use hal_mock::vehicle::board::VehicleBoard;
+use orientation::alignment::Azimuth;
 
-use crate::ports::PositionAiding;
+use super::VehicleScenario;
+use crate::ports::Aiding;
+use crate::simulated::keep::HandoverAiding;
 
 /// A stream of random numbers that no source of noise has.
 const STREAM: u64 = 1001;
@@ -23,25 +26,34 @@ pub enum Place {
     },
 }
 
-/// What a simulated receiver shows: the truth with its error.
-pub struct KnownPlace<'r, 'a> {
+/// What a simulated vehicle is aided with: the displacement that a receiver shows, which is the truth
+/// with its error, and an azimuth that may be handed over.
+pub struct VehicleAiding<'r, 'a> {
     board: &'r RefCell<VehicleBoard<'a>>,
     place: Place,
-    errors: Generator,
+    errors: RefCell<Generator>,
+    handover: HandoverAiding,
 }
 
-impl<'r, 'a> KnownPlace<'r, 'a> {
-    /// A receiver in the vehicle of a board.
+impl<'r, 'a> VehicleAiding<'r, 'a> {
+    /// The aiding of the vehicle of a board.
     #[must_use]
-    pub fn new(board: &'r RefCell<VehicleBoard<'a>>, place: Place, seed: u64) -> Self {
-        Self { board, place, errors: Generator::stream(seed, STREAM) }
+    pub fn new(board: &'r RefCell<VehicleBoard<'a>>, scenario: &VehicleScenario) -> Self {
+        let errors = RefCell::new(Generator::stream(scenario.base.seed, STREAM));
+        let handover = scenario.base.hold.aiding();
+        Self { board, place: scenario.place, errors, handover }
     }
 }
 
-impl PositionAiding for KnownPlace<'_, '_> {
-    fn displacement(&mut self) -> Option<[f64; 2]> {
+impl Aiding for VehicleAiding<'_, '_> {
+    fn azimuth(&self) -> Option<Azimuth> {
+        self.handover.azimuth()
+    }
+
+    fn displacement(&self) -> Option<[f64; 2]> {
         let Place::Known { sigma_m } = self.place else { return None };
         let truth = self.board.borrow().plant.truth_at(Instant::now());
-        Some(truth.displacement_m.map(|part| part + sigma_m * self.errors.gaussian()))
+        let mut errors = self.errors.borrow_mut();
+        Some(truth.displacement_m.map(|part| part + sigma_m * errors.gaussian()))
     }
 }

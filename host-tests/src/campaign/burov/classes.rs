@@ -4,8 +4,9 @@
 //! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
 
 use hal_mock::gyro::Gyro;
+use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
-use orientation::attitude::{Gyro as Known, Handover, Keeper, Setting};
+use orientation::attitude::{Gyro as Known, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
 use orientation::signal::InertialSample;
 use orientation::units::DEGREE_PER_HOUR;
@@ -207,7 +208,7 @@ impl Class {
         for _ in 0..(REST * RATE_HZ) as u32 {
             keeper.push(&base.sample(0.0));
         }
-        keeper.hand_over(Handover { azimuth, sigma });
+        keeper.hand_over(Azimuth { angle: azimuth, sigma });
         let samples = ((60.0 * self.minutes - REST) * RATE_HZ) as u32;
         // The vehicle turns by a turn and a half in all: an azimuth of 180° at the end.
         let turning = 3.0 * std::f64::consts::PI / (f64::from(samples) / RATE_HZ);

@@ -3,9 +3,11 @@
 use firmware::event::Event;
 use firmware::simulated::fault::Notice;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::{Progress, rotating, stepwise};
 use orientation::attitude::Realigned;
 use orientation::device::Device;
-use orientation::roll::Condition;
+use orientation::navigation;
+use orientation::roll::{self, Condition};
 
 /// The first event that reports something wrong.
 pub(super) fn first(events: &[Event]) -> Option<&Event> {
@@ -30,8 +32,10 @@ fn blamed(event: &Event) -> Option<Device> {
         | Event::GivenUp(device, _)
         | Event::Corrected(device, _)
         | Event::Blocked(device)
-        | Event::Refused(Refusal::Device { device, .. })
-        | Event::RollEnded(Refusal::Device { device, .. }) => Some(*device),
+        | Event::Alignment(
+            Progress::Refused(Refusal::Device { device, .. })
+            | Progress::Roll(roll::Progress::Ended(Refusal::Device { device, .. })),
+        ) => Some(*device),
         _ => None,
     }
 }
@@ -39,25 +43,36 @@ fn blamed(event: &Event) -> Option<Device> {
 /// Whether an event reports something wrong.
 fn is_wrong(event: &Event) -> bool {
     match event {
-        Event::HandedOver(.., outcome) => matches!(outcome, Realigned::Disagrees { .. }),
-        Event::Roll(state) => !matches!(state.condition, Condition::Searching | Condition::Locked),
+        Event::Navigation(navigation::Progress::HandedOver(_, outcome)) => {
+            matches!(outcome, Realigned::Disagrees { .. })
+        }
+        Event::Alignment(Progress::Roll(roll::Progress::Changed(state))) => {
+            !matches!(state.condition, Condition::Searching | Condition::Locked)
+        }
         Event::Missing(_)
         | Event::Late(_)
         | Event::Overflowed(_)
-        | Event::CutShort(_)
-        | Event::Repeated(..)
-        | Event::LeftOut(..)
-        | Event::TurnsLeftOut(..)
+        | Event::Alignment(
+            Progress::Stepwise(
+                stepwise::Progress::CutShort(_)
+                | stepwise::Progress::Repeated(..)
+                | stepwise::Progress::LeftOut(..),
+            )
+            | Progress::Rotating(rotating::Progress::LeftOut(..))
+            | Progress::Roll(roll::Progress::Ended(_))
+            | Progress::Refused(_),
+        )
+        | Event::Navigation(
+            navigation::Progress::NoMotion
+            | navigation::Progress::AzimuthLost
+            | navigation::Progress::BiasBeyondStated
+            | navigation::Progress::RecallRefused(_)
+            | navigation::Progress::Refused(_),
+        )
         | Event::CalibrationUnreadable(_)
         | Event::CalibrationNotSaved(_)
-        | Event::NoMotion
-        | Event::AzimuthLost
-        | Event::BiasBeyondStated
-        | Event::RecallRefused(_)
         | Event::HeadingNotKept(_)
-        | Event::LinkSilent
-        | Event::Refused(_)
-        | Event::RollEnded(_) => true,
+        | Event::LinkSilent => true,
         other => blamed(other).is_some(),
     }
 }

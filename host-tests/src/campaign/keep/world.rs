@@ -8,7 +8,8 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle, VehicleConfiguration, VehicleSample};
-use orientation::attitude::{Gyro, Handover, Keeper, Setting};
+use orientation::alignment::Azimuth;
+use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
 use orientation::units::DEGREE_PER_HOUR;
 
@@ -292,7 +293,7 @@ impl Board {
     fn hand_over(&mut self, fitting: &Fitting, seed: u64, azimuth: f64) {
         let sigma = fitting.azimuth_sigma_deg.to_radians();
         let error = sigma * Generator::stream(seed, HANDED).gaussian();
-        self.keeper.hand_over(Handover { azimuth: azimuth + error, sigma });
+        self.keeper.hand_over(Azimuth { angle: azimuth + error, sigma });
     }
 
     fn mark(&self, seconds: f64, vehicle: &Vehicle) -> Mark {

@@ -11,7 +11,8 @@ use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
 
-use orientation::alignment::rotating::session::{Command, Event, Session};
+use orientation::alignment::rotating::Session;
+use orientation::alignment::{Input, Method, Request};
 
 use super::motor::Motor;
 use crate::recording::RotatingRow;
@@ -174,13 +175,13 @@ impl World {
             let time_s = index as f64 / RATE_HZ;
             instruments.turn(gear.stage(motor.after(1.0 / RATE_HZ)));
             let reading = instruments.sample(time_s, &Effect::default());
-            match session.handle(Event::Sample(&stage_path(&reading))) {
-                Command::Turn(rate_rad_s) => motor.send(rate_rad_s),
-                Command::Wait => {}
-                Command::Finished => return,
+            match session.feed(Input::Sample(&stage_path(&reading))) {
+                Request::Turn(rate_rad_s) => motor.send(rate_rad_s),
+                Request::Done => return,
+                _ => {}
             }
         }
-        session.handle(Event::End);
+        session.feed(Input::End);
     }
 
     /// The platform's samples as rows of a recording of kind `rotating`.

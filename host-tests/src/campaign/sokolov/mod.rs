@@ -12,15 +12,16 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
+use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::etalon;
 use orientation::alignment::stepwise::etalon::{Accepted, Limit, Series};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
-use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::math::reference_table as table;
@@ -133,7 +134,7 @@ fn procedure(turn: Turn) -> Procedure {
 fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
     let mut session =
         Session::new(setting(), procedure(turn)).map_err(|error| format!("{error:?}"))?;
-    drive(&mut session, samples.iter().copied(), Event::End, |_| {});
+    drive(&mut session, samples.iter().copied(), Input::End, |_| {});
     Ok(session.dwells().to_vec())
 }
 

@@ -8,8 +8,9 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::Conclusion;
-use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::session::{Procedure, Session};
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
@@ -84,14 +85,14 @@ pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
         }
         let Some(session) = &mut session else { continue };
         let VehicleSample { time_s, turned_rad, force_m_s2, .. } = sample;
-        session.handle(Event::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
+        session.feed(Input::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
         if middles.next_if(|middle| *middle <= sample.time_s).is_some() && known.knows_displacement
         {
-            session.handle(Event::Displaced(truth.displacement_m));
+            session.feed(Input::Displaced(&truth.displacement_m));
         }
     }
     if let Some(session) = &mut session {
-        session.handle(Event::End);
+        session.feed(Input::End);
     }
     let truth = vehicle.truth();
     let conclusion = session.as_ref().and_then(Session::conclusion).cloned();

@@ -8,6 +8,7 @@ mod turntable;
 pub mod usual;
 mod vehicle;
 
+use std::cell::Cell;
 use std::time::{Duration, Instant as WallClock};
 
 use clap::{Args, Subcommand};
@@ -20,9 +21,7 @@ use host::outcome::Finished;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
 use host::recording::{Body, Truth};
-use orientation::alignment::rotating::session as rotating;
-use orientation::alignment::stepwise::session::Session;
-use orientation::alignment::stops::session as stops;
+use orientation::alignment::{self, rotating, stepwise, stops};
 
 use self::options::Common;
 use super::faults::{self, FaultChoice};
@@ -150,18 +149,41 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Answer, String> {
 }
 
 /// Shows the log and the progress while a board works.
-struct Terminal(Progress);
+struct Terminal {
+    shown: Progress,
+    /// Planned stops of a vehicle.
+    stops: Cell<usize>,
+}
 
 impl Terminal {
+    /// Shows how many of the planned dwells, turns or stops are done.
+    fn follow(&self, progress: &alignment::Progress) {
+        let (done, planned) = match *progress {
+            alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => (done, of),
+            alignment::Progress::Rotating(rotating::Progress::Turned(done, of)) => {
+                (done as usize, of as usize)
+            }
+            alignment::Progress::Stops(stops::Progress::Begun { stops, .. }) => {
+                return self.stops.set(stops);
+            }
+            alignment::Progress::Stops(stops::Progress::Standing) => (1, self.stops.get()),
+            alignment::Progress::Stops(stops::Progress::Stopped(stop, _)) => {
+                (stop, self.stops.get())
+            }
+            _ => return,
+        };
+        self.shown.steps((done as u64, planned as u64));
+    }
+
     /// Runs a board, whose progress counts these; with the time that it took on this machine.
     fn watching<T>(
         steps: &'static str,
         run: impl FnOnce(&Self) -> Result<T, RunError>,
     ) -> Result<(T, Duration), String> {
         let begun = WallClock::now();
-        let watch = Self(Progress::new(0, steps));
+        let watch = Self { shown: Progress::new(0, steps), stops: Cell::new(0) };
         let ran = run(&watch);
-        watch.0.finish();
+        watch.shown.finish();
         ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
     }
 }
@@ -169,18 +191,9 @@ impl Terminal {
 impl Observer for Terminal {
     fn event(&self, at: Instant, event: &Event) {
         let seconds = at.as_micros() as f64 * 1e-6;
-        self.0.log(&format!("{seconds:>11.6} {event}"));
-    }
-
-    fn progress(&self, session: &Session) {
-        self.0.session(session);
-    }
-
-    fn turned(&self, session: &rotating::Session) {
-        self.0.steps(session.turns());
-    }
-
-    fn stopped(&self, session: &stops::Session) {
-        self.0.steps((session.stops().len() as u32, session.procedure().stops as u32));
+        self.shown.log(&format!("{seconds:>11.6} {event}"));
+        if let Event::Alignment(progress) = event {
+            self.follow(progress);
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! `meridian run spin`: the board on a body in fast rotation.
 
 use clap::Args;
-use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use host::instrument::spinning::{SpinRun, follow_spin};
@@ -9,6 +8,7 @@ use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Known, Replay, follow};
 use host::outcome::run::RunDetails;
 use host::recording::{GIVEN, Truth};
+use orientation::roll::Progress;
 
 use super::options::{Common, number};
 use super::{Ran, Simulated, Terminal};
@@ -55,7 +55,7 @@ impl Simulated for SpinOptions {
         let SpinRun { run, samples, rolls_rad, .. } = flown;
         let assumed = vec![GIVEN.to_owned()];
         let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
-        let ended = run.ended().map(|reason| Event::RollEnded(reason).to_string());
+        let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());
         let replay = Replay { ended, ..follow(&samples, known) };
         Ok(Ran {
             name: "the simulated flight",

@@ -6,11 +6,12 @@ pub mod turns;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
-use orientation::alignment::rotating::session::{Event, Procedure, Session};
+use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::turn::Stretch;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::site::Site;
+use orientation::alignment::{Input, Method};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
@@ -107,9 +108,9 @@ fn again(
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     for row in rows {
         let rate = recording::rate(row.rate_rad_s);
-        session.handle(Event::Sample(&Sample { rate, ..sample(row, 0.0) }));
+        session.feed(Input::Sample(&Sample { rate, ..sample(row, 0.0) }));
     }
-    session.handle(ended.map_or(Event::End, Event::Failed));
+    session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
     Ok(Replay { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] })
 }
 
@@ -181,9 +182,9 @@ pub fn follow(
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), FEW_CUT);
     for row in rows {
         let sample = saturated(limits, row.rate_rad_s, sample(row, begin));
-        session.handle(Event::Recorded(&sample, row.stage_rate_rad_s as f32));
+        session.take_recorded(&sample, row.stage_rate_rad_s as f32);
     }
-    session.handle(Event::End);
+    session.feed(Input::End);
     Ok(session)
 }
 

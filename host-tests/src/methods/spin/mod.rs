@@ -9,6 +9,7 @@ pub mod outcome;
 pub mod samples;
 pub mod track;
 
+use orientation::roll::Progress;
 use orientation::roll::{Method, Setting};
 use orientation::signal::SpinSample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
@@ -109,7 +110,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
 fn again(given: &Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Replay {
     let Given { setting, ended, .. } = *given;
     let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds).collect();
-    let ended = ended.map(|reason| firmware::event::Event::RollEnded(reason).to_string());
+    let ended = ended.map(|reason| Progress::Ended(reason).to_string());
     let assumed = vec![GIVEN.to_owned()];
     Replay { ended, ..follow(&samples, Known { setting, required_sigma, assumed }) }
 }

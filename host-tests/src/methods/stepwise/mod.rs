@@ -8,12 +8,13 @@ pub mod late;
 pub mod outcome;
 pub mod positions;
 
+use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::mount::TWO_FRAMES;
 use orientation::alignment::stepwise::session::procedure::{Procedure, STILL};
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
-use orientation::alignment::stepwise::session::{Event, Session};
 use orientation::alignment::stepwise::setting::{Half, Setting};
+use orientation::alignment::{Input, Method};
 use orientation::planner::order::Order;
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
@@ -123,7 +124,7 @@ fn again(
         survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
     }
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-    let end = ended.map_or(Event::End, Event::Failed);
+    let end = ended.as_ref().map_or(Input::End, Input::Failed);
     let given =
         |row: &StageRow| Sample { rate: recording::rate(row.rate_rad_s), ..sample(row, 0.0) };
     drive(&mut session, rows.iter().map(given), end, progress);
@@ -177,7 +178,7 @@ fn stage(
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), 0.0);
     let shown = |row: &StageRow| saturated(limits, row.rate_rad_s, sample(row, begin));
-    drive(&mut session, rows.iter().map(shown), Event::End, progress);
+    drive(&mut session, rows.iter().map(shown), Input::End, progress);
     Ok(session)
 }
 
@@ -203,18 +204,18 @@ fn followed(
 pub fn drive(
     session: &mut Session,
     samples: impl Iterator<Item = Sample>,
-    end: Event<'_>,
+    end: Input<'_, Sample>,
     mut progress: impl FnMut(&Session),
 ) {
     let mut seen = 0;
     for sample in samples {
-        session.handle(Event::Sample(&sample));
+        session.feed(Input::Sample(&sample));
         if session.dwells().len() != seen {
             seen = session.dwells().len();
             progress(session);
         }
     }
-    session.handle(end);
+    session.feed(end);
 }
 
 /// A row in the stage path's units, its time from `begin` on; rounding as in
@@ -309,10 +310,10 @@ fn dwells(
     for row in rows {
         let middle = row.mid_s.unwrap_or(end + 0.5 * row.seconds);
         end = middle + 0.5 * row.seconds;
-        session.handle(Event::Averaged(&averaged(row, middle)));
+        session.take_dwell(&averaged(row, middle));
         progress(&session);
     }
-    session.handle(Event::End);
+    session.feed(Input::End);
     Ok(session)
 }
 

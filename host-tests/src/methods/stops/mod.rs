@@ -15,9 +15,10 @@ use firmware::ports::Recorder;
 use heapless::Vec as Few;
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
-use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::session::{Procedure, Session};
 use orientation::alignment::stops::stop::STOPS;
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::{Input, Method as _};
 use orientation::earth::EARTH_RATE;
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
@@ -130,7 +131,7 @@ fn again(
     let mut watched = Watched::new(session);
     samples::given(rows, period_s).for_each(|sample| watched.push(&sample));
     let Watched { mut session, criteria } = watched;
-    session.handle(ended.map_or(Event::End, Event::Failed));
+    session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
     let assumed = vec![GIVEN.to_owned()];
     Ok(Replay { method: Method::Siap, session, zero_s: 0.0, criteria, assumed })
 }
@@ -211,7 +212,7 @@ fn follow(
     let mut watched = Watched::new(session);
     samples::samples(rows, period_s).for_each(|sample| watched.push(&sample));
     let Watched { mut session, criteria } = watched;
-    session.handle(Event::End);
+    session.feed(Input::End);
     check_displacements(&session)?;
     Ok(Replay { method, session, zero_s, criteria, assumed })
 }
@@ -394,7 +395,7 @@ impl Watched {
 
     /// Gives it a sample.
     pub fn push(&mut self, sample: &InertialSample) {
-        self.session.handle(Event::Sample(sample));
+        self.session.feed(Input::Sample(sample));
         if let Some((criteria, limits)) = self.session.criteria()
             && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
         {

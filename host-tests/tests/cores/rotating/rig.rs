@@ -9,9 +9,10 @@ use hal_mock::stage::{StageState, Unevenness};
 use hal_mock::turntable::{Segment, TurningSample, Turntable, TurntableConfiguration};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::conclusion::Conclusion;
-use orientation::alignment::rotating::session::{Command, Event, Procedure, Session};
+use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::site::Site;
+use orientation::alignment::{Input, Method, Request};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
@@ -52,14 +53,13 @@ fn replayed(
     let mut session = Session::new(*setting, procedure).expect("a recording has no speeds");
     for turning in samples {
         let sample = sample(&turning);
-        let event = if is_by_encoder {
-            Event::Sample(&sample)
+        if is_by_encoder {
+            session.feed(Input::Sample(&sample));
         } else {
-            Event::Recorded(&sample, turning.stage_rate_rad_s as f32)
-        };
-        session.handle(event);
+            session.take_recorded(&sample, turning.stage_rate_rad_s as f32);
+        }
     }
-    session.handle(Event::End);
+    session.feed(Input::End);
     session.conclusion().expect("the session has ended").clone()
 }
 
@@ -171,20 +171,20 @@ pub fn driven(
         };
         let mut obeyed = wanted;
         fault(&mut turning, &mut obeyed);
-        match session.handle(Event::Sample(&sample(&turning))) {
-            Command::Turn(rate) => {
+        match session.feed(Input::Sample(&sample(&turning))) {
+            Request::Turn(rate) => {
                 wanted = rate;
                 commands.push(rate);
             }
-            Command::Finished => return Driven { session, seconds: time_s, commands },
-            Command::Wait => {}
+            Request::Done => return Driven { session, seconds: time_s, commands },
+            _ => {}
         }
         let most = ACCELERATION / rate_hz;
         let before = motor.rate_rad_s;
         motor.rate_rad_s += (obeyed - before).clamp(-most, most);
         motor.angle_rad += 0.5 * (before + motor.rate_rad_s) / rate_hz;
     }
-    session.handle(Event::End);
+    session.feed(Input::End);
     Driven { session, seconds: 3600.0, commands }
 }
 

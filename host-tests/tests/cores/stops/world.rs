@@ -7,9 +7,10 @@ use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::{Conclusion, Found};
 use orientation::alignment::stops::residual::Residual;
-use orientation::alignment::stops::session::{Event, Procedure, Session};
+use orientation::alignment::stops::session::{Procedure, Session};
 use orientation::alignment::stops::stop::Stop;
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
@@ -157,7 +158,7 @@ impl Day {
         let start = vehicle.truth().attitude.azimuth_rad;
         while let Some(mut sample) = vehicle.next() {
             if change(&mut sample) {
-                session.handle(Event::Sample(&converted(
+                session.feed(Input::Sample(&converted(
                     &sample,
                     &mut carried,
                     period,
@@ -167,12 +168,12 @@ impl Day {
             look(&session, sample.time_s);
             if stops.get(next).is_some_and(|stop| sample.time_s + 0.5 * period >= stop[1]) {
                 if let Some(there) = self.fix(next, vehicle.truth().displacement_m, &mut fixes) {
-                    session.handle(Event::Displaced(there));
+                    session.feed(Input::Displaced(&there));
                 }
                 next += 1;
             }
         }
-        session.handle(Event::End);
+        session.feed(Input::End);
         let truth = vehicle.truth();
         Outcome {
             conclusion: session.conclusion().expect("it has ended").clone(),

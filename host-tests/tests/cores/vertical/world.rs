@@ -1,7 +1,8 @@
 //! A body that turns and accelerates in closed form, and what its sensors show of it.
 
 use hal_mock::noise::Generator;
-use orientation::attitude::{Gyro, Handover, Keeper, Report, Setting};
+use orientation::alignment::Azimuth;
+use orientation::attitude::{Gyro, Keeper, Report, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;
@@ -107,7 +108,7 @@ pub fn keep(body: &Body, mut spoil: impl FnMut(f64, &mut InertialSample) -> bool
         if !is_handed && body.handed.is_some_and(|handed| time >= handed) {
             is_handed = true;
             let [azimuth, ..] = (body.attitude)(time).map(wrapped);
-            keeper.hand_over(Handover { azimuth, sigma: 1e-3 });
+            keeper.hand_over(Azimuth { angle: azimuth, sigma: 1e-3 });
         }
         if place % (0.1 / period).round() as u32 == 0 {
             known.push(judged(body, time, keeper.report()));

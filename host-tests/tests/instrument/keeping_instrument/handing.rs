@@ -1,12 +1,10 @@
 //! The moment of the handing over, sample by sample.
 
-use embassy_time::{Duration, Timer};
-use firmware::configuration::{Alignment, KeepConfiguration, Realignment};
-use firmware::keep::{Keep, Keeping, Motion};
-use firmware::shared::Shared;
-use host::virtual_time;
-use orientation::attitude::{Gyro, Handover, Keeper, Setting};
+use embassy_time::Duration;
+use orientation::alignment::{Azimuth, Progress};
+use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
+use orientation::navigation::{self, Navigator, Policy, Realignment};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
 
@@ -30,35 +28,24 @@ fn sample(index: u64, turn: f64) -> InertialSample {
 fn azimuth_after(later: u64) -> f64 {
     let latitude = Latitude::from_degrees(45.0).expect("a latitude");
     let gyro = Gyro { scale_sigma: 1e-4, bias_sigma: 1e-6, ..Gyro::default() };
-    let configuration = KeepConfiguration {
-        hold: Duration::MAX,
+    let policy = Policy {
+        hold_seconds: f64::INFINITY,
         realignment: Realignment::Never,
         knows_stops: true,
-        alignment: Alignment::Always,
+        skips_known: false,
         beside: gyro,
         precise: gyro,
     };
     let mut keeper = Keeper::new(&Setting::precise(latitude, 0.01, gyro));
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
-    let shared = Shared::new(&());
-    let mut keeping = Keeping::new(&mut keeper, &configuration, (), ());
-    let fed = async {
-        Timer::after(Duration::from_millis(50)).await;
-        // The session has all of them but the last ones, and is at work on its conclusion.
-        shared.keep.is_behind.set(true);
-        for index in 501..=505 + later {
-            let motion = Motion::Moved(sample(index, TURN));
-            shared.keep.motions.try_send(motion).expect("there is room");
-        }
-        Timer::after(Duration::from_millis(50)).await;
-        let handover = Handover { azimuth: 100.0 * DEGREE, sigma: 0.01 * DEGREE };
-        shared.keep.found.signal((Instant(505 * 10_000), handover));
-        shared.keep.is_behind.set(false);
-        shared.keep.caught_up.signal(());
-        Timer::after(Duration::from_millis(200)).await;
-    };
-    virtual_time::run_beside(keeping.run(&shared), fed).expect("no deadlock");
-    let azimuth = keeping.report().azimuth.expect("it was handed over");
+    let mut navigator = Navigator::new(&mut keeper, &policy, None);
+    let azimuth = Azimuth { angle: 100.0 * DEGREE, sigma: 0.01 * DEGREE };
+    navigator.find(Instant(505 * 10_000), azimuth);
+    for index in 501..=505 + later {
+        navigator.push(&sample(index, TURN), &mut |_| ());
+    }
+    navigator.settle(&mut |_| ());
+    let azimuth = keeper.report().azimuth.expect("it was handed over");
     azimuth.angle.to_degrees()
 }
 
@@ -76,12 +63,14 @@ fn the_azimuth_goes_on_from_the_sessions_last_sample_without_a_gap() {
     for seed in 1..=3 {
         let found = drive(&vehicle(seed, Hold::of(5.0)));
         let concluded = found.run.events.iter().find_map(|(at, event)| match event {
-            Event::Concluded(azimuth, _, _) => Some((*at, *azimuth)),
+            Event::Alignment(Progress::Concluded(solution)) => {
+                Some((*at, solution.azimuth.angle.to_degrees()))
+            }
             _ => None,
         });
         let (at, azimuth) = concluded.expect("a healthy run");
         let handed = found.run.events.iter().find_map(|(at, event)| match event {
-            Event::HandedOver(..) => Some(*at),
+            Event::Navigation(navigation::Progress::HandedOver(..)) => Some(*at),
             _ => None,
         });
         let late = handed.expect("it is handed over") - at;

@@ -7,6 +7,7 @@ use firmware::simulated::keep::Hold;
 use firmware::simulated::scenario::Scenario;
 use host::instrument::align_and_keep;
 use host::instrument::kept::KeptPlan;
+use orientation::navigation::Progress;
 
 #[test]
 fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {
@@ -99,7 +100,8 @@ fn an_azimuth_from_outside_spares_the_alignment() {
     let hold = Hold { handover: Some(([azimuth + 0.1, 0.16], 30.0)), ..Hold::of(300.0) };
     let found = keep(&frames(3, hold), &KeptPlan::of(None));
     assert!(found.run.conclusion().is_none(), "no session has concluded");
-    let handed = when(&found.run, |event| matches!(event, Event::HandedOver(..)));
+    let handed =
+        when(&found.run, |event| matches!(event, Event::Navigation(Progress::HandedOver(..))));
     assert!(handed.is_some_and(|at| (30.0..32.0).contains(&at)), "{handed:?}");
     let [worst, _] = sigmas(&found.run.kept);
     assert!(worst < 3.5, "{worst} σ");

@@ -5,6 +5,7 @@ use firmware::event::Event;
 use firmware::simulated::keep::Hold;
 use host::instrument::kept::KeptPlan;
 use orientation::attitude::Realigned;
+use orientation::navigation::Progress;
 
 #[test]
 fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
@@ -12,7 +13,7 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
         let hold = Hold { realigns: true, drive_s: 480.0, stop_s: 100.0, ..Hold::of(1500.0) };
         let found = drive(&vehicle(seed, hold));
         let handed = |(_, event): &(_, Event)| match event {
-            Event::HandedOver(_, _, outcome) => Some(*outcome),
+            Event::Navigation(Progress::HandedOver(_, outcome)) => Some(*outcome),
             _ => None,
         };
         let outcomes: Vec<Realigned> = found.run.events.iter().filter_map(handed).collect();

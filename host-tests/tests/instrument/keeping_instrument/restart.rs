@@ -12,6 +12,7 @@ use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
 use host::instrument::{VehicleRun, align_stops_along};
 use orientation::attitude::restart::{RecallRefusal, Remembered};
+use orientation::navigation::Progress;
 
 /// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
 const STEADY: GyroClass =
@@ -56,13 +57,16 @@ fn second(
 
 fn refusal(run: &VehicleRun) -> Option<RecallRefusal> {
     run.run.events.iter().find_map(|(_, event)| match event {
-        Event::RecallRefused(refusal) => Some(*refusal),
+        Event::Navigation(Progress::RecallRefused(refusal)) => Some(*refusal),
         _ => None,
     })
 }
 
 fn is_recalled(run: &VehicleRun) -> bool {
-    run.run.events.iter().any(|(_, event)| matches!(event, Event::HeadingRecalled(..)))
+    run.run
+        .events
+        .iter()
+        .any(|(_, event)| matches!(event, Event::Navigation(Progress::HeadingRecalled(_))))
 }
 
 #[test]

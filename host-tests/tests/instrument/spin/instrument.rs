@@ -7,7 +7,16 @@ use firmware::simulated::spin::SpinScenario;
 use host::instrument::spinning::{SpinRun, follow_spin};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::{Known, follow};
+use orientation::alignment;
+use orientation::roll::Progress::{Begun, Changed, Ended, Flown, LiftBack};
 use orientation::roll::{Condition, State};
+
+/// The event, or the pattern of one, of a progress of the roll.
+macro_rules! rolled {
+    ($($progress:tt)+) => {
+        Event::Alignment(alignment::Progress::Roll($($progress)+))
+    };
+}
 
 fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {
     follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))
@@ -46,16 +55,16 @@ fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
 
 /// Whether an event tells that the roll has come into one of these conditions.
 fn is_roll(event: &Event, of: &[Condition]) -> bool {
-    matches!(event, Event::Roll(State { condition, .. }) if of.contains(condition))
+    matches!(event, rolled!(Changed(State { condition, .. })) if of.contains(condition))
 }
 
 #[test]
 fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
     let run = flown(&short(), None).run;
     let events: Vec<Event> = run.events.iter().map(|(_, event)| *event).collect();
-    assert!(events.contains(&Event::BegunSpin));
+    assert!(events.contains(&rolled!(Begun)));
     assert!(events.iter().any(|event| is_roll(event, &[Condition::Locked])), "{events:?}");
-    assert!(matches!(events.last(), Some(Event::Flown { sigma: Some(_), .. })), "{events:?}");
+    assert!(matches!(events.last(), Some(rolled!(Flown(_, Some(_))))), "{events:?}");
     let last = run.lines.lines().last().unwrap_or_default();
     assert!(last.starts_with("roll ") && last.ends_with(" locked, faults 0"), "{}", run.lines);
 }
@@ -81,7 +90,7 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
     let events: Vec<Event> = run.run.events.iter().map(|(_, event)| *event).collect();
     assert!(events.iter().any(|event| is_roll(event, &[Condition::Holding])), "{events:?}");
     let back = events.iter().find_map(|event| match event {
-        Event::LiftBack(seconds) => Some(*seconds),
+        rolled!(LiftBack(seconds)) => Some(*seconds),
         _ => None,
     });
     assert!(back.is_some_and(|seconds| (0.2..0.6).contains(&seconds)), "{events:?}");
@@ -116,7 +125,7 @@ fn a_chip_that_fails_for_good_ends_the_flight_with_its_name() {
         name.ends_with("-silent") || name.ends_with("bus-always") || name.ends_with("identity")
     }) {
         let run = flown(&SpinScenario { seconds: 3.0, ..scenario }, Some(fault)).run;
-        let ended = run.events.iter().any(|(_, event)| matches!(event, Event::RollEnded(_)));
+        let ended = run.events.iter().any(|(_, event)| matches!(event, rolled!(Ended(_))));
         assert!(ended, "{fault}: {:?}", run.events.last());
         assert!(
             run.lines.lines().last().is_some_and(|line| line.starts_with("no roll")),

@@ -19,11 +19,15 @@ pub mod level;
 pub mod misalignment;
 pub mod molecular;
 pub mod part;
+pub mod progress;
 pub mod session;
 pub mod solution;
 pub mod tilting;
 pub mod turn;
 pub mod turn_accumulator;
+
+pub use progress::Progress;
+pub use session::Session;
 
 use self::misalignment::AxisMisalignment;
 use self::solution::SPEEDS;

@@ -138,6 +138,17 @@ impl TurnAccumulator {
         }
     }
 
+    /// Discards all turns, in place; nothing is accumulated until [`Self::follow`].
+    pub fn clear(&mut self) {
+        self.stretches.clear();
+        self.modulated.clear();
+        self.follow(Mode::Ignore);
+        (self.ellipse, self.ellipse_turns) = (Complex::default(), 0);
+        (self.slip, self.speed) = (0.0, 0.0);
+        (self.last_force, self.clipped) = (SpecificForce(0), 0);
+        (self.repeated, self.most_repeated) = (0, 0);
+    }
+
     /// Stretches at constant rate so far.
     #[must_use]
     pub fn stretches(&self) -> &[Stretch] {

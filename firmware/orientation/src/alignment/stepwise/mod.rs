@@ -14,9 +14,13 @@ pub mod etalon;
 pub mod fit;
 pub mod level;
 pub mod mount;
+pub mod progress;
 pub mod quality;
 pub mod session;
 pub mod setting;
+
+pub use progress::Progress;
+pub use session::Session;
 
 use crate::planner::POSITIONS;
 use crate::signal::dwell::Dwell;

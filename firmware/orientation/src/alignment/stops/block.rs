@@ -75,6 +75,12 @@ impl<const N: usize> Blocks<N> {
         Self { list: Vec::new(), span, swing: 0.0 }
     }
 
+    /// Removes all blocks; the next last `span` seconds as long as there is room.
+    pub fn clear(&mut self, span: f32) {
+        self.list.clear();
+        (self.span, self.swing) = (span, 0.0);
+    }
+
     /// Adds the next block, which must be later than all before it.
     pub fn push(&mut self, block: Block) {
         if let Some(last) = self.list.last_mut()

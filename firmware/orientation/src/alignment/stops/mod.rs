@@ -21,11 +21,15 @@ pub mod lever;
 pub mod path;
 pub mod place;
 pub mod plain;
+pub mod progress;
 pub mod residual;
 pub mod session;
 pub mod solution;
 pub mod stop;
 pub mod stop_detector;
+
+pub use progress::Progress;
+pub use session::Session;
 
 use super::site::Site;
 use crate::signal::rest::Sensors;

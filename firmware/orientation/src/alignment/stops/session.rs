@@ -11,39 +11,21 @@ use heapless::Vec;
 
 use super::Setting;
 use super::conclusion::Conclusion;
+use super::inclination::pitch_and_roll;
+use super::progress::Progress;
 use super::residual::Residual;
 use super::stop::{STOPS, Stop};
 use super::stop_detector::{Rests, StopDetector};
+use crate::alignment::method::{Input, Method, Request};
 use crate::alignment::period::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, contradiction};
+use crate::alignment::progress::Listener;
 use crate::alignment::refusal::Refusal;
 use crate::alignment::setup::SetupError;
+use crate::alignment::verdict::{Solution, Verdict};
+use crate::device::TRIAD;
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};
 use crate::units::Instant;
-
-/// Input of a session.
-#[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
-    /// A sample of gyros and accelerometers.
-    Sample(&'a InertialSample),
-    /// Reported position of the present or last stop, north and east of the first, m.
-    Displaced([f64; 2]),
-    /// The end of the recording: there are no more samples.
-    End,
-    /// A permanent failure of the instrument.
-    Failed(Refusal),
-}
-
-/// Output of a session.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
-    /// Continue sampling.
-    Wait,
-    /// The vehicle may drive, because this stop was long enough; returned once at each stop.
-    Drive,
-    /// The session is over and its conclusion is final.
-    Finished,
-}
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +36,8 @@ pub enum Phase {
     Standing(usize),
     /// The vehicle drives after this number of stops.
     Driving(usize),
+    /// Samples are passed by until the conclusion is drawn.
+    Conclude,
     /// The session is over.
     Done,
 }
@@ -134,8 +118,14 @@ pub struct Session {
     procedure: Procedure,
     /// Stops so far.
     stop_detector: StopDetector,
-    /// State of the session.
+    /// State of the session, and the time since when.
     phase: Phase,
+    since: Instant,
+    /// Displacement of the first stop, north and east, m, from which others count; none while it is
+    /// not known.
+    origin: Option<[f64; 2]>,
+    /// Number of the latest stop whose displacement is known, from zero.
+    placed: usize,
     /// Time of the first complete second.
     begun: Option<Instant>,
     /// Number of samples so far.
@@ -163,25 +153,20 @@ impl Session {
     #[inline]
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
         let gravity = setting.site.latitude.gravity();
-        let period = procedure.sample_seconds;
-        let stop_detector =
-            StopDetector::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
-        let phase = Phase::Waiting;
-        let (begun, samples, is_reported, conclusion) = (None, 0, false, None);
-        Self { setting, procedure, stop_detector, phase, begun, samples, is_reported, conclusion }
-    }
-
-    /// Takes one event and returns the command that follows.
-    pub fn handle(&mut self, event: Event) -> Command {
-        match event {
-            _ if self.phase == Phase::Done => Command::Finished,
-            Event::Sample(sample) => self.sample(sample),
-            Event::Displaced(displacement) => {
-                self.stop_detector.displace(displacement);
-                Command::Wait
-            }
-            Event::End => self.conclude(),
-            Event::Failed(reason) => self.finish(Conclusion::refused(reason)),
+        let (sensors, period) = (setting.sensors(), procedure.sample_seconds);
+        Self {
+            // Built where it stays: it is too large for a copy.
+            stop_detector: StopDetector::new(procedure.rests.clone(), &sensors, gravity, period),
+            setting,
+            procedure,
+            phase: Phase::Waiting,
+            since: Instant::default(),
+            origin: Some([0.0; 2]),
+            placed: 0,
+            begun: None,
+            samples: 0,
+            is_reported: false,
+            conclusion: None,
         }
     }
 
@@ -228,13 +213,41 @@ impl Session {
     }
 
     #[inline]
-    fn sample(&mut self, sample: &InertialSample) -> Command {
+    fn sample(&mut self, sample: &InertialSample, listener: Listener) -> Request {
         self.samples += 1;
-        if self.stop_detector.push(sample) { self.second(sample.time) } else { Command::Wait }
+        if !self.stop_detector.push(sample) {
+            return self.locate();
+        }
+        match self.second(sample.time, listener) {
+            Request::Continue => self.locate(),
+            request => request,
+        }
+    }
+
+    /// Asks for the displacement of the present stop until it is known.
+    fn locate(&self) -> Request {
+        let Phase::Standing(index) = self.phase else { return Request::Continue };
+        let is_known = if index == 0 { self.origin.is_some() } else { index <= self.placed };
+        if is_known { Request::Continue } else { Request::Locate }
+    }
+
+    /// Takes the displacement of the present stop.
+    fn displace(&mut self, &[north, east]: &[f64; 2], listener: Listener) {
+        let Phase::Standing(index) = self.phase else { return };
+        if index == 0 {
+            self.origin = self.origin.or(Some([north, east]));
+            return;
+        }
+        if let Some(origin) = self.origin {
+            let place = [north - origin[0], east - origin[1]];
+            self.placed = index;
+            self.stop_detector.displace(place);
+            listener(Progress::Displaced(index + 1, place).into());
+        }
     }
 
     /// Updates phase and limits once a second.
-    fn second(&mut self, now: Instant) -> Command {
+    fn second(&mut self, now: Instant, listener: Listener) -> Request {
         let begun = *self.begun.get_or_insert(now);
         self.report_displacements();
         let count = self.stop_detector.stops().len();
@@ -245,7 +258,7 @@ impl Session {
         };
         if phase != self.phase {
             self.is_reported = false;
-            self.phase = phase;
+            self.enter(phase, now, listener);
         }
         if self.procedure.stops > 0 && self.stop_detector.loss.is_some() {
             return self.conclude();
@@ -253,18 +266,40 @@ impl Session {
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
             return self.conclude();
         }
-        self.stand(count)
+        self.stand(count, listener)
     }
 
-    /// Returns the command to drive, or concludes, once the vehicle has stood for long enough.
-    fn stand(&mut self, count: usize) -> Command {
-        let Phase::Standing(_) = self.phase else { return Command::Wait };
-        let length = self.stop_detector.stops().last().map_or(0.0, Stop::seconds);
-        if self.is_reported || length < self.procedure.stop_seconds {
-            return Command::Wait;
+    /// Enters a phase, and reports the begin of a stop, with the duration of the drive before it, or
+    /// of a drive.
+    fn enter(&mut self, phase: Phase, now: Instant, listener: Listener) {
+        match (self.phase, phase) {
+            (Phase::Driving(_), Phase::Standing(index)) => {
+                let seconds = now.seconds() - self.since.seconds();
+                listener(Progress::Stopped(index + 1, seconds).into());
+            }
+            (_, Phase::Standing(_)) => listener(Progress::Standing.into()),
+            (_, Phase::Driving(_)) => listener(Progress::Driving.into()),
+            _ => {}
+        }
+        (self.phase, self.since) = (phase, now);
+    }
+
+    /// Permits the vehicle to drive, or concludes, once it has stood for long enough.
+    fn stand(&mut self, count: usize, listener: Listener) -> Request {
+        let (Phase::Standing(_), Some(stop)) = (self.phase, self.stop_detector.stops().last())
+        else {
+            return Request::Continue;
+        };
+        if self.is_reported || stop.seconds() < self.procedure.stop_seconds {
+            return Request::Continue;
         }
         self.is_reported = true;
-        if count == self.procedure.stops { self.conclude() } else { Command::Drive }
+        if count == self.procedure.stops {
+            return self.conclude();
+        }
+        let level = pitch_and_roll(&stop.force.mean());
+        listener(Progress::MayDrive(count, stop.seconds(), level).into());
+        Request::MayDrive
     }
 
     /// Reports the position of the last stop, if it is known in advance.
@@ -272,17 +307,14 @@ impl Session {
         let Some(last) = self.stop_detector.stops().len().checked_sub(1) else { return };
         if let Some(displacement) = self.procedure.displacements.get(last) {
             self.stop_detector.displace(*displacement);
+            self.placed = last;
         }
     }
 
-    /// Concludes from the stops so far.
-    #[inline(never)]
-    fn conclude(&mut self) -> Command {
-        let conclusion = match self.contradiction() {
-            Some(reason) => Conclusion::refused(reason),
-            None => Conclusion::of(&self.setting, &mut self.stop_detector),
-        };
-        self.finish(conclusion)
+    /// Ends the session with the stops so far.
+    fn conclude(&mut self) -> Request {
+        self.phase = Phase::Conclude;
+        Request::Compute
     }
 
     /// Refusal of samples whose time stamps contradict the configured period.
@@ -294,10 +326,72 @@ impl Session {
         contradiction(stated, found, period_tolerance).filter(|_| is_whole)
     }
 
-    /// Ends the session with a conclusion.
-    fn finish(&mut self, conclusion: Conclusion) -> Command {
-        self.conclusion = Some(conclusion);
+    /// Ends the session with a conclusion, and reports the biases that it shows.
+    fn finish(&mut self, conclusion: Conclusion, listener: Listener) -> Request {
+        let Conclusion { found, .. } = self.conclusion.insert(conclusion);
+        if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
+            for ((gyro, bias), sigma) in TRIAD.into_iter().zip(found.biases).zip(found.bias_sigmas)
+            {
+                listener(Progress::Bias(gyro, bias, sigma).into());
+            }
+        }
         self.phase = Phase::Done;
-        Command::Finished
+        Request::Done
+    }
+
+    /// Resets the session in place for another alignment, which does not know yet where its first
+    /// stop is.
+    fn restart(&mut self) {
+        self.stop_detector.clear();
+        (self.phase, self.since) = (Phase::Waiting, Instant::default());
+        (self.origin, self.placed) = (None, 0);
+        (self.begun, self.samples) = (None, 0);
+        (self.is_reported, self.conclusion) = (false, None);
+    }
+}
+
+impl Method<InertialSample> for Session {
+    fn begin(&mut self, listener: Listener) -> Request {
+        if self.samples > 0 || self.conclusion.is_some() {
+            self.restart();
+        }
+        let (stops, latitude) = (self.procedure.stops, self.setting.site.latitude);
+        listener(Progress::Begun { stops, latitude }.into());
+        match self.setting.site.check_latitude() {
+            Ok(()) => Request::Continue,
+            Err(reason) => self.finish(Conclusion::refused(reason), listener),
+        }
+    }
+
+    fn take(&mut self, input: Input<'_, InertialSample>, listener: Listener) -> Request {
+        match input {
+            _ if self.phase == Phase::Done => return Request::Done,
+            _ if self.phase == Phase::Conclude => return Request::Continue,
+            Input::Sample(sample) => return self.sample(sample, listener),
+            Input::Displaced(displacement) => self.displace(displacement, listener),
+            Input::Sway(_) => {}
+            Input::End => return self.conclude(),
+            Input::Failed(reason) => return self.finish(Conclusion::refused(*reason), listener),
+        }
+        Request::Continue
+    }
+
+    // Not inlined, so that its stack is free again while samples are taken.
+    #[inline(never)]
+    fn compute(&mut self, listener: Listener) -> Request {
+        if self.phase != Phase::Conclude {
+            return Request::Continue;
+        }
+        let conclusion = match self.contradiction() {
+            Some(reason) => Conclusion::refused(reason),
+            None => Conclusion::of(&self.setting, &mut self.stop_detector),
+        };
+        self.finish(conclusion, listener)
+    }
+
+    fn verdict(&self) -> Option<Verdict> {
+        let Conclusion { verdict, found } = self.conclusion.as_ref()?;
+        let limit = found.as_ref().map_or(0.0, |found| found.limit);
+        Some(verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }

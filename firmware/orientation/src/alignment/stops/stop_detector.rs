@@ -108,6 +108,7 @@ pub struct StopDetector {
 impl StopDetector {
     /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
     #[must_use]
+    #[inline]
     pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
         Self {
             rests,
@@ -130,6 +131,21 @@ impl StopDetector {
             drives: Blocks::new(DRIVE_SPAN),
             loss: None,
         }
+    }
+
+    /// Discards all stops, in place: the next sample is the first.
+    pub fn clear(&mut self) {
+        self.strapdown = Strapdown::default();
+        (self.begun, self.last) = (None, Instant::default());
+        self.progress = Progress::default();
+        self.window.clear();
+        (self.criteria, self.is_at_rest, self.held) = (None, false, 0);
+        self.fleeting = 0.0;
+        self.lever = Lever::default();
+        self.stops.clear();
+        self.blocks.clear(REST_SPAN);
+        self.drives.clear(DRIVE_SPAN);
+        self.loss = None;
     }
 
     /// Takes a sample; returns whether a second ended with it.

@@ -16,35 +16,15 @@ use super::conclusion::Conclusion;
 use super::misalignment::AxisMisalignment;
 use super::turn::{Sense, Stretch};
 use super::turn_accumulator::{Mode, TurnAccumulator};
+use crate::alignment::method::{Input, Method, Request};
 use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
+use crate::alignment::progress::{self, Listener};
 use crate::alignment::refusal::Refusal;
+use crate::alignment::rotating::progress::Progress;
 use crate::alignment::setup::SetupError;
+use crate::alignment::verdict::{Solution, Verdict};
 use crate::signal::Sample;
 use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
-
-/// Input of a session.
-#[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
-    /// A sample, with a fresh angle of the encoder.
-    Sample(&'a Sample),
-    /// A sample of a recording, with the platform's rate that was recorded beside it, rad/s.
-    Recorded(&'a Sample, f32),
-    /// The end of the recording: there are no more samples.
-    End,
-    /// A permanent failure of the instrument.
-    Failed(Refusal),
-}
-
-/// Output of a session.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// Continue sampling.
-    Wait,
-    /// Turn the platform at this rate, rad/s, clockwise positive; zero brings it to rest.
-    Turn(f64),
-    /// The session is over and its conclusion is final.
-    Finished,
-}
 
 /// State of the session; speeds are given by their index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +39,8 @@ pub enum Phase {
     Even(usize, Sense),
     /// A recording is processed, whatever it contains.
     Recorded,
+    /// Samples are passed by until the conclusion is drawn.
+    Conclude,
     /// The session is over.
     Done,
 }
@@ -149,15 +131,12 @@ impl Session {
         }
     }
 
-    /// Takes one event and returns the command that follows.
-    pub fn handle(&mut self, event: Event) -> Command {
-        match event {
-            _ if self.phase == Phase::Done => Command::Finished,
-            Event::Sample(sample) => self.sample(sample, None),
-            Event::Recorded(sample, turning) => self.sample(sample, Some(turning)),
-            Event::End => self.conclude(None),
-            Event::Failed(reason) => self.conclude(Some(reason)),
+    /// Takes a sample of a recording, with the platform's rate that was recorded beside it, rad/s.
+    pub fn take_recorded(&mut self, sample: &Sample, turning: f32) -> Request {
+        if self.phase != Phase::Recorded {
+            return Request::Done;
         }
+        self.sample(sample, Some(turning), &mut |_| ())
     }
 
     /// Configuration of the alignment.
@@ -214,7 +193,7 @@ impl Session {
     }
 
     /// Processes a sample.
-    fn sample(&mut self, sample: &Sample, turning: Option<f32>) -> Command {
+    fn sample(&mut self, sample: &Sample, turning: Option<f32>, listener: Listener) -> Request {
         let now = sample.time;
         let last = self.last.replace(now).unwrap_or(now);
         if now.0.saturating_sub(last.0) > self.gap {
@@ -231,11 +210,11 @@ impl Session {
             return self.conclude(Some(reason));
         }
         match self.phase {
-            Phase::Level => self.level(sample, elapsed),
-            Phase::Modulated(index) => self.modulated(index, sample, elapsed),
-            Phase::Settle(index, sense) => self.settle(index, sense, elapsed),
-            Phase::Even(index, sense) => self.even(index, sense, has_turned, elapsed),
-            Phase::Recorded | Phase::Done => Command::Wait,
+            Phase::Level => self.level(sample, elapsed, listener),
+            Phase::Modulated(index) => self.modulated(index, sample, elapsed, listener),
+            Phase::Settle(index, sense) => self.settle(index, sense, elapsed, listener),
+            Phase::Even(index, sense) => self.even(index, sense, (has_turned, elapsed), listener),
+            Phase::Recorded | Phase::Conclude | Phase::Done => Request::Continue,
         }
     }
 
@@ -253,7 +232,7 @@ impl Session {
     }
 
     /// Measures the tilt at rest.
-    fn level(&mut self, sample: &Sample, elapsed: u64) -> Command {
+    fn level(&mut self, sample: &Sample, elapsed: u64, listener: Listener) -> Request {
         if let Some(force) = sample.force {
             for (sum, part) in self.level.sums.iter_mut().zip(force) {
                 *sum += i64::from(part.0);
@@ -261,45 +240,55 @@ impl Session {
             self.level.count += 1;
         }
         if elapsed < self.end {
-            return Command::Wait;
+            return Request::Continue;
         }
-        let site = &self.setting.site;
-        let [x, y, _] = self.force().unwrap_or_default();
+        let (site, force) = (&self.setting.site, self.force());
+        if let Some(force) = force {
+            listener(progress::Progress::levelled(force));
+        }
+        let [x, y, _] = force.unwrap_or_default();
         match site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
-            Ok(()) => self.begin_speed(0),
+            Ok(()) => self.begin_speed(0, listener),
             Err(reason) => self.conclude(Some(reason)),
         }
     }
 
     /// Begins with a speed: with rate-modulated turns first, where they are configured.
-    fn begin_speed(&mut self, index: usize) -> Command {
+    fn begin_speed(&mut self, index: usize, listener: Listener) -> Request {
         if self.procedure.modulated_turns == 0 {
             return self.begin_sense(index, Sense::Clockwise);
         }
         // The first ramp is part of the rate-modulated motion.
         self.enter(Phase::Modulated(index), Mode::Ignore);
-        Command::Turn(self.speed(index))
+        listener(Progress::Modulated(self.speed(index)).into());
+        Request::Turn(self.speed(index))
     }
 
     /// Turns once at constant rate to measure the speed, then rate-modulated for the configured
     /// number of turns once the sensor has settled.
-    fn modulated(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
+    fn modulated(
+        &mut self,
+        index: usize,
+        sample: &Sample,
+        elapsed: u64,
+        listener: Listener,
+    ) -> Request {
         if self.rate <= 0.0 {
             self.measure(index, sample, elapsed);
-            return Command::Wait;
+            return Request::Continue;
         }
         if elapsed >= self.end {
-            return self.end_modulated(index);
+            return self.end_modulated(index, listener);
         }
         if sample.time.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
-            return Command::Wait;
+            return Request::Continue;
         }
         self.commanded = sample.time;
         if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.settled {
             self.turn_accumulator.follow_modulated(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;
-        Command::Turn(self.procedure.modulated_rate(self.speed(index), self.rate, time))
+        Request::Turn(self.procedure.modulated_rate(self.speed(index), self.rate, time))
     }
 
     /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
@@ -322,11 +311,13 @@ impl Session {
     }
 
     /// Ends the session where the axis misalignment is too large, or the platform did not turn.
-    fn end_modulated(&mut self, index: usize) -> Command {
+    fn end_modulated(&mut self, index: usize, listener: Listener) -> Request {
         let Some(misalignment) = self.misalignments().nth(index) else {
             let wanted = self.speed(index) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));
         };
+        let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
+        listener(Progress::Misalignment(angle, sigma).into());
         match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
             Err(reason) => self.conclude(Some(reason)),
@@ -334,43 +325,52 @@ impl Session {
     }
 
     /// Begins a sense of rotation at a speed.
-    fn begin_sense(&mut self, index: usize, sense: Sense) -> Command {
+    fn begin_sense(&mut self, index: usize, sense: Sense) -> Request {
         self.enter(Phase::Settle(index, sense), Mode::Ignore);
-        Command::Turn(sense.signed(self.speed(index)))
+        Request::Turn(sense.signed(self.speed(index)))
     }
 
     /// Waits until platform and sensor have settled.
-    fn settle(&mut self, index: usize, sense: Sense, elapsed: u64) -> Command {
+    fn settle(&mut self, index: usize, sense: Sense, elapsed: u64, listener: Listener) -> Request {
         if elapsed >= self.end {
             self.enter(Phase::Even(index, sense), Mode::Even);
+            listener(Progress::Stretch(sense, self.speed(index)).into());
         }
-        Command::Wait
+        Request::Continue
     }
 
     /// Counts turns until all are done; refuses when that takes far too long.
-    fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
+    fn even(
+        &mut self,
+        index: usize,
+        sense: Sense,
+        (has_turned, elapsed): (bool, u64),
+        listener: Listener,
+    ) -> Request {
         // The number of planned turns is computed only with a complete turn: it costs 600
         // instructions.
         if has_turned {
             self.turns += 1;
+            let (done, of) = self.turns();
+            listener(Progress::Turned(done, of).into());
             if self.turns >= self.procedure.turns_at(index) {
-                return self.go_on(index, sense);
+                return self.go_on(index, sense, listener);
             }
         }
         if elapsed >= self.end {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));
         }
-        Command::Wait
+        Request::Continue
     }
 
     /// Goes on to the other sense, to the next speed, or to the conclusion.
-    fn go_on(&mut self, index: usize, sense: Sense) -> Command {
+    fn go_on(&mut self, index: usize, sense: Sense, listener: Listener) -> Request {
         if sense == Sense::Clockwise {
             return self.begin_sense(index, Sense::CounterClockwise);
         }
         if index + 1 < self.procedure.speeds.len() {
-            return self.begin_speed(index + 1);
+            return self.begin_speed(index + 1, listener);
         }
         self.conclude(None)
     }
@@ -401,7 +401,11 @@ impl Session {
                 ALLOWANCE.0 * turned / self.speed(index) + ALLOWANCE.1
             }
             // The end of a rate-modulated stretch follows from the speed that it measures.
-            Phase::Modulated(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
+            Phase::Modulated(_)
+            | Phase::Level
+            | Phase::Recorded
+            | Phase::Conclude
+            | Phase::Done => 0.0,
         }
     }
 
@@ -410,17 +414,82 @@ impl Session {
         self.procedure.ramp_seconds + self.setting.sensor.settle_seconds
     }
 
-    /// Ends the session with the turns so far, or with a reason.
-    fn conclude(&mut self, reason: Option<Refusal>) -> Command {
+    /// Ends the session with the turns so far, or at once with a reason.
+    fn conclude(&mut self, reason: Option<Refusal>) -> Request {
         let conclusion = self.conclusion.insert(Conclusion::default());
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
-        } else {
-            self.turn_accumulator.finish();
-            conclusion.draw(&self.setting, &self.turn_accumulator);
+            self.phase = Phase::Done;
+            return Request::Done;
+        }
+        self.phase = Phase::Conclude;
+        Request::Compute
+    }
+
+    /// Whether the axis misalignment is known, or need not be: it is negligible by the sensor's
+    /// statement, will be estimated by rate-modulated turns, or is known from a calibration.
+    fn is_misalignment_settled(&self) -> bool {
+        let is_known = self.setting.misalignments.iter().any(Option::is_some);
+        self.setting.sensor.is_flat || self.procedure.modulated_turns > 0 || is_known
+    }
+
+    /// Resets the session in place for another alignment.
+    fn restart(&mut self) {
+        self.phase = Phase::Level;
+        self.turn_accumulator.clear();
+        self.level = Level::default();
+        (self.since, self.last, self.conclusion) = (None, None, None);
+        (self.samples, self.settled, self.turns) = (0, 0, 0);
+        (self.measured, self.rate, self.commanded) = (None, 0.0, Instant::default());
+        self.end = microseconds(self.procedure.level_seconds);
+    }
+}
+
+impl Method<Sample> for Session {
+    fn begin(&mut self, listener: Listener) -> Request {
+        if self.last.is_some() || self.conclusion.is_some() {
+            self.restart();
+        }
+        let ((_, turns), latitude) = (self.turns(), self.setting.site.latitude);
+        listener(Progress::Begun { turns, latitude }.into());
+        match self.setting.site.check_latitude() {
+            Err(reason) => self.conclude(Some(reason)),
+            Ok(()) if self.is_misalignment_settled() => Request::Continue,
+            Ok(()) => self.conclude(Some(Refusal::MisalignmentUnknown)),
+        }
+    }
+
+    fn take(&mut self, input: Input<'_, Sample>, listener: Listener) -> Request {
+        match input {
+            _ if self.phase == Phase::Done => Request::Done,
+            _ if self.phase == Phase::Conclude => Request::Continue,
+            Input::Sample(sample) => self.sample(sample, None, listener),
+            Input::Sway(_) | Input::Displaced(_) => Request::Continue,
+            Input::End => self.conclude(None),
+            Input::Failed(reason) => self.conclude(Some(*reason)),
+        }
+    }
+
+    fn compute(&mut self, listener: Listener) -> Request {
+        let Some(conclusion) = self.conclusion.as_mut().filter(|_| self.phase == Phase::Conclude)
+        else {
+            return Request::Continue;
+        };
+        self.turn_accumulator.finish();
+        conclusion.draw(&self.setting, &self.turn_accumulator);
+        for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
+            if average.left_out > 0 {
+                listener(Progress::LeftOut(average.left_out, average.sense).into());
+            }
         }
         self.phase = Phase::Done;
-        Command::Finished
+        Request::Done
+    }
+
+    fn verdict(&self) -> Option<Verdict> {
+        let conclusion = self.conclusion.as_ref().filter(|_| self.phase == Phase::Done)?;
+        let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+        Some(conclusion.verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }
 

@@ -2,8 +2,10 @@
 //! dwells confirm is the required one, continues while it is not, and gives up as soon as the time
 //! allowed cannot suffice.
 
-use super::{Command, Session};
+use super::{Session, Task};
 use crate::alignment::budget::Source;
+use crate::alignment::method::{Method, Request};
+use crate::alignment::progress::Listener;
 use crate::alignment::refusal::Refusal;
 use crate::alignment::stepwise::quality::ExpectedScatter;
 use crate::noise::model::GyroNoise;
@@ -12,17 +14,34 @@ use crate::planner::prediction::{Visit, rate_sigma};
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
 
+/// How the accuracy that noise predicts compares with the required one.
+enum Reach {
+    /// It is reached.
+    Met,
+    /// The time left may suffice.
+    Open,
+    /// The least 1σ that the time left allows is greater than the required one, both in °.
+    Hopeless { sigma: f64, required: f64 },
+}
+
 impl Session {
     /// Sends the stage to the next position, or concludes: with an azimuth, or because the time
     /// allowed, `seconds`, is over or cannot suffice.
-    pub(super) fn go_on_until(&mut self, seconds: f64, now: Instant) -> Command {
-        let begun = self.begun.map_or(0.0, Instant::seconds);
-        let left = seconds - (now.seconds() - begun);
-        if self.procedure.schedule.is_balanced(self.dwells().len())
-            && let Some(command) = self.weigh(seconds, left)
-        {
-            return command;
+    pub(super) fn go_on_until(&mut self, seconds: f64, now: Instant) -> Request {
+        if self.procedure.schedule.is_balanced(self.dwells().len()) {
+            return self.compute_later(Task::Weigh(seconds, now));
         }
+        self.go_on_for(self.left(seconds, now), now)
+    }
+
+    /// Time left, s.
+    fn left(&self, seconds: f64, now: Instant) -> f64 {
+        let begun = self.begun.map_or(0.0, Instant::seconds);
+        seconds - (now.seconds() - begun)
+    }
+
+    /// Sends the stage to the next position while there is time left, s, or else concludes.
+    fn go_on_for(&mut self, left: f64, now: Instant) -> Request {
         let next = self.procedure.schedule.position(self.dwells().len());
         match next {
             Some(next) if next.seconds <= left && self.dwells().len() < POSITIONS => {
@@ -32,37 +51,57 @@ impl Session {
         }
     }
 
-    /// Concludes where the accuracy is reached or out of reach; `None` to continue.
+    /// Concludes where the accuracy is reached or out of reach, and goes on otherwise.
     #[inline(never)]
-    fn weigh(&mut self, seconds: f64, left: f64) -> Option<Command> {
+    pub(super) fn weigh(&mut self, seconds: f64, now: Instant, listener: Listener) -> Request {
+        let left = self.left(seconds, now);
+        let is_final = match self.judge(left) {
+            Some(Reach::Met) => self.try_to_conclude(left),
+            Some(Reach::Hopeless { sigma, required }) => {
+                self.draw(Some(Refusal::OutOfReach { sigma, required, seconds }));
+                true
+            }
+            _ => false,
+        };
+        if is_final {
+            return self.finish(listener);
+        }
+        match self.go_on_for(left, now) {
+            Request::Compute => self.compute(listener),
+            request => request,
+        }
+    }
+
+    /// How the predicted accuracy compares with the required one; [`None`] where there is no
+    /// prediction.
+    fn judge(&self, left: f64) -> Option<Reach> {
         let rate = self.setting.site.latitude.horizontal_rate();
         let noise = self.noise();
         let required = self.setting.site.required_sigma;
-        let sigma =
-            rate_sigma(&noise, self.shortest(), self.dwells().iter().map(Visit::from))? / rate;
-        if sigma <= required {
-            return self.try_to_conclude(left);
+        let visits = self.dwells().iter().map(Visit::from);
+        if rate_sigma(&noise, self.shortest(), visits)? / rate <= required {
+            return Some(Reach::Met);
         }
         let least = self.least_rate_sigma(&noise, left)? / rate;
+        let [sigma, bound] = [least, required].map(|angle| angle * DEGREES_PER_RADIAN);
         let is_hopeless = least > required;
-        let [sigma, required] = [least, required].map(|angle| angle * DEGREES_PER_RADIAN);
-        is_hopeless.then(|| self.conclude(Some(Refusal::OutOfReach { sigma, required, seconds })))
+        Some(if is_hopeless { Reach::Hopeless { sigma, required: bound } } else { Reach::Open })
     }
 
-    /// Concludes, unless noise alone still makes the complete fit too uncertain and there is time
-    /// left.
-    fn try_to_conclude(&mut self, left: f64) -> Option<Command> {
-        let command = self.conclude(None);
+    /// Draws the conclusion; false where noise alone still makes the complete fit too uncertain and
+    /// there is time left, s.
+    fn try_to_conclude(&mut self, left: f64) -> bool {
+        self.draw(None);
         let verdict = self.conclusion.as_ref().map(|conclusion| conclusion.verdict);
         let noise = [Source::Noise, Source::Drift, Source::Temperature];
         match verdict {
             Some(Err(Refusal::BudgetNotMet { source, .. }))
                 if noise.contains(&source) && self.procedure.schedule.shortest() <= left =>
             {
-                self.resume();
-                None
+                self.conclusion = None;
+                false
             }
-            _ => Some(command),
+            _ => true,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Alignment procedure as a state machine without I/O: each event is answered by a command.
+//! Multi-position alignment as a state machine without I/O: each input is answered by a request.
 //!
 //! ```text
 //!  level ─▶ (survey) ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
@@ -25,47 +25,29 @@ use self::survey::Store;
 use self::timing::{Target, Timing};
 use super::conclusion::Conclusion;
 use super::criterion::Criterion;
+use super::progress::Progress;
 use super::quality::{Disturbance, ExpectedScatter};
 use super::setting::Setting;
+use crate::alignment::method::{Input, Method, Request};
 use crate::alignment::period::contradiction;
+use crate::alignment::progress::{self, Listener};
 use crate::alignment::refusal::Refusal;
 use crate::alignment::setup::SetupError;
+use crate::alignment::verdict::{Solution, Verdict};
 use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, DwellAverage};
-use crate::signal::sway::SwayNoise;
 use crate::units::{Instant, TURN};
 
 /// Number of second-order sections of the stage filter: order six (Sokolov 2019).
 const SECTIONS: usize = 3;
 
+/// Fraction of the planned dwell above which a dwell counts as complete.
+const WHOLE: f64 = 0.99;
+
 /// Greatest number of repetitions that are recorded: two at each of twelve positions.
 const REPETITIONS: usize = 24;
-
-/// Input of a session.
-#[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
-    /// A sample of the stage path.
-    Sample(&'a Sample),
-    /// A dwell that was averaged elsewhere, for example in a table of dwells.
-    Averaged(&'a Dwell),
-    /// The end of the recording: there are no more samples.
-    End,
-    /// A permanent failure of the instrument.
-    Failed(Refusal),
-}
-
-/// Output of a session.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// Continue sampling.
-    Wait,
-    /// Send the stage to this angle, rad, not wrapped to one turn.
-    Rotate(f64),
-    /// The session is over and its conclusion is final.
-    Finished,
-}
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,8 +60,22 @@ pub enum Phase {
     Dwell,
     /// The stage has been rotating since this time.
     Rotate(Instant),
+    /// Samples are passed by until the task is computed.
+    Compute,
     /// The session is over.
     Done,
+}
+
+/// What is to be computed in a call of its own.
+#[derive(Clone, Copy, Debug)]
+enum Task {
+    /// The noise that the survey shows, and the plan that follows; the time of its last sample.
+    Learn(Instant),
+    /// Whether the accuracy is reached or out of reach, with the time allowed, s, and that of the
+    /// latest sample.
+    Weigh(f64, Instant),
+    /// The conclusion, refused where there is a reason that further dwells cannot remove.
+    Conclude(Option<Refusal>),
 }
 
 /// Record of a dwell that was discarded and measured again.
@@ -104,6 +100,8 @@ pub struct Session {
     timing: Timing,
     /// State of the session.
     phase: Phase,
+    /// What is to be computed next.
+    task: Task,
     /// Position to which the stage was sent.
     target: Target,
     /// Time of the first sample.
@@ -131,27 +129,10 @@ impl Session {
         Prepared::new(setting, procedure).map(Self::from)
     }
 
-    /// Takes one event and returns the command that follows.
-    pub fn handle(&mut self, event: Event) -> Command {
-        match event {
-            _ if self.phase == Phase::Done => Command::Finished,
-            Event::Sample(sample) => self.sample(sample),
-            Event::Averaged(dwell) => self.averaged(dwell),
-            Event::End => self.conclude(None),
-            Event::Failed(reason) => self.conclude(Some(reason)),
-        }
-    }
-
     /// Site, instrument and requirements.
     #[must_use]
     pub fn setting(&self) -> &Setting {
         &self.setting
-    }
-
-    /// Reports that the base's sway is compensated in the rates, which leaves this noise. It must
-    /// be called before the first dwell.
-    pub fn allow_for(&mut self, sway: SwayNoise) {
-        self.setting.sway = sway;
     }
 
     /// Procedure of the session.
@@ -203,33 +184,45 @@ impl Session {
         Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
     }
 
+    /// Takes a dwell that was averaged elsewhere, for example in a table of dwells; concludes with
+    /// the last one.
+    pub fn take_dwell(&mut self, dwell: &Dwell) {
+        let is_taken = self.store.push(*dwell);
+        if !is_taken || self.dwells().len() >= self.planned() {
+            self.draw(None);
+            self.finish(&mut |_| ());
+        }
+    }
+
     /// Processes a sample.
-    fn sample(&mut self, sample: &Sample) -> Command {
+    fn sample(&mut self, sample: &Sample, listener: Listener) -> Request {
         let begun = *self.begun.get_or_insert(sample.time);
         if sample.time.0.saturating_sub(begun.0) > self.timing.longest {
             return self.conclude(Some(Refusal::TimeExhausted));
         }
-        if let Some(command) = self.follow(sample) {
-            return command;
+        if let Some(request) = self.follow(sample, listener) {
+            return request;
         }
         match self.phase {
-            Phase::Level => self.level(sample.time),
+            Phase::Level => self.level(sample.time, listener),
             Phase::Survey => self.survey(sample),
-            Phase::Dwell => self.dwell(sample.time),
+            Phase::Dwell => self.dwell(sample.time, listener),
             Phase::Rotate(since) => self.rotate(sample, since),
-            Phase::Done => Command::Finished,
+            Phase::Compute | Phase::Done => Request::Continue,
         }
     }
 
     /// Averages while the stage stands; where it moves, ends the dwell and begins a new average.
-    fn follow(&mut self, sample: &Sample) -> Option<Command> {
+    fn follow(&mut self, sample: &Sample, listener: Listener) -> Option<Request> {
         let mut ended = None;
         match &mut self.average {
             Some(average) if average.stands_at(sample.stage, self.timing.still) => {
                 average.push(&self.coefficients, sample);
                 return None;
             }
-            Some(_) if self.phase == Phase::Dwell => ended = Some(self.complete(sample.time)),
+            Some(_) if self.phase == Phase::Dwell => {
+                ended = Some(self.complete(sample.time, listener));
+            }
             _ => {}
         }
         self.average = Some(DwellAverage::begin(&self.coefficients, sample));
@@ -237,33 +230,35 @@ impl Session {
     }
 
     /// Tests the tilt once there are enough samples and a force, then goes to the first position.
-    fn level(&mut self, now: Instant) -> Command {
+    fn level(&mut self, now: Instant, listener: Listener) -> Request {
         let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.timing.level;
-        let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
+        let Some(force) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
         else {
-            return Command::Wait;
+            return Request::Continue;
         };
-        let site = &self.setting.site;
+        listener(progress::Progress::levelled(force));
+        let ([x, y, _], site) = (force, &self.setting.site);
         if let Err(reason) = site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
             return self.conclude(Some(reason));
         }
-        if self.must_survey() {
+        if let Some(survey) = self.procedure.survey.filter(|_| self.surveyed.is_none()) {
+            listener(Progress::Surveying(survey.seconds).into());
             self.store.begin_survey();
             self.phase = Phase::Survey;
             self.average = None;
-            return Command::Wait;
+            return Request::Continue;
         }
         if self.stands_at_target() {
             self.phase = Phase::Dwell;
-            return Command::Wait;
+            return Request::Continue;
         }
         self.send(now)
     }
 
     /// Sends the stage to the target.
-    fn send(&mut self, now: Instant) -> Command {
+    fn send(&mut self, now: Instant) -> Request {
         self.phase = Phase::Rotate(now);
-        Command::Rotate(self.target.position.angle)
+        Request::Point(self.target.position.angle)
     }
 
     /// Whether the running average began at the commanded angle.
@@ -273,13 +268,13 @@ impl Session {
     }
 
     /// Ends the dwell when its time is over.
-    fn dwell(&mut self, now: Instant) -> Command {
+    fn dwell(&mut self, now: Instant, listener: Listener) -> Request {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
-        if count < self.target.samples { Command::Wait } else { self.complete(now) }
+        if count < self.target.samples { Request::Continue } else { self.complete(now, listener) }
     }
 
     /// Waits until the stage stands at the commanded angle; refuses when that takes too long.
-    fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
+    fn rotate(&mut self, sample: &Sample, since: Instant) -> Request {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
         if self.stands_at_target() && count > 1 && count >= self.timing.settle {
             self.phase = Phase::Dwell;
@@ -288,12 +283,12 @@ impl Session {
                 [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
             return self.conclude(Some(Refusal::StageNotThere { target, actual }));
         }
-        Command::Wait
+        Request::Continue
     }
 
     /// Takes the dwell in progress, or orders its repetition. A dwell that an uncommanded motion of
     /// the stage cut short is begun again at its position.
-    fn complete(&mut self, now: Instant) -> Command {
+    fn complete(&mut self, now: Instant, listener: Listener) -> Request {
         if let Some(reason) = self.wrong_period() {
             return self.conclude(Some(reason));
         }
@@ -306,8 +301,12 @@ impl Session {
             return self.conclude(None);
         }
         match ExpectedScatter::of(&self.setting, self.dwells()).disturbance(&dwell) {
-            Some(why) if self.tries < self.procedure.retries => self.repeat(why),
-            _ => self.go_on(now),
+            Some(why) if self.tries < self.procedure.retries => self.repeat(why, listener),
+            _ => {
+                let request = self.go_on(now);
+                self.report(&dwell, listener);
+                request
+            }
         }
     }
 
@@ -319,16 +318,25 @@ impl Session {
     }
 
     /// Discards the last dwell; the stage stays, and the next sample begins the dwell anew.
-    fn repeat(&mut self, why: Disturbance) -> Command {
+    fn repeat(&mut self, why: Disturbance, listener: Listener) -> Request {
         self.store.pop();
         self.tries += 1;
+        listener(Progress::Repeated(self.dwells().len() + 1, why).into());
         // A full record omits one more repetition, never a dwell.
         let _ = self.repetitions.push(Repetition { position: self.dwells().len(), why });
-        Command::Wait
+        Request::Continue
+    }
+
+    /// Reports a completed dwell, and whether it was shorter than planned.
+    fn report(&self, dwell: &Dwell, listener: Listener) {
+        listener(Progress::Dwelled(self.dwells().len(), self.planned(), dwell.rate).into());
+        if dwell.seconds < WHOLE * self.procedure.schedule.shortest() {
+            listener(Progress::CutShort(dwell.seconds).into());
+        }
     }
 
     /// Sends the stage to the next position, or concludes.
-    fn go_on(&mut self, now: Instant) -> Command {
+    fn go_on(&mut self, now: Instant) -> Request {
         self.tries = 0;
         if let StopRule::Accuracy { seconds } = self.procedure.stop {
             return self.go_on_until(seconds, now);
@@ -346,7 +354,7 @@ impl Session {
     }
 
     /// Makes a position the next target and sends the stage there.
-    fn go_to(&mut self, position: Position, now: Instant) -> Command {
+    fn go_to(&mut self, position: Position, now: Instant) -> Request {
         self.target = Target::new(position, self.procedure.sample_seconds);
         self.send(now)
     }
@@ -357,30 +365,84 @@ impl Session {
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 
-    /// Takes a dwell that was averaged elsewhere.
-    fn averaged(&mut self, dwell: &Dwell) -> Command {
-        let is_taken = self.store.push(*dwell);
-        if is_taken && self.dwells().len() < self.planned() {
-            Command::Wait
-        } else {
-            self.conclude(None)
-        }
-    }
-
-    /// Withdraws a conclusion that came too early.
-    fn resume(&mut self) {
-        self.conclusion = None;
-        self.phase = Phase::Dwell;
-    }
-
     /// Ends the session with the dwells so far, or with a reason that further dwells cannot remove.
-    fn conclude(&mut self, reason: Option<Refusal>) -> Command {
+    fn conclude(&mut self, reason: Option<Refusal>) -> Request {
+        self.compute_later(Task::Conclude(reason))
+    }
+
+    /// Passes samples by until this is computed.
+    fn compute_later(&mut self, task: Task) -> Request {
+        (self.phase, self.task) = (Phase::Compute, task);
+        Request::Compute
+    }
+
+    /// Draws the conclusion.
+    #[inline(never)]
+    fn draw(&mut self, reason: Option<Refusal>) {
         let conclusion = self.conclusion.insert(Conclusion::default());
         conclusion.draw(&self.setting, self.store.dwells(), self.procedure.criterion);
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
         }
+    }
+
+    /// Ends the session with a conclusion that was drawn, and reports it.
+    fn finish(&mut self, listener: Listener) -> Request {
         self.phase = Phase::Done;
-        Command::Finished
+        let disturbances = self.conclusion.iter().flat_map(|conclusion| &conclusion.disturbances);
+        for (number, why) in (1..).zip(disturbances) {
+            if let Some(why) = why {
+                listener(Progress::LeftOut(number, *why).into());
+            }
+        }
+        Request::Done
+    }
+}
+
+impl Method<Sample> for Session {
+    fn begin(&mut self, listener: Listener) -> Request {
+        if self.begun.is_some() || self.conclusion.is_some() {
+            self.restart();
+        }
+        let dwell = self.procedure.schedule.shortest();
+        let (positions, latitude) = (self.planned(), self.setting.site.latitude);
+        listener(Progress::Begun { positions, dwell, latitude }.into());
+        match self.setting.site.check_latitude() {
+            Ok(()) => Request::Continue,
+            Err(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    fn take(&mut self, input: Input<'_, Sample>, listener: Listener) -> Request {
+        match input {
+            _ if self.phase == Phase::Done => Request::Done,
+            _ if self.phase == Phase::Compute => Request::Continue,
+            Input::Sample(sample) => self.sample(sample, listener),
+            Input::Sway(sway) => {
+                self.setting.sway = *sway;
+                Request::Continue
+            }
+            Input::Displaced(_) => Request::Continue,
+            Input::End => self.conclude(None),
+            Input::Failed(reason) => self.conclude(Some(*reason)),
+        }
+    }
+
+    fn compute(&mut self, listener: Listener) -> Request {
+        match self.task {
+            _ if self.phase != Phase::Compute => Request::Continue,
+            Task::Learn(now) => self.learn(now, listener),
+            Task::Weigh(seconds, now) => self.weigh(seconds, now, listener),
+            Task::Conclude(reason) => {
+                self.draw(reason);
+                self.finish(listener)
+            }
+        }
+    }
+
+    fn verdict(&self) -> Option<Verdict> {
+        let conclusion = self.conclusion.as_ref().filter(|_| self.phase == Phase::Done)?;
+        let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+        Some(conclusion.verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }

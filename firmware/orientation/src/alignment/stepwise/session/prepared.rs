@@ -5,7 +5,7 @@ use heapless::Vec;
 use super::procedure::Procedure;
 use super::survey::Store;
 use super::timing::{Target, Timing, samples};
-use super::{Phase, SECTIONS, Session};
+use super::{Phase, SECTIONS, Session, Task};
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;
@@ -51,6 +51,7 @@ impl From<Prepared> for Session {
             procedure,
             coefficients,
             phase: Phase::Level,
+            task: Task::Conclude(None),
             begun: None,
             average: None,
             repetitions: Vec::new(),
@@ -77,4 +78,26 @@ pub(super) fn designed(
     }
     let first = procedure.schedule.next(&[], 0.0).ok_or(SetupError::NoPosition)?;
     Ok((coefficients, Target::new(first, procedure.sample_seconds)))
+}
+
+impl Session {
+    /// Resets the session in place for another alignment with the noise and the schedule that it
+    /// has: what a survey showed is in them already.
+    #[inline(never)]
+    pub(super) fn restart(&mut self) {
+        if self.surveyed.take().is_some() {
+            self.procedure.survey = None;
+        }
+        self.timing = Timing::of(&self.procedure);
+        if let Some(first) = self.procedure.schedule.next(&[], 0.0) {
+            self.target = Target::new(first, self.procedure.sample_seconds);
+        }
+        self.store.begin_dwells();
+        self.phase = Phase::Level;
+        self.begun = None;
+        self.average = None;
+        self.repetitions.clear();
+        self.tries = 0;
+        self.conclusion = None;
+    }
 }

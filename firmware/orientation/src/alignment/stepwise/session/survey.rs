@@ -5,10 +5,13 @@ use heapless::Vec;
 
 use super::prepared::designed;
 use super::schedule::{Schedule, StopRule};
-use super::{Command, Session};
+use super::{Phase, Session, Task};
+use crate::alignment::method::Request;
+use crate::alignment::progress::Listener;
 use crate::alignment::refusal::Refusal;
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::CAPACITY;
+use crate::alignment::stepwise::progress::Progress;
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::{GyroNoise, StatedNoise};
@@ -82,7 +85,7 @@ impl Store {
 
     /// Ends the survey and makes room for dwells.
     #[inline(never)]
-    fn begin_dwells(&mut self) {
+    pub(super) fn begin_dwells(&mut self) {
         *self = Self::Dwells(Vec::new());
     }
 
@@ -110,33 +113,47 @@ impl Store {
 
 impl Session {
     /// Takes a sample of the survey, which begins anew when the stage moves.
-    pub(super) fn survey(&mut self, sample: &Sample) -> Command {
+    pub(super) fn survey(&mut self, sample: &Sample) -> Request {
         let is_first = self.average.as_ref().is_none_or(|average| average.count() <= 1);
         if self.store.survey(sample.rate, is_first) < self.timing.survey {
-            return Command::Wait;
+            return Request::Continue;
         }
-        match self.learn(sample.time) {
-            Ok(command) => command,
-            Err(reason) => self.conclude(Some(reason)),
+        self.compute_later(Task::Learn(sample.time))
+    }
+
+    /// Ends the survey: fits the noise, makes the plan, and goes to its first position, or
+    /// concludes with the reason for which there is none.
+    pub(super) fn learn(&mut self, now: Instant, listener: Listener) -> Request {
+        match self.try_to_learn(now, listener) {
+            Ok(request) => request,
+            Err(reason) => {
+                self.draw(Some(reason));
+                self.finish(listener)
+            }
         }
     }
 
-    /// Ends the survey: fits the noise, makes the plan, and goes to its first position.
+    /// Fits the noise and makes the plan; a survey with missing samples begins anew.
     #[inline(never)]
-    fn learn(&mut self, now: Instant) -> Result<Command, Refusal> {
+    fn try_to_learn(&mut self, now: Instant, listener: Listener) -> Result<Request, Refusal> {
+        self.phase = Phase::Survey;
         if self.has_missed_samples() {
             self.store.begin_survey();
-            return Ok(Command::Wait);
+            return Ok(Request::Continue);
         }
         let fit = self.store.fit(self.procedure.sample_seconds);
-        let Some(fit) = fit else { return Ok(Command::Wait) };
+        let Some(fit) = fit else { return Ok(Request::Continue) };
         let found = fit.map_err(Refusal::NoiseUnknown)?;
         let noise = known(&found, self.setting.site.noise.model());
         self.setting.site.noise = StatedNoise::Whole(noise);
         self.surveyed = Some(found);
+        for (coefficient, estimate) in found.in_field_units() {
+            listener(Progress::Noise(coefficient, estimate).into());
+        }
         // The time allowed counts from the end of the survey.
         self.begun = Some(now);
         self.plan()?;
+        self.report_plan(listener);
         self.store.begin_dwells();
         Ok(self.send(now))
     }
@@ -179,6 +196,15 @@ impl Session {
             .map_err(|_: SetupError| Refusal::NoSchedule { seconds: allowed })
     }
 
+    /// Reports the plan.
+    fn report_plan(&self, listener: Listener) {
+        if let Schedule::Planned(plan) = &self.procedure.schedule {
+            let sigma = plan.sigma(self.setting.site.latitude);
+            let (positions, dwell, seconds) = (plan.positions(), plan.dwell, plan.seconds);
+            listener(Progress::Planned { positions, dwell, seconds, sigma }.into());
+        }
+    }
+
     /// Refusal for a planning error, with angles in degrees.
     fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
         let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
@@ -196,11 +222,6 @@ impl Session {
     #[must_use]
     pub fn surveyed(&self) -> Option<&NoiseFit> {
         self.surveyed.as_ref()
-    }
-
-    /// Whether a survey is configured and has not been made.
-    pub(super) fn must_survey(&self) -> bool {
-        self.procedure.survey.is_some() && self.surveyed.is_none()
     }
 }
 

@@ -1,0 +1,83 @@
+//! What every method of alignment does: takes samples, requests motion, reports its progress, and
+//! comes to a verdict.
+//!
+//! ```text
+//!  samples, end, failure ─▶ take ─┬─▶ request: point, turn, let drive ─▶ mechanism, driver
+//!                                 └─▶ compute (plans, noise fits, conclusions: up to a second)
+//!                           both ─▶ progress ─▶ log, link
+//! ```
+//!
+//! A method has no clock: time is in its samples, so that a recording replays the alignment that a
+//! board made.
+
+use super::progress::Listener;
+use super::refusal::Refusal;
+use super::verdict::Verdict;
+use crate::signal::sway::SwayNoise;
+
+/// Input of an alignment whose samples are of the type `S`.
+#[derive(Clone, Copy, Debug)]
+pub enum Input<'a, S> {
+    /// A sample.
+    Sample(&'a S),
+    /// Noise that the compensated sway of the base leaves in the samples, before the first of them.
+    Sway(&'a SwayNoise),
+    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east, m, from a point
+    /// that stays the same.
+    Displaced(&'a [f64; 2]),
+    /// The end of the samples.
+    End,
+    /// A permanent failure of the instrument.
+    Failed(&'a Refusal),
+}
+
+/// Request of an alignment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// Continue sampling.
+    Continue,
+    /// Point the gyro at this stage angle, rad, not wrapped to one turn.
+    Point(f64),
+    /// Turn the platform at this rate, rad/s, clockwise positive; zero brings it to rest.
+    Turn(f64),
+    /// Set the sensitive axis of a two-frame mount vertical, to hold the azimuth.
+    Vertical,
+    /// State how far the vehicle has driven, if that is known, by [`Input::Displaced`].
+    Locate,
+    /// The vehicle may drive on.
+    MayDrive,
+    /// Call [`Method::compute`]; samples are passed by until then.
+    Compute,
+    /// The alignment is over and its verdict is final.
+    Done,
+}
+
+/// A method whose samples are of the type `S`: of alignment, or of tracking a roll. It is used as a trait object, so that
+/// an image with several methods contains one instrument.
+pub trait Method<S> {
+    /// Begins the alignment, also anew after one that is over: all fields are reset in place.
+    /// Returns [`Request::Done`] where the alignment is refused before anything moves.
+    fn begin(&mut self, listener: Listener) -> Request;
+
+    /// Takes an input, within bounded time.
+    fn take(&mut self, input: Input<'_, S>, listener: Listener) -> Request;
+
+    /// Computes what the latest request announced.
+    fn compute(&mut self, listener: Listener) -> Request;
+
+    /// The verdict; [`None`] until the alignment is over.
+    fn verdict(&self) -> Option<Verdict>;
+
+    /// Takes an input and computes at once what it requires, without reports.
+    fn feed(&mut self, input: Input<'_, S>) -> Request {
+        self.advance(input, &mut |_| ())
+    }
+
+    /// Takes an input and computes at once what it requires.
+    fn advance(&mut self, input: Input<'_, S>, listener: Listener) -> Request {
+        match self.take(input, listener) {
+            Request::Compute => self.compute(listener),
+            other => other,
+        }
+    }
+}

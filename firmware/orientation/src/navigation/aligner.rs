@@ -1,0 +1,147 @@
+//! The aligner: a method of alignment from power-on to its verdict, and again as it is ordered.
+
+use super::Order;
+use crate::alignment::progress::{Listener, Progress};
+use crate::alignment::refusal::Refusal;
+use crate::alignment::{Azimuth, Input, Method, Request};
+use crate::signal::Timed;
+use crate::signal::sway::SwayNoise;
+use crate::units::Instant;
+
+/// Longest time until the mechanism's angles are valid, µs: six searches of a stage for its index
+/// over the whole travel, with the rests between them, 15 minutes.
+const LONGEST_HOMING: u64 = 900_000_000;
+
+/// State of the aligner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// The mechanism's angles are not valid yet; samples are passed by.
+    Homing,
+    /// The method takes samples.
+    Aligning,
+    /// The alignment is over; samples are passed by.
+    Idle,
+}
+
+/// A method of alignment whose samples are of the type `S`, and its state.
+pub struct Aligner<'m, S> {
+    /// The method.
+    method: &'m mut dyn Method<S>,
+    /// State of the alignment.
+    state: State,
+    /// Time of the first sample that was passed by, and of the latest that the method has taken.
+    since: Option<Instant>,
+    taken: Option<Instant>,
+    /// Azimuth that was found, until it is handed over.
+    found: Option<(Instant, Azimuth)>,
+}
+
+impl<'m, S: Timed> Aligner<'m, S> {
+    /// Takes a method that has not begun.
+    pub fn new(method: &'m mut dyn Method<S>) -> Self {
+        Self { method, state: State::Idle, since: None, taken: None, found: None }
+    }
+
+    /// State of the alignment.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The azimuth that was found and the time of the sample to which it belongs, once.
+    pub fn hand_over(&mut self) -> Option<(Instant, Azimuth)> {
+        self.found.take()
+    }
+
+    /// Begins the first alignment, or another one.
+    pub fn begin(&mut self, listener: Listener) -> Request {
+        (self.state, self.since) = (State::Homing, None);
+        let request = self.method.begin(listener);
+        self.follow(request, listener)
+    }
+
+    /// Reports that the mechanism's angles are valid, and the noise that the compensated sway of
+    /// the base leaves in the samples.
+    pub fn home(&mut self, sway: &SwayNoise, listener: Listener) -> Request {
+        if self.state != State::Homing {
+            return Request::Continue;
+        }
+        self.state = State::Aligning;
+        self.take(Input::Sway(sway), listener)
+    }
+
+    /// Takes a sample.
+    pub fn sample(&mut self, sample: &S, listener: Listener) -> Request {
+        let now = sample.time();
+        match self.state {
+            State::Aligning => {
+                self.taken = Some(now);
+                self.take(Input::Sample(sample), listener)
+            }
+            State::Homing => {
+                let since = *self.since.get_or_insert(now);
+                if now.0.saturating_sub(since.0) <= LONGEST_HOMING {
+                    return Request::Continue;
+                }
+                self.fail(&Refusal::TimeExhausted, listener)
+            }
+            State::Idle => Request::Continue,
+        }
+    }
+
+    /// Takes the displacement of the vehicle, north and east, m.
+    pub fn displace(&mut self, displacement: &[f64; 2], listener: Listener) -> Request {
+        self.take(Input::Displaced(displacement), listener)
+    }
+
+    /// Obeys an order. An alignment that is over cannot fail, and one in progress is not begun.
+    pub fn obey(&mut self, order: &Order, listener: Listener) -> Request {
+        match (order, self.state) {
+            (Order::Restart, State::Idle) => self.begin(listener),
+            (Order::Restart, _) | (_, State::Idle) => Request::Continue,
+            (Order::Fail(reason), _) => self.fail(reason, listener),
+            (Order::Skip, _) => {
+                self.state = State::Idle;
+                Request::Done
+            }
+        }
+    }
+
+    /// Computes what the latest request announced.
+    pub fn compute(&mut self, listener: Listener) -> Request {
+        let request = self.method.compute(listener);
+        self.follow(request, listener)
+    }
+
+    /// Ends the alignment with a reason.
+    fn fail(&mut self, reason: &Refusal, listener: Listener) -> Request {
+        self.take(Input::Failed(reason), listener)
+    }
+
+    /// Passes an input to the method.
+    fn take(&mut self, input: Input<'_, S>, listener: Listener) -> Request {
+        let request = self.method.take(input, listener);
+        self.follow(request, listener)
+    }
+
+    /// Ends the alignment with the method's last request.
+    fn follow(&mut self, request: Request, listener: Listener) -> Request {
+        if request == Request::Done && self.state != State::Idle {
+            self.state = State::Idle;
+            self.conclude(listener);
+        }
+        request
+    }
+
+    /// Reports the verdict, and keeps the azimuth with the time of the sample that ended it.
+    fn conclude(&mut self, listener: Listener) {
+        match self.method.verdict() {
+            Some(Ok(solution)) => {
+                listener(Progress::Concluded(solution));
+                self.found = self.taken.map(|taken| (taken, solution.azimuth));
+            }
+            Some(Err(reason)) => listener(Progress::Refused(reason)),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,433 @@
+//! The navigator: holds the azimuth beside and after the alignment, judges azimuths from elsewhere
+//! and from before a restart, and orders new alignments.
+
+use super::Order;
+use super::policy::{Policy, Realignment};
+use super::progress::{Progress, VerticalGyro};
+use crate::alignment::refusal::Refusal;
+use crate::alignment::{Azimuth, Request};
+use crate::attitude::restart::{RecallRefusal, Remembered};
+use crate::attitude::{Gyro, Keeper, Realigned, Report, State, Trust};
+use crate::signal::InertialSample;
+use crate::units::{DEGREE, DEGREE_PER_HOUR, Instant};
+
+/// Period of the checks of the keeper's state, µs.
+const LOOK: u64 = 100_000;
+/// Number of checks in one second, after which everything else is done.
+const LOOKS: u8 = 10;
+/// Time without any inertial sample after which the motion counts as unmeasured, µs.
+const SILENCE: u64 = 1_000_000;
+/// 1σ of the bias of a coarse gyro after a comparison with the precise one over ten seconds or
+/// more, rad/s: its own bias instability, and scale-factor errors during the comparison.
+const COMPARED_SIGMA: f64 = 30.0 * DEGREE_PER_HOUR;
+/// Longest motion after a rest that does not end an alignment, µs: a slammed door shakes a vehicle
+/// for less than this.
+const RESTLESS: u64 = 5_000_000;
+/// Duration of the rest from which on that limit holds, µs; after a shorter rest, the limit is
+/// longer by the missing time. Biases estimated during a shorter rest may have an error that noise
+/// produces in one run of two hundred; they then indicate a motion that does not exist, until rates
+/// that stay constant for as long disprove it.
+const LEARNING: u64 = 20_000_000;
+/// Duration of an acceleration below which it is not reported, s.
+const REPORTED_SECONDS: f64 = 3.0;
+/// Least time between two saved headings of the same stop, µs.
+const SAVING: u64 = 60_000_000;
+/// Change of azimuth or σ that is worth saving, rad.
+const CHANGE: f64 = 0.01 * DEGREE;
+
+/// Attitude as it is reported to users.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attitude {
+    /// Azimuth of body x; [`None`] if it is unknown, or if no inertial samples arrive.
+    pub azimuth: Option<Azimuth>,
+    /// Pitch, nose up positive, rad.
+    pub pitch: f64,
+    /// Roll, right side down positive, rad.
+    pub roll: f64,
+    /// The keeper's state; [`None`] if no inertial samples arrive.
+    pub state: Option<State>,
+    /// Whether the azimuth is that saved before the loss of supply.
+    pub is_recalled: bool,
+}
+
+/// What follows from an event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Output {
+    /// Progress for the log.
+    Progress(Progress),
+    /// An order to the aligner.
+    Order(Order),
+    /// A request to the mechanism.
+    Request(Request),
+    /// The heading of a body at rest is to be saved against a loss of supply.
+    Save(Remembered),
+    /// The body has set off: the saved heading is not valid any more.
+    Forget,
+    /// Once a second: the keeper's report, and the attitude for users once there is one.
+    Report(Report, Option<Attitude>),
+}
+
+/// Receiver of outputs.
+pub type Outlet<'a> = &'a mut dyn FnMut(Output);
+
+/// The attitude keeper with its policy.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
+pub struct Navigator<'k> {
+    /// The estimator of the attitude.
+    keeper: &'k mut Keeper,
+    /// Duration, policy at stops and stated errors of the gyros.
+    policy: Policy,
+    /// The heading from before the restart, until it has been accepted or rejected.
+    remembered: Option<Remembered>,
+    /// Azimuth and σ that this run has saved, rad, and the time.
+    saved: Option<([f64; 2], Instant)>,
+    /// Time of the latest event, and of the latest inertial sample.
+    now: Instant,
+    moved: Option<Instant>,
+    /// Time of the next check, and checks since the latest full second.
+    due: Option<Instant>,
+    looks: u8,
+    /// An azimuth that waits for the inertial sample of its time.
+    found: Option<(Instant, Azimuth)>,
+    /// The state that was reported last.
+    state: Option<State>,
+    /// Whether the azimuth is that from before the restart, whether it was known at the latest
+    /// check, and whether a bias beyond its stated σ has been reported.
+    is_recalled: bool,
+    has_azimuth: bool,
+    is_bias_beyond_stated: bool,
+    /// Whether the body is at rest, since when it has been, and since when it has been in motion
+    /// after that.
+    is_at_rest: bool,
+    rests: Option<Instant>,
+    moves: Option<Instant>,
+    /// Duration of motion after which the body counts as having set off, µs.
+    patience: u64,
+    /// Whether this stop has had its alignment.
+    is_realigned: bool,
+    /// Whether no alignment runs, now and at the latest full second.
+    is_idle: bool,
+    was_idle: bool,
+    /// Begin of the hold, the end of the first alignment.
+    since: Option<Instant>,
+}
+
+impl<'k> Navigator<'k> {
+    /// Takes an estimator that has had no sample, and the heading that was saved before the
+    /// restart, if there is one.
+    pub fn new(keeper: &'k mut Keeper, policy: &Policy, remembered: Option<Remembered>) -> Self {
+        Self {
+            keeper,
+            policy: *policy,
+            remembered,
+            saved: None,
+            now: Instant::default(),
+            moved: None,
+            due: None,
+            looks: 0,
+            found: None,
+            state: None,
+            is_recalled: false,
+            has_azimuth: false,
+            is_bias_beyond_stated: false,
+            is_at_rest: false,
+            rests: None,
+            moves: None,
+            patience: RESTLESS,
+            is_realigned: true,
+            is_idle: false,
+            was_idle: false,
+            since: None,
+        }
+    }
+
+    /// Whether the body is at rest, as far as its motion is measured.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.is_at_rest
+    }
+
+    /// Whether the duration of the hold is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        let held = |since: Instant| self.now.0.saturating_sub(since.0) as f64 * 1e-6;
+        self.since.is_some_and(|since| held(since) >= self.policy.hold_seconds)
+    }
+
+    /// Whether aiding is to be given before an event of this time: once a second.
+    #[must_use]
+    pub fn wants_aiding(&self, now: Instant) -> bool {
+        self.is_due(now) && self.looks + 1 >= LOOKS
+    }
+
+    /// Takes the azimuth of an alignment, which belongs to a sample of the time `at`.
+    pub fn find(&mut self, at: Instant, azimuth: Azimuth) {
+        self.found = Some((at, azimuth));
+    }
+
+    /// Learns whether an alignment runs.
+    pub fn set_idle(&mut self, is_idle: bool) {
+        self.is_idle = is_idle;
+    }
+
+    /// Takes an increment of rotation and velocity.
+    pub fn push(&mut self, sample: &InertialSample, outlet: Outlet) {
+        self.take_found(sample.time, outlet);
+        self.keeper.push(sample);
+        self.moved = Some(sample.time);
+        self.tick(sample.time, outlet);
+    }
+
+    /// Takes a found azimuth that belongs to the latest sample, or to one without an increment.
+    pub fn settle(&mut self, outlet: Outlet) {
+        self.take_found(Instant(u64::MAX), outlet);
+    }
+
+    /// From the next increment on, another gyro measures about the down axis.
+    pub fn exchange(&mut self, down: VerticalGyro, outlet: Outlet) {
+        let Policy { beside, precise, .. } = self.policy;
+        self.keeper.exchange_down(match down {
+            VerticalGyro::Coarse => beside,
+            VerticalGyro::Calibrated => {
+                Gyro { bias_sigma: COMPARED_SIGMA.min(beside.bias_sigma), ..beside }
+            }
+            VerticalGyro::Precise => precise,
+        });
+        outlet(Output::Progress(Progress::DownGyro(down)));
+    }
+
+    /// Takes aiding from outside: velocity over ground north and east, m/s, and an azimuth of body
+    /// x at this moment, where they are known.
+    pub fn aid(&mut self, velocity: Option<[f64; 2]>, azimuth: Option<Azimuth>, outlet: Outlet) {
+        self.keeper.move_at(velocity);
+        if let Some(azimuth) = azimuth {
+            self.align(azimuth, outlet);
+            self.spare(outlet);
+        }
+    }
+
+    /// Lets time pass: checks the state ten times a second and reports its changes; once a second
+    /// also does everything else. Also called where no samples arrive.
+    pub fn tick(&mut self, now: Instant, outlet: Outlet) {
+        self.now = now;
+        if self.due.is_none() {
+            self.due = Some(Instant(now.0 + LOOK));
+        }
+        if !self.is_due(now) {
+            return;
+        }
+        self.due = Some(Instant(now.0 + LOOK));
+        self.look(outlet);
+        self.looks += 1;
+        if self.looks >= LOOKS {
+            self.looks = 0;
+            self.second(outlet);
+        }
+    }
+
+    /// Whether a check of the state is due.
+    fn is_due(&self, now: Instant) -> bool {
+        self.due.is_some_and(|due| now >= due)
+    }
+
+    /// Takes a found azimuth before an increment of the time `before`, if it belongs to an earlier
+    /// sample. It is refused if the body has set off meanwhile.
+    fn take_found(&mut self, before: Instant, outlet: Outlet) {
+        let Some((_, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
+        if self.has_set_off() {
+            let reason = Refusal::MovedDuringAlignment;
+            outlet(Output::Progress(Progress::Refused(reason)));
+        } else {
+            self.align(azimuth, outlet);
+        }
+    }
+
+    /// Whether a body that was at rest has been in motion for so long that an alignment of that
+    /// rest is invalid. In a vehicle with stops the method itself distinguishes rest from motion.
+    fn has_set_off(&self) -> bool {
+        let moved = |since: Instant| self.now.0.saturating_sub(since.0) >= self.patience;
+        !self.policy.knows_stops && self.moves.is_some_and(moved)
+    }
+
+    /// Takes an azimuth: as the first one, or fused with the held one by an innovation test.
+    #[inline(never)]
+    fn align(&mut self, azimuth: Azimuth, outlet: Outlet) {
+        self.remembered = None;
+        let outcome = self.keeper.realign(azimuth);
+        if !matches!(outcome, Realigned::Disagrees { .. }) {
+            self.is_recalled = false;
+        }
+        outlet(Output::Progress(Progress::HandedOver(azimuth, outcome)));
+        self.has_azimuth = true;
+    }
+
+    /// Checks the state and reports its changes.
+    fn look(&mut self, outlet: Outlet) {
+        let report = self.keeper.report();
+        let is_silent = self.is_silent();
+        self.is_at_rest = report.is_at_rest && !is_silent;
+        self.report_state((!is_silent).then_some(report.state), outlet);
+        let had = core::mem::replace(&mut self.has_azimuth, report.azimuth.is_some());
+        if had && report.azimuth.is_none() {
+            self.is_recalled = false;
+            outlet(Output::Progress(Progress::AzimuthLost));
+        }
+        let is_beyond = report.is_bias_beyond_stated;
+        if is_beyond && !core::mem::replace(&mut self.is_bias_beyond_stated, true) {
+            outlet(Output::Progress(Progress::BiasBeyondStated));
+        }
+        self.rest();
+    }
+
+    /// Whether no inertial sample has come for a second.
+    fn is_silent(&self) -> bool {
+        self.moved.is_none_or(|moved| self.now.0.saturating_sub(moved.0) >= SILENCE)
+    }
+
+    /// Reports a state that has changed. An acceleration is reported only if it lasts.
+    fn report_state(&mut self, state: Option<State>, outlet: Outlet) {
+        let trust = |state: Option<State>| state.map(|state| state.trust);
+        let is_reported = trust(state) == trust(self.state);
+        let passes =
+            state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < REPORTED_SECONDS);
+        if is_reported || passes {
+            return;
+        }
+        self.state = state;
+        match state {
+            Some(State { trust: Trust::Starting, .. }) => {}
+            Some(state) => outlet(Output::Progress(Progress::Keeping(state))),
+            None if self.moved.is_none() => {}
+            None => outlet(Output::Progress(Progress::NoMotion)),
+        }
+    }
+
+    /// Tracks since when the body has been at rest. A motion as short as that of a slammed door
+    /// does not end the rest.
+    fn rest(&mut self) {
+        if self.is_at_rest {
+            self.moves = None;
+            self.rests.get_or_insert(self.now);
+        } else if let Some(rests) = self.rests {
+            let moves = *self.moves.get_or_insert(self.now);
+            self.patience = RESTLESS + LEARNING - moves.0.saturating_sub(rests.0).min(LEARNING);
+            if self.now.0.saturating_sub(moves.0) >= self.patience {
+                self.rests = None;
+                self.is_realigned = false;
+            }
+        }
+    }
+
+    /// Decides on the remembered heading, has the heading saved, orders a new alignment, and
+    /// reports.
+    fn second(&mut self, outlet: Outlet) {
+        self.recall(outlet);
+        self.save(outlet);
+        self.realign(outlet);
+        let report = self.keeper.report();
+        outlet(Output::Report(report, self.attitude(&report)));
+    }
+
+    /// Decides on the heading from before the restart once the vehicle has rested long enough.
+    fn recall(&mut self, outlet: Outlet) {
+        let Some(remembered) = &self.remembered else { return };
+        let outcome = self.keeper.recall(remembered);
+        if let Err(RecallRefusal::NotAtRest { .. }) = outcome {
+            return;
+        }
+        self.remembered = None;
+        if let Err(reason) = outcome {
+            return outlet(Output::Progress(Progress::RecallRefused(reason)));
+        }
+        (self.is_recalled, self.has_azimuth) = (true, true);
+        if let Some(azimuth) = self.keeper.report().azimuth {
+            outlet(Output::Progress(Progress::HeadingRecalled(azimuth)));
+        }
+        self.spare(outlet);
+    }
+
+    /// Has the heading of a body at rest saved, at most once a minute, and declares it void when
+    /// the body sets off. The remembered one stays until it has been decided on.
+    fn save(&mut self, outlet: Outlet) {
+        if self.remembered.is_some() {
+            return;
+        }
+        if !self.is_at_rest {
+            if self.saved.take().is_some() {
+                outlet(Output::Forget);
+            }
+            return;
+        }
+        let (Some(azimuth), Some(remembered)) =
+            (self.keeper.report().azimuth, self.keeper.remember())
+        else {
+            return;
+        };
+        let now = [azimuth.angle, azimuth.sigma];
+        if self.is_new(now) {
+            self.saved = Some((now, self.now));
+            outlet(Output::Save(remembered));
+        }
+    }
+
+    /// Whether azimuth or σ have changed enough, and the heading was saved long enough ago.
+    fn is_new(&self, now: [f64; 2]) -> bool {
+        let Some((then, since)) = self.saved else { return true };
+        let has_changed = (0..2).any(|index| (now[index] - then[index]).abs() > CHANGE);
+        has_changed && self.now.0.saturating_sub(since.0) >= SAVING
+    }
+
+    /// Skips the alignment in progress where the azimuth is known and the policy permits it.
+    fn spare(&self, outlet: Outlet) {
+        if self.policy.skips_known && !self.is_idle {
+            outlet(Output::Order(Order::Skip));
+        }
+    }
+
+    /// Orders a new alignment, or ends the one in progress, according to the rest and motion of the
+    /// body.
+    fn realign(&mut self, outlet: Outlet) {
+        if self.is_idle && !core::mem::replace(&mut self.was_idle, self.is_idle) {
+            self.since.get_or_insert(self.now);
+            outlet(Output::Request(Request::Vertical));
+        }
+        self.was_idle = self.is_idle;
+        match self.policy.realignment {
+            Realignment::BetweenStops if self.is_idle => outlet(Output::Order(Order::Restart)),
+            Realignment::AtStops(seconds) if self.is_idle => self.begin_at_stop(seconds, outlet),
+            _ => {}
+        }
+        if !self.is_idle && self.has_set_off() {
+            outlet(Output::Order(Order::Fail(Refusal::MovedDuringAlignment)));
+        }
+    }
+
+    /// Orders a new alignment where the body has been at rest for so many seconds, once at each
+    /// stop.
+    fn begin_at_stop(&mut self, seconds: f64, outlet: Outlet) {
+        let rested = |since: Instant| self.now.0.saturating_sub(since.0) as f64 * 1e-6;
+        let stood = self.rests.map_or(0.0, rested);
+        if !self.is_realigned && stood >= seconds {
+            self.is_realigned = true;
+            outlet(Output::Progress(Progress::Realigning));
+            outlet(Output::Request(Request::Point(0.0)));
+            outlet(Output::Order(Order::Restart));
+        }
+    }
+
+    /// The attitude for users; [`None`] before the first alignment has ended, as long as there is no
+    /// azimuth.
+    fn attitude(&self, report: &Report) -> Option<Attitude> {
+        if self.since.is_none() && report.azimuth.is_none() {
+            return None;
+        }
+        let is_silent = self.is_silent();
+        Some(Attitude {
+            azimuth: report.azimuth.filter(|_| !is_silent),
+            pitch: report.pitch,
+            roll: report.roll,
+            state: (!is_silent).then_some(report.state),
+            is_recalled: self.is_recalled,
+        })
+    }
+}

@@ -1,0 +1,135 @@
+//! A flight of a spinning body, whose roll is tracked with course and pitch.
+
+use super::attitude::Attitude;
+use super::progress::Progress;
+use super::{Condition, Setting, Spin, State};
+use crate::alignment::progress::Listener;
+use crate::alignment::{Input, Method, Request, Verdict};
+use crate::signal::SpinSample;
+use crate::units::Instant;
+
+/// Samples between two reports of the roll: they cost arithmetic in software floating point.
+const TRACKED_SAMPLES: u32 = 1024;
+
+/// A flight whose roll is tracked.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// Estimator of the roll by phase lock.
+    spin: Spin,
+    /// Attitude by integration of the gyros, its roll replaced by the estimate.
+    attitude: Attitude,
+    /// Duration of the tracking, s; [`None`] for ever.
+    seconds: Option<f64>,
+    /// Time of the first sample.
+    begun: Option<Instant>,
+    /// Time of the latest sample.
+    now: Instant,
+    /// Number of samples, modulo 2³².
+    samples: u32,
+    /// State that was reported last.
+    reported: State,
+    /// Whether the tracking has ended.
+    is_over: bool,
+}
+
+impl Flight {
+    /// A flight that begins with the given course and pitch, rad, and is tracked for `seconds`, or
+    /// for ever.
+    #[must_use]
+    pub fn new(setting: &Setting, [course, pitch]: [f64; 2], seconds: Option<f64>) -> Self {
+        Self {
+            spin: Spin::new(setting),
+            attitude: Attitude::begin(course, pitch),
+            seconds,
+            begun: None,
+            now: Instant::default(),
+            samples: 0,
+            reported: State::default(),
+            is_over: false,
+        }
+    }
+
+    /// The estimator of the roll.
+    #[must_use]
+    pub fn spin(&self) -> &Spin {
+        &self.spin
+    }
+
+    /// The attitude by integration of the gyros, with the roll of the estimator.
+    #[must_use]
+    pub fn attitude(&self) -> &Attitude {
+        &self.attitude
+    }
+
+    /// Takes a sample.
+    fn push(&mut self, sample: &SpinSample, listener: Listener) -> Request {
+        self.spin.push(sample);
+        self.attitude.push(sample, &self.spin);
+        let begun = *self.begun.get_or_insert(sample.time);
+        self.now = sample.time;
+        self.samples = self.samples.wrapping_add(1);
+        self.report_state(listener);
+        if self.samples % TRACKED_SAMPLES == 1 {
+            self.report(listener);
+        }
+        let elapsed = self.now.seconds() - begun.seconds();
+        if self.seconds.is_some_and(|seconds| elapsed >= seconds) {
+            return self.end(None, listener);
+        }
+        Request::Continue
+    }
+
+    /// Reports a change of the state by the latest sample.
+    fn report_state(&mut self, listener: Listener) {
+        let state = self.spin.state();
+        let before = core::mem::replace(&mut self.reported, state);
+        match [before.condition, state.condition] {
+            [before, now] if before == now => {}
+            [Condition::Holding, Condition::Locked] => {
+                listener(Progress::LiftBack(before.seconds).into());
+            }
+            _ => listener(Progress::Changed(state).into()),
+        }
+    }
+
+    /// Reports the roll at present.
+    fn report(&self, listener: Listener) {
+        let condition = self.spin.state().condition;
+        let roll = self.spin.roll().rad();
+        listener(Progress::Tracked(roll, self.spin.sigma(), condition).into());
+    }
+
+    /// Ends the tracking, with the reason for which a sensor was given up.
+    fn end(&mut self, reason: Option<Progress>, listener: Listener) -> Request {
+        self.is_over = true;
+        self.report(listener);
+        let flown = Progress::Flown(self.spin.roll().rad(), self.spin.sigma());
+        listener(reason.unwrap_or(flown).into());
+        Request::Done
+    }
+}
+
+impl Method<SpinSample> for Flight {
+    fn begin(&mut self, listener: Listener) -> Request {
+        listener(Progress::Begun.into());
+        Request::Continue
+    }
+
+    fn take(&mut self, input: Input<'_, SpinSample>, listener: Listener) -> Request {
+        match input {
+            _ if self.is_over => Request::Done,
+            Input::Sample(sample) => self.push(sample, listener),
+            Input::Sway(_) | Input::Displaced(_) => Request::Continue,
+            Input::End => self.end(None, listener),
+            Input::Failed(reason) => self.end(Some(Progress::Ended(*reason)), listener),
+        }
+    }
+
+    fn compute(&mut self, _: Listener) -> Request {
+        Request::Continue
+    }
+
+    fn verdict(&self) -> Option<Verdict> {
+        None
+    }
+}

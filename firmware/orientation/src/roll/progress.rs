@@ -1,0 +1,43 @@
+//! Progress of the tracking of a roll, with the sentences of the log.
+
+use super::{Condition, State};
+use crate::alignment::refusal::Refusal;
+use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN, wrapped};
+use crate::words::Rounded;
+
+/// Progress of the tracking of a roll.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// The tracking begins.
+    Begun,
+    /// The source of the roll estimate from now on.
+    Changed(State),
+    /// The modulation of the lift is detected again, after this time, s.
+    LiftBack(f64),
+    /// The roll at present, rad, since the first sample, its 1σ, rad, and its source; for the status,
+    /// not for the log.
+    Tracked(f64, Option<f64>, Condition),
+    /// The flight is over: the roll since the first sample, rad, positive in the sense of positive
+    /// roll, and its 1σ, rad, if the roll is known.
+    Flown(f64, Option<f64>),
+    /// The tracking has ended, because a sensor was given up.
+    Ended(Refusal),
+}
+
+crate::words! { Progress:
+    Self::Begun => "begin: following the roll of a spinning body";
+    Self::Changed(state) => "roll: {}", state;
+    Self::LiftBack(seconds) => "roll: locked, the lift is back after {} s", Rounded::<2>(seconds);
+    Self::Tracked(roll, ..) => "roll {}°", Rounded::<3>(wrapped(roll) * DEGREES);
+    Self::Flown(roll, Some(sigma)) =>
+        "flown: {} turns and {}° ± {}° (1σ)",
+        turns(roll), Rounded::<4>(wrapped(roll) * DEGREES), Rounded::<4>(sigma * DEGREES);
+    Self::Flown(roll, None) =>
+        "flown: {} turns and {}°, not known", turns(roll), Rounded::<1>(wrapped(roll) * DEGREES);
+    Self::Ended(reason) => "no roll: {}", reason;
+}
+
+/// Number of whole turns of a roll, rad.
+fn turns(roll: f64) -> i32 {
+    libm::floor(roll / TURN) as i32
+}

@@ -1,0 +1,71 @@
+//! Runs the aligner: passes samples to it, has its requests executed, and reports its progress.
+
+use core::convert::Infallible;
+
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Timer};
+use orientation::alignment::{Method, Request};
+use orientation::navigation::Aligner;
+use orientation::navigation::aligner::State;
+use orientation::signal::Timed;
+
+use crate::ports::{Aiding, Recorder};
+use crate::shared::{Channels, QUEUE};
+
+/// Longest rest once the queue is empty. Samples of a fast gyro are then taken several at a time,
+/// because waking for each would cost more than processing it. A quarter of the queue's capacity at
+/// 2 kHz.
+const REST: Duration = Duration::from_millis(2);
+
+/// Runs alignments for ever: the first at once, others as they are ordered.
+pub async fn align<R: Recorder<S>, S: Timed>(
+    method: &mut dyn Method<S>,
+    aiding: &dyn Aiding,
+    recorder: &mut R,
+    channels: &Channels<'_, S>,
+) -> Infallible {
+    let shared = &channels.shared;
+    let listener = &mut |progress| shared.progress(progress);
+    let mut aligner = Aligner::new(method);
+    let mut request = aligner.begin(listener);
+    let rest = REST.min(shared.period.get() * (QUEUE as u32 / 3));
+    loop {
+        request = match request {
+            Request::Compute => aligner.compute(listener),
+            Request::Locate => match aiding.displacement() {
+                Some(place) => aligner.displace(&place, listener),
+                None => Request::Continue,
+            },
+            Request::Done => {
+                shared.conclude(aligner.hand_over());
+                Request::Continue
+            }
+            Request::Continue | Request::MayDrive => {
+                if aligner.state() == State::Homing && shared.homed.signaled() {
+                    aligner.home(&shared.sway.get(), listener);
+                } else if channels.samples.is_empty() {
+                    shared.catch_up();
+                    if aligner.state() != State::Homing {
+                        Timer::after(rest).await;
+                    }
+                }
+                match select(shared.orders.wait(), channels.samples.receive()).await {
+                    Either::First(order) => {
+                        shared.obey(&order);
+                        aligner.obey(&order, listener)
+                    }
+                    Either::Second(sample) => {
+                        if aligner.state() == State::Aligning {
+                            recorder.record(&sample).await;
+                        }
+                        aligner.sample(&sample, listener)
+                    }
+                }
+            }
+            movement => {
+                shared.wanted.signal(movement);
+                Request::Continue
+            }
+        };
+    }
+}

@@ -1,0 +1,148 @@
+//! Runs the navigator beside the aligner: passes inertial samples and aiding to it, has its outputs
+//! executed, and keeps its heading in flash over a loss of supply.
+//!
+//! The navigator never runs ahead of the aligner: it takes only samples that the aligner has had
+//! the chance to take. An azimuth belongs to the last sample of its alignment, so it is handed over
+//! exactly between that sample and the next.
+//!
+//! **Endurance of the flash.** An item is written when the vehicle has come to rest, when it sets
+//! off, and between them at most once a minute and only if azimuth or σ have changed: about five
+//! items per hour of operation. An item takes 80 bytes, so a page of 2 KiB holds 24. Two pages of
+//! 10 000 erase cycles (STM32L475 data sheet, table 59) take 480 000 items, about ten years of
+//! continuous operation.
+
+use core::cell::Cell;
+use core::future::pending;
+
+use drivers::fault::Fault;
+use embassy_futures::select::select;
+use embassy_time::{Duration, Instant, Timer};
+use orientation::attitude::Keeper;
+use orientation::attitude::restart::Remembered;
+use orientation::navigation::progress::VerticalGyro;
+use orientation::navigation::{Navigator, Output, Policy};
+use orientation::signal::InertialSample;
+use orientation::units;
+
+use crate::event::Event;
+use crate::ports::{Aiding, Store};
+use crate::shared::Shared;
+use crate::storage::HEADING;
+
+/// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
+/// kHz.
+const REST: Duration = Duration::from_millis(4);
+/// Time without an inertial sample after which the navigator goes by the clock, µs.
+const SILENCE: u64 = 100_000;
+/// Time after which a device that was given up is tried again while an azimuth is kept.
+pub(crate) const RETRY: Duration = Duration::from_secs(10);
+/// The item that invalidates the stored heading: its checksum is wrong.
+const NOTHING: [u8; Remembered::BYTES] = [0; Remembered::BYTES];
+
+/// A message from acquisition to the navigator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// An increment of rotation and velocity of the body.
+    Moved(InertialSample),
+    /// From the next increment on, another gyro measures about the down axis.
+    Exchanged(VerticalGyro),
+}
+
+/// What an instrument that keeps its attitude is given.
+pub struct Keeping<'k, T> {
+    /// The estimator of the attitude, which has had no sample.
+    pub keeper: &'k mut Keeper,
+    /// Duration, policy at stops and stated errors of the gyros.
+    pub policy: Policy,
+    /// Store of the heading over a loss of supply.
+    pub store: T,
+}
+
+/// Keeps the attitude until its duration is over; never returns if nothing is kept.
+pub async fn keep<T: Store>(
+    keeping: Option<Keeping<'_, T>>,
+    aiding: &dyn Aiding,
+    shared: &Shared<'_>,
+) {
+    let Some(Keeping { keeper, policy, mut store }) =
+        keeping.filter(|keeping| keeping.policy.hold_seconds > 0.0)
+    else {
+        return pending().await;
+    };
+    shared.is_kept.set(true);
+    let mut has_failed = false;
+    let remembered = load(&mut store).await.unwrap_or_else(|fault| {
+        fail(fault, &mut has_failed, shared);
+        None
+    });
+    let to_save = Cell::new(None);
+    let outlet = &mut |output| execute(output, &to_save, shared);
+    let mut navigator = Navigator::new(keeper, &policy, remembered);
+    let mut latest = Instant::MIN;
+    while !navigator.is_over() {
+        select(shared.caught_up.wait(), Timer::after(REST)).await;
+        navigator.set_idle(shared.is_idle());
+        if !shared.is_behind.get() {
+            if let Some((at, azimuth)) = shared.found.try_take() {
+                navigator.find(at, azimuth);
+            }
+            while let Ok(motion) = shared.motions.try_receive() {
+                match motion {
+                    Motion::Moved(sample) => {
+                        if navigator.wants_aiding(sample.time) {
+                            navigator.aid(aiding.velocity(), aiding.azimuth(), outlet);
+                        }
+                        navigator.push(&sample, outlet);
+                        latest = Instant::now();
+                    }
+                    Motion::Exchanged(down) => navigator.exchange(down, outlet),
+                }
+            }
+            navigator.settle(outlet);
+        }
+        if latest.elapsed().as_micros() >= SILENCE {
+            let now = units::Instant(Instant::now().as_micros());
+            if navigator.wants_aiding(now) {
+                navigator.aid(aiding.velocity(), aiding.azimuth(), outlet);
+            }
+            navigator.tick(now, outlet);
+        }
+        shared.is_at_rest.set(navigator.is_at_rest());
+        if let Some(item) = to_save.take()
+            && let Err(fault) = store.save(HEADING, &item).await
+        {
+            fail(fault, &mut has_failed, shared);
+        }
+    }
+}
+
+/// Reads the heading that was stored before the restart. An item with a wrong checksum counts as
+/// absent.
+async fn load<T: Store>(store: &mut T) -> Result<Option<Remembered>, Fault> {
+    let item = store.load::<{ Remembered::BYTES }>(HEADING).await?;
+    Ok(item.as_ref().and_then(|bytes| Remembered::from_bytes(bytes)))
+}
+
+/// Reports the first failure of the store.
+fn fail(fault: Fault, has_failed: &mut bool, shared: &Shared<'_>) {
+    if !core::mem::replace(has_failed, true) {
+        shared.report(Event::HeadingNotKept(fault));
+    }
+}
+
+/// Executes an output of the navigator; an item to be saved is noted.
+fn execute(output: Output, to_save: &Cell<Option<[u8; Remembered::BYTES]>>, shared: &Shared<'_>) {
+    match output {
+        Output::Progress(progress) => shared.report(Event::Navigation(progress)),
+        Output::Order(order) => shared.order(order),
+        Output::Request(request) => shared.wanted.signal(request),
+        Output::Save(remembered) => to_save.set(Some(remembered.to_bytes())),
+        Output::Forget => to_save.set(Some(NOTHING)),
+        Output::Report(report, attitude) => {
+            shared.observer.kept(&report);
+            if let Some(attitude) = attitude {
+                shared.status.set((&attitude).into());
+            }
+        }
+    }
+}
