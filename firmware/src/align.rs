@@ -28,7 +28,6 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     let listener = &mut |progress| shared.progress(progress);
     let mut aligner = Aligner::new(method);
     let mut request = aligner.begin(listener);
-    let rest = REST.min(shared.period.get() * (QUEUE as u32 / 3));
     loop {
         request = match request {
             Request::Compute => aligner.compute(listener),
@@ -46,7 +45,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 } else if channels.samples.is_empty() {
                     shared.catch_up();
                     if aligner.state() != State::Homing {
-                        Timer::after(rest).await;
+                        Timer::after(REST.min(shared.period.get() * (QUEUE as u32 / 3))).await;
                     }
                 }
                 match select(shared.orders.wait(), channels.samples.receive()).await {

@@ -84,7 +84,7 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
     /// Turns both frames to an orientation at the same time.
     async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
         let angles = self.configuration.angles(station);
-        both(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await
+        both(join(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await)
     }
 }
 
@@ -94,9 +94,9 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         let [outer, inner] =
             [&mut self.outer, &mut self.inner].map(|frame| &mut frame.motor.actuator);
-        both(outer.start(self.shared), inner.start(self.shared)).await?;
+        both(join(outer.start(self.shared), inner.start(self.shared)).await)?;
         self.shared.sensing.wait().await;
-        both(self.outer.home(), self.inner.home()).await?;
+        both(join(self.outer.home(), self.inner.home()).await)?;
         self.go_to(Station::Forward).await?;
         self.shared.homed.signal(());
         loop {
@@ -119,11 +119,7 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     }
 }
 
-/// Runs two movements at the same time; the error is that of the outer frame if both fail.
-async fn both(
-    outer: impl Future<Output = Result<(), Refusal>>,
-    inner: impl Future<Output = Result<(), Refusal>>,
-) -> Result<(), Refusal> {
-    let (outer, inner) = join(outer, inner).await;
+/// Result of two movements at the same time; the error is that of the outer frame if both failed.
+fn both((outer, inner): (Result<(), Refusal>, Result<(), Refusal>)) -> Result<(), Refusal> {
     outer.and(inner)
 }

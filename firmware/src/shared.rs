@@ -88,7 +88,7 @@ pub struct Shared<'a> {
     pub is_kept: Cell<bool>,
     /// Whether the body is at rest, by the navigator's detection.
     pub is_at_rest: Cell<bool>,
-    /// Sampling period.
+    /// Sampling period; one second until acquisition has stated it.
     pub period: Cell<Duration>,
     /// The latest angle of the stage's encoder.
     pub angle: LatestAngle,
@@ -118,7 +118,7 @@ impl<'a> Shared<'a> {
             alignments: Cell::new(Alignments::First),
             is_kept: Cell::new(false),
             is_at_rest: Cell::new(false),
-            period: Cell::new(Duration::MAX),
+            period: Cell::new(Duration::from_secs(1)),
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
             health: Cell::default(),

@@ -4,6 +4,7 @@
 
 use core::cell::RefCell;
 use core::convert::Infallible;
+use core::fmt::{self, Debug, Formatter};
 
 use embassy_time::{Duration, Instant, Timer};
 use embedded_hal::digital::ErrorType as PinErrorType;
@@ -16,30 +17,35 @@ use crate::chip::{Rig, Select, Transaction, bus_time};
 /// Bytes of the longest transaction.
 const LONGEST: usize = 64;
 
-/// One chip of a rig behind its select line.
-#[derive(Debug)]
-pub struct SpiPort<'a, R> {
+/// One chip of a rig behind its select line. Of any rig, so that there is one copy of each driver.
+pub struct SpiPort<'a> {
     /// The chips on the bus.
-    rig: &'a RefCell<R>,
+    rig: &'a RefCell<dyn Rig + 'a>,
     /// Select line of the chip that answers.
     select: Select,
     /// Bus clock, Hz.
     hertz: u32,
 }
 
-impl<'a, R> SpiPort<'a, R> {
+impl<'a> SpiPort<'a> {
     /// The chip at `select`, with a bus clock of `hertz` (> 0).
     #[must_use]
-    pub const fn new(rig: &'a RefCell<R>, select: Select, hertz: u32) -> Self {
+    pub const fn new(rig: &'a RefCell<dyn Rig + 'a>, select: Select, hertz: u32) -> Self {
         Self { rig, select, hertz }
     }
 }
 
-impl<R> ErrorType for SpiPort<'_, R> {
+impl Debug for SpiPort<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} at {} Hz", self.select, self.hertz)
+    }
+}
+
+impl ErrorType for SpiPort<'_> {
     type Error = ErrorKind;
 }
 
-impl<R: Rig> SpiDevice for SpiPort<'_, R> {
+impl SpiDevice for SpiPort<'_> {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let (sent, pause) = flatten(operations)?;
         let mut reply = [0; LONGEST];
@@ -106,18 +112,17 @@ fn distribute(operations: &mut [Operation<'_, u8>], reply: &[u8]) {
 }
 
 /// The data-ready line of one chip of a rig.
-#[derive(Debug)]
-pub struct ReadyPin<'a, R> {
+pub struct ReadyPin<'a> {
     /// The chips of the board.
-    rig: &'a RefCell<R>,
+    rig: &'a RefCell<dyn Rig + 'a>,
     /// Whose line it is.
     select: Select,
 }
 
-impl<'a, R: Rig> ReadyPin<'a, R> {
+impl<'a> ReadyPin<'a> {
     /// The data-ready line of the chip at `select`, which is active low.
     #[must_use]
-    pub const fn new(rig: &'a RefCell<R>, select: Select) -> Self {
+    pub const fn new(rig: &'a RefCell<dyn Rig + 'a>, select: Select) -> Self {
         Self { rig, select }
     }
 
@@ -131,12 +136,18 @@ impl<'a, R: Rig> ReadyPin<'a, R> {
     }
 }
 
-impl<R> PinErrorType for ReadyPin<'_, R> {
+impl Debug for ReadyPin<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "data-ready of {:?}", self.select)
+    }
+}
+
+impl PinErrorType for ReadyPin<'_> {
     type Error = Infallible;
 }
 
 /// The lines of all chips here are active low: falling is becoming ready.
-impl<R: Rig> Wait for ReadyPin<'_, R> {
+impl Wait for ReadyPin<'_> {
     async fn wait_for_high(&mut self) -> Result<(), Infallible> {
         core::future::pending().await
     }

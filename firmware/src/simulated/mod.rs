@@ -9,6 +9,7 @@ pub mod keep;
 pub mod mount;
 pub mod scenario;
 pub mod spin;
+pub mod trace;
 pub mod turntable;
 pub mod vehicle;
 
@@ -90,36 +91,36 @@ fn board_around<'a>(
 }
 
 /// A simulated serial bus with a wrapper around it.
-type Bus<'a, B, A> = <A as PortWrapper>::Spi<SpiPort<'a, B>>;
+type Bus<'a, A> = <A as PortWrapper>::Spi<SpiPort<'a>>;
 
 /// A simulated data-ready line with a wrapper around it.
-type Line<'a, B, A> = <A as PortWrapper>::Line<ReadyPin<'a, B>>;
+type Line<'a, A> = <A as PortWrapper>::Line<ReadyPin<'a>>;
 
 /// A gyro behind simulated ports.
-type SimulatedGyro<'a, B, A> = chips::AnalogueGyro<Bus<'a, B, A>, Line<'a, B, A>, Delay>;
+type SimulatedGyro<'a, A> = chips::AnalogueGyro<Bus<'a, A>, Line<'a, A>, Delay>;
 
 /// The sensors of a simulated board.
-pub type SimulatedSensors<'a, B, A> = Sensors<
-    SimulatedGyro<'a, B, A>,
-    chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
-    chips::StageEncoder<Bus<'a, B, A>, Delay>,
+pub type SimulatedSensors<'a, A> = Sensors<
+    SimulatedGyro<'a, A>,
+    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
+    chips::StageEncoder<Bus<'a, A>, Delay>,
 >;
 
 /// The other ports of a simulated board.
-pub type SimulatedPorts<'a, B, A, L, R> = Ports<chips::StageMotor<Bus<'a, B, A>, Delay>, L, R>;
+pub type SimulatedPorts<'a, A, L, R> = Ports<chips::StageMotor<Bus<'a, A>, Delay>, L, R>;
 
 /// The wires of a simulated board: its chips as the drivers reach them, with a wrapper around every port.
-#[derive(Debug)]
-pub struct Wires<'a, 'w, B, A>(pub &'a RefCell<B>, pub &'w A);
+#[expect(missing_debug_implementations, reason = "a rig of any chips is none")]
+pub struct Wires<'a, 'w, A>(pub &'a RefCell<dyn Rig + 'a>, pub &'w A);
 
-impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a stage or a turntable, whose accelerometer is given this.
     #[must_use]
     pub fn sensors(
         &self,
         scenario: &Scenario,
         force: adxl355::Configuration,
-    ) -> SimulatedSensors<'a, B, A> {
+    ) -> SimulatedSensors<'a, A> {
         Sensors {
             gyro: self.gyro(Select::Gyro, scenario),
             accelerometer: self.accelerometer(force),
@@ -129,17 +130,12 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     }
 
     /// The other ports of a stage or a turntable, whose motor driver is given this.
-    pub fn ports<L, R>(
-        &self,
-        motor: Motor,
-        link: L,
-        recorder: R,
-    ) -> SimulatedPorts<'a, B, A, L, R> {
+    pub fn ports<L, R>(&self, motor: Motor, link: L, recorder: R) -> SimulatedPorts<'a, A, L, R> {
         Ports { actuator: self.motor(Select::Actuator, motor), link, recorder }
     }
 
     /// The bus of one chip, with a clock of `hertz`.
-    fn bus(&self, select: Select, hertz: u32) -> Bus<'a, B, A> {
+    fn bus(&self, select: Select, hertz: u32) -> Bus<'a, A> {
         self.1.spi(select, SpiPort::new(self.0, select, hertz))
     }
 
@@ -149,13 +145,13 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
         select: Select,
         hertz: u32,
         configuration: Converter,
-    ) -> Ads1262<Bus<'a, B, A>, Line<'a, B, A>, Delay> {
+    ) -> Ads1262<Bus<'a, A>, Line<'a, A>, Delay> {
         let ready = self.1.line(select, ReadyPin::new(self.0, select));
         Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
     }
 
     /// A gyro with its converter.
-    fn gyro(&self, select: Select, scenario: &Scenario) -> SimulatedGyro<'a, B, A> {
+    fn gyro(&self, select: Select, scenario: &Scenario) -> SimulatedGyro<'a, A> {
         let converter = self.converter(select, CONVERTER_HERTZ, scenario.converter());
         chips::AnalogueGyro { converter, scale: scenario::SCALE, limit: scenario::LIMIT }
     }
@@ -164,23 +160,19 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     fn accelerometer(
         &self,
         configuration: adxl355::Configuration,
-    ) -> chips::PlatformAccelerometer<Bus<'a, B, A>, Delay> {
+    ) -> chips::PlatformAccelerometer<Bus<'a, A>, Delay> {
         let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
         chips::PlatformAccelerometer(Adxl355::new(bus, Delay, configuration))
     }
 
     /// The encoder of a stage or of one of its frames.
-    fn encoder(&self, select: Select) -> chips::StageEncoder<Bus<'a, B, A>, Delay> {
+    fn encoder(&self, select: Select) -> chips::StageEncoder<Bus<'a, A>, Delay> {
         let bus = self.bus(select, mt6835::BUS_HERTZ);
         chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
     }
 
     /// The motor of a stage or of one of its frames.
-    fn motor(
-        &self,
-        select: Select,
-        configuration: Motor,
-    ) -> chips::StageMotor<Bus<'a, B, A>, Delay> {
+    fn motor(&self, select: Select, configuration: Motor) -> chips::StageMotor<Bus<'a, A>, Delay> {
         let bus = self.bus(select, tmc5160::BUS_HERTZ);
         chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
     }

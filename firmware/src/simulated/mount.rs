@@ -5,7 +5,7 @@
 
 use drivers::tmc5160::configuration::Configuration as Motor;
 use embassy_time::Delay;
-use hal_mock::chip::{Rig, Select};
+use hal_mock::chip::Select;
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
 use hal_mock::noise::Generator;
@@ -16,6 +16,7 @@ use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::mount::{
     ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
 };
+use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::Setting;
@@ -91,6 +92,18 @@ impl Default for FramesScenario {
 }
 
 impl FramesScenario {
+    /// A pass of short dwells at 2400 Hz: what a sample costs at the highest rate.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        Self { base: Scenario::brief(seed), passes: 1, ..Self::default() }
+    }
+
+    /// What its session needs; none where the latitude is none or the schedule impossible.
+    #[must_use]
+    pub fn prepared(&self) -> Option<Prepared> {
+        Prepared::new(self.setting()?, self.procedure()).ok()
+    }
+
     /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
@@ -211,19 +224,19 @@ fn frame<'a>(
 }
 
 /// The sensors of a two-frame mount on simulated chips.
-pub type FrameSensors<'a, B, A> = Sensors<
-    SimulatedGyro<'a, B, A>,
-    chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
-    Frames<chips::StageEncoder<Bus<'a, B, A>, Delay>>,
+pub type FrameSensors<'a, A> = Sensors<
+    SimulatedGyro<'a, A>,
+    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
+    Frames<chips::StageEncoder<Bus<'a, A>, Delay>>,
 >;
 
 /// The other ports of a two-frame mount on simulated chips.
-pub type FramePorts<'a, B, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'a, B, A>, Delay>>, L, R>;
+pub type FramePorts<'a, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'a, A>, Delay>>, L, R>;
 
-impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a two-frame mount.
     #[must_use]
-    pub fn frame_sensors(&self, scenario: &FramesScenario) -> FrameSensors<'a, B, A> {
+    pub fn frame_sensors(&self, scenario: &FramesScenario) -> FrameSensors<'a, A> {
         let Sensors { gyro, accelerometer, encoder: outer, base } =
             self.sensors(&scenario.base, scenario::FORCE);
         let inner = self.encoder(Select::InnerEncoder);
@@ -231,7 +244,7 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     }
 
     /// The other ports of a two-frame mount.
-    pub fn frame_ports<L, R>(&self, link: L, recorder: R) -> FramePorts<'a, B, A, L, R> {
+    pub fn frame_ports<L, R>(&self, link: L, recorder: R) -> FramePorts<'a, A, L, R> {
         let motor = |select| self.motor(select, Motor::default());
         let actuator =
             Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };

@@ -3,7 +3,9 @@
 use firmware::budget;
 use serde::Serialize;
 
+use super::Run;
 use super::collect::Figures;
+use super::jobs::SURVEY;
 use super::sections::Memory;
 
 /// Instructions that the board executes in a second at best: one in a cycle, at 80 MHz.
@@ -17,7 +19,7 @@ const STACK_MARGIN: u64 = 2;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Check {
     /// What was counted or measured.
-    pub what: &'static str,
+    pub what: String,
     /// The figure.
     pub count: u64,
     /// Greatest figure that is allowed.
@@ -34,83 +36,54 @@ impl Check {
     }
 }
 
-/// What was taken in each run.
-#[derive(Clone, Debug)]
-pub struct Runs {
-    /// Figures of the usual run.
-    pub figures: Figures,
-    /// Figures of a brief run at the highest sample rate.
-    pub brief: Figures,
-    /// Figures of a run that learns its gyro's noise and plans by it.
-    pub survey: Figures,
-    /// Figures of a brief run on a platform that turns all the time, at the highest sample rate.
-    pub turning: Figures,
-    /// Figures of a run in a vehicle that goes from stop to stop.
-    pub stops: Figures,
-}
-
 /// All checks, in the order of the printed table.
 #[must_use]
-pub fn all(runs: &Runs, memory: &Memory) -> Vec<Check> {
-    let Runs { figures, brief, survey, turning, stops } = runs;
-    let most = |what, count, budget| Check { what, count, budget, at_least: false };
-    let worst = |of: &Figures| of.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
-    let least = |what, count, budget| Check { at_least: true, ..most(what, count, budget) };
-    let stack = [figures, survey, turning, stops].map(|run| run.stack_bytes);
-    let stack = stack.into_iter().max().unwrap_or(0);
-    vec![
-        most(
-            "instructions a sample at 2400 Hz, the whole instrument",
-            per_sample(brief),
-            budget::SAMPLE_INSTRUCTIONS,
-        ),
-        most(
-            "the same on a platform that turns all the time",
-            per_sample(turning),
-            budget::TURNING_SAMPLE_INSTRUCTIONS,
-        ),
-        most(
-            "the same in a vehicle, three gyros at 50 Hz",
-            per_sample(stops),
-            budget::STOPS_SAMPLE_INSTRUCTIONS,
-        ),
-        most(
-            "instructions of the longest poll of a task",
-            worst(figures).max(worst(turning)).max(worst(stops)),
-            budget::POLL_INSTRUCTIONS,
-        ),
-        most(
-            "the same where the noise is learnt and a plan made",
-            worst(survey),
-            budget::SURVEY_POLL_INSTRUCTIONS,
-        ),
-        least(
-            "percent idle with 2000 samples a second at 80 MHz, at least",
-            idle_percent(brief),
-            budget::IDLE_PERCENT,
-        ),
-        least(
-            "the same on a platform that turns all the time, at least",
-            idle_percent(turning),
-            budget::IDLE_PERCENT,
-        ),
-        most(
-            "bytes of flash, the etalon table included",
-            memory.flash_bytes(),
-            budget::FLASH_BYTES,
-        ),
-        most("bytes of static RAM", memory.ram_bytes(), budget::STATIC_RAM_BYTES),
+pub fn all(runs: &[Run], memory: &Memory) -> Vec<Check> {
+    let samples = runs.iter().filter_map(|run| {
+        let what = format!("instructions a sample, {}", run.job.title);
+        Some(most(what, per_sample(&run.figures), run.job.sample_budget?))
+    });
+    let idle = runs.iter().filter(|run| run.job.is_idle).map(|run| {
+        let what = format!("percent idle at 2000 Hz, at least, {}", run.job.title);
+        let check = most(what, idle_percent(&run.figures), budget::IDLE_PERCENT);
+        Check { at_least: true, ..check }
+    });
+    samples.chain(polls(runs)).chain(idle).chain(of_memory(runs, memory)).collect()
+}
+
+fn most(what: impl Into<String>, count: u64, budget: u64) -> Check {
+    Check { what: what.into(), count, budget, at_least: false }
+}
+
+/// The longest polls of a task.
+fn polls(runs: &[Run]) -> [Check; 2] {
+    let longest = |is_survey: bool| {
+        let runs = runs.iter().filter(|run| (run.job.word == SURVEY.word) == is_survey);
+        runs.map(|run| run.figures.longest_poll()).max().unwrap_or(0)
+    };
+    let poll = "instructions of the longest poll of a task";
+    let survey = "the same where the noise is learnt and a plan made";
+    [
+        most(poll, longest(false), budget::POLL_INSTRUCTIONS),
+        most(survey, longest(true), budget::SURVEY_POLL_INSTRUCTIONS),
+    ]
+}
+
+/// The memory of the image, and the stack that its runs took.
+fn of_memory(runs: &[Run], memory: &Memory) -> [Check; 4] {
+    let stack = runs.iter().map(|run| run.figures.stack_bytes).max().unwrap_or(0);
+    let (flash, ram) = (memory.flash_bytes(), memory.ram_bytes());
+    let twice = "bytes of that stack twice, in what RAM leaves";
+    [
+        most("bytes of flash, the etalon table included", flash, budget::FLASH_BYTES),
+        most("bytes of static RAM", ram, budget::STATIC_RAM_BYTES),
         most("bytes of stack at its deepest", stack, budget::STACK_BYTES),
-        most(
-            "bytes of that stack twice, in what RAM leaves",
-            stack * STACK_MARGIN,
-            memory.stack_room_bytes,
-        ),
+        most(twice, stack * STACK_MARGIN, memory.stack_room_bytes),
     ]
 }
 
 /// Mean instructions for a sample, rounded up.
-fn per_sample(figures: &Figures) -> u64 {
+pub(crate) fn per_sample(figures: &Figures) -> u64 {
     figures.instructions.div_ceil(figures.samples.max(1))
 }
 

@@ -1,11 +1,11 @@
 //! What the image's log says for this program to read: the lines without level.
 //!
-//! Each begins with what it is, then `name=value` pairs; the bits of numbers are hexadecimal.
+//! Each begins with what it is; figures are `name=value` pairs, the bits of numbers a list.
 
 use serde::Serialize;
 
 use super::decode::Line;
-use super::outcome::{KEPT, KINDS, Kind, Outcome, Row};
+use super::outcome::{Outcome, Row};
 
 /// What the whole instrument took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -24,6 +24,14 @@ pub struct Figures {
     pub tasks: Vec<Task>,
 }
 
+impl Figures {
+    /// Instructions of the longest poll of a task.
+    #[must_use]
+    pub fn longest_poll(&self) -> u64 {
+        self.tasks.iter().map(|task| task.worst).max().unwrap_or(0)
+    }
+}
+
 /// What one task took.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Task {
@@ -40,9 +48,8 @@ pub struct Task {
 /// What was read so far.
 #[derive(Clone, Debug, Default)]
 pub struct Collected {
-    rows: Vec<Row>,
-    outcome: Option<Outcome>,
-    effort: bool,
+    outcome: Outcome,
+    is_measured: bool,
     figures: Figures,
 }
 
@@ -60,41 +67,26 @@ impl Collected {
 
     fn read(&mut self, words: &str) -> Option<()> {
         let number = |name| value(words, name)?.parse::<u64>().ok();
-        match words.split(' ').next()? {
-            "outcome" => {
-                self.outcome = Some(outcome(words)?);
-                Some(())
-            }
+        let (word, rest) = words.split_once(' ')?;
+        match word {
+            "row" => self.outcome.rows.push(Row::parse(rest)?),
+            "reason" => self.outcome.reason = Some(rest.to_owned()),
             "effort" => {
                 self.figures.instructions = number("instructions")?;
                 self.figures.simulation = number("simulation")?;
                 self.figures.samples = number("samples")?;
                 self.figures.microseconds = number("microseconds")?;
-                self.effort = true;
-                Some(())
+                self.is_measured = true;
             }
             "task" => {
                 let [polls, instructions, worst] = ["polls", "instructions", "worst"].map(number);
-                let name = rest(words, "name")?.to_owned();
+                let name = after(words, "name")?.to_owned();
                 let task = Task { name, polls: polls?, instructions: instructions?, worst: worst? };
                 self.figures.tasks.push(task);
-                Some(())
             }
-            "stack" => {
-                self.figures.stack_bytes = number("bytes")?;
-                Some(())
-            }
-            word => self.row(KINDS.into_iter().find(|kind| kind.word == word)?, words),
+            "stack" => self.figures.stack_bytes = number("bytes")?,
+            _ => return None,
         }
-    }
-
-    /// Takes a row; one that is numbered must come after those before it.
-    fn row(&mut self, kind: &'static Kind, words: &str) -> Option<()> {
-        let before = self.rows.iter().filter(|row| row.kind == kind).count();
-        if *kind != KEPT && value(words, "number")?.parse() != Ok(before + 1) {
-            return None;
-        }
-        self.rows.push(Row::parse(kind, |name| value(words, name))?);
         Some(())
     }
 
@@ -103,38 +95,26 @@ impl Collected {
     /// # Errors
     /// Which line is missing.
     pub fn finish(self) -> Result<(Outcome, Figures), String> {
-        let missing = |line| format!("the emulator's log has no line `{line}`");
-        let outcome = self.outcome.ok_or_else(|| missing("outcome"))?;
-        if !self.effort {
-            return Err(missing("effort"));
+        let Self { outcome, is_measured, figures } = self;
+        let is_there = [
+            ("row", !outcome.rows.is_empty()),
+            ("effort", is_measured),
+            ("task", !figures.tasks.is_empty()),
+            ("stack", figures.stack_bytes != 0),
+        ];
+        match is_there.into_iter().find(|(_, is_there)| !is_there) {
+            Some((line, _)) => Err(format!("the emulator's log has no line `{line}`")),
+            None => Ok((outcome, figures)),
         }
-        if self.figures.tasks.is_empty() {
-            return Err(missing("task"));
-        }
-        if self.figures.stack_bytes == 0 {
-            return Err(missing("stack"));
-        }
-        Ok((Outcome { rows: self.rows, ..outcome }, self.figures))
     }
-}
-
-fn outcome(words: &str) -> Option<Outcome> {
-    let bits = |name| value(words, name).map(|bits| u64::from_str_radix(bits, 16).ok());
-    let reason = rest(words, "reason").map(ToOwned::to_owned);
-    let (azimuth_bits, sigma_bits) = match &reason {
-        Some(_) => (None, None),
-        None => (Some(bits("azimuth")??), Some(bits("sigma")??)),
-    };
-    let seed = value(words, "seed")?.parse().ok()?;
-    Some(Outcome { seed, azimuth_bits, sigma_bits, reason, ..Outcome::default() })
 }
 
 /// The value of a pair, up to the next blank.
 fn value<'w>(words: &'w str, name: &str) -> Option<&'w str> {
-    rest(words, name)?.split(' ').next()
+    after(words, name)?.split(' ').next()
 }
 
 /// All that stands behind a name.
-fn rest<'w>(words: &'w str, name: &str) -> Option<&'w str> {
+fn after<'w>(words: &'w str, name: &str) -> Option<&'w str> {
     words.split_once(&format!(" {name}=")).map(|(_, rest)| rest)
 }

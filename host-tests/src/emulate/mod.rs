@@ -1,7 +1,7 @@
 //! `meridian emulate`: the firmware on an emulated Cortex-M4F, against the host and its budget.
 //!
 //! ```text
-//!  images (cargo) ─▶ qemu ─bytes─▶ decode ─lines─▶ collect ─▶ outcome ◀─compare─ host
+//!  images (cargo) ─▶ qemu ─bytes─▶ decode ─lines─▶ collect ─▶ outcome ◀─compare─ jobs
 //!        │                                            └─▶ figures ─▶ checks ◀─ budget.toml
 //!        └─ELF─▶ sections ──────────────────────────────────────────────▲
 //! ```
@@ -13,8 +13,8 @@ pub mod checks;
 pub mod collect;
 pub mod cost;
 pub mod decode;
-pub mod host;
 pub mod images;
+pub mod jobs;
 pub mod outcome;
 pub mod qemu;
 pub mod sections;
@@ -23,13 +23,9 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::VehicleScenario;
-
-use self::checks::Runs;
 use self::collect::Collected;
 use self::decode::Decoder;
+use self::jobs::{JOBS, Job};
 use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
 
@@ -39,12 +35,14 @@ const LONGEST: Duration = Duration::from_mins(10);
 /// All that an emulation showed.
 #[derive(Clone, Debug)]
 pub struct Emulation {
-    /// What the emulated instrument found.
+    /// The seed of every run.
+    pub seed: u64,
+    /// What the emulated instrument on a stage found.
     pub emulated: Outcome,
-    /// Whether that is what the host found.
+    /// Whether the host found the same in every run.
     pub comparison: Result<(), Difference>,
     /// What the instrument took in each run.
-    pub runs: Runs,
+    pub runs: Vec<Run>,
     /// Where its memory goes.
     pub memory: Memory,
     /// What the cores take.
@@ -53,6 +51,15 @@ pub struct Emulation {
     pub cost_is_right: bool,
     /// The figures against the budget.
     pub checks: Vec<checks::Check>,
+}
+
+/// A run of the image, and what the instrument took in it.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Which one.
+    pub job: &'static Job,
+    /// What was taken.
+    pub figures: collect::Figures,
 }
 
 impl Emulation {
@@ -73,27 +80,21 @@ pub fn emulate(seed: u64, mut on_line: impl FnMut(&decode::Line)) -> Result<Emul
     qemu::require()?;
     let images = images::build()?;
     let elf = read(&images.emulator)?;
-    let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut on_line);
-    let (emulated, figures) = run(&seed.to_string())?;
-    let mut comparison = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
-    let mut compared = |order: &str, host: Outcome| {
-        let (found, figures) = run(&format!("{seed}/{order}"))?;
-        if comparison.is_ok() {
-            comparison = outcome::compare(&found, &host);
-        }
-        Ok::<_, String>(figures)
-    };
-    let runs = Runs {
-        figures,
-        brief: compared("brief", host::outcome(&Scenario::brief(seed))?)?,
-        survey: compared("survey", host::outcome(&Scenario::surveying(seed))?)?,
-        turning: compared("turning", host::turning(&TurntableScenario::brief(seed))?)?,
-        stops: compared("stops", host::stops(&VehicleScenario::brief(seed))?)?,
-    };
+    let (mut outcomes, mut runs) = (Vec::new(), Vec::new());
+    let mut comparison = Ok(());
+    for job in JOBS {
+        let order = format!("{seed}/{}", job.word);
+        let (emulated, figures) = instrument(&images.emulator, &elf, &order, &mut on_line)?;
+        let host = (job.on_host)(seed)?;
+        comparison = comparison.and_then(|()| outcome::compare(&emulated, &host));
+        outcomes.push(emulated);
+        runs.push(Run { job, figures });
+    }
+    let emulated = outcomes.swap_remove(0);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
     let checks = checks::all(&runs, &memory);
-    Ok(Emulation { emulated, comparison, runs, memory, cost, cost_is_right, checks })
+    Ok(Emulation { seed, emulated, comparison, runs, memory, cost, cost_is_right, checks })
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {

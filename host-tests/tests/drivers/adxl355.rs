@@ -41,7 +41,7 @@ impl ForceInput for Table {
 }
 
 type Rig = RefCell<Single<Chip, Table>>;
-type Accelerometer<'a> = Adxl355<SpiPort<'a, Single<Chip, Table>>, Delay>;
+type Accelerometer<'a> = Adxl355<SpiPort<'a>, Delay>;
 
 fn rig_with(force: [f64; 3]) -> Rig {
     let environment = Table { force, temperature: 25.0, samples: 0 };

@@ -63,7 +63,7 @@ fn rig() -> Rig {
     RefCell::new(Single { chip: Counter::default(), environment: () })
 }
 
-fn device(rig: &Rig, fault: BusFault, when: When) -> FaultySpi<SpiPort<'_, Single<Counter, ()>>> {
+fn device(rig: &Rig, fault: BusFault, when: When) -> FaultySpi<SpiPort<'_>> {
     let port = SpiPort::new(rig, Select::Gyro, HERTZ);
     FaultySpi::new(port, Some(FaultPlan { fault, when }))
 }
@@ -369,7 +369,7 @@ fn the_errors_of_a_device_keep_their_kind() {
 
 // Data-ready -------------------------------------------------------------------------------------
 
-fn line(rig: &Rig, when: Option<When>) -> FaultyReady<ReadyPin<'_, Single<Counter, ()>>> {
+fn line(rig: &Rig, when: Option<When>) -> FaultyReady<ReadyPin<'_>> {
     FaultyReady::new(ReadyPin::new(rig, Select::Gyro), when, None)
 }
 

@@ -38,7 +38,7 @@ impl ShaftAngle for Shaft {
 }
 
 type Rig = RefCell<Single<Chip, Shaft>>;
-type Encoder<'a> = Mt6835<SpiPort<'a, Single<Chip, Shaft>>, Delay>;
+type Encoder<'a> = Mt6835<SpiPort<'a>, Delay>;
 
 fn bench_at(turns: f64) -> Rig {
     let environment = Shaft { turns, turns_per_s: 0.0, has_magnet: true };

@@ -16,14 +16,12 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::VehicleScenario;
+use firmware::simulated::trace::ABSENT;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
-use host::emulate::host as on_host;
-use host::emulate::outcome::Outcome;
+use host::emulate::jobs::JOBS;
+use host::emulate::outcome::Row;
 use host::methods::METHODS;
 use host::methods::asked::Asked;
 use serde_json::Value;
@@ -191,14 +189,11 @@ fn noise_analyses_and_plans_print_what_they_printed() {
 fn the_bits_that_the_emulated_firmware_is_compared_with_are_what_they_were() {
     let mut found = String::new();
     for seed in [1, 2] {
-        let stage = on_host::outcome(&Scenario { seed, ..Scenario::default() });
-        let turntable = on_host::turning(&TurntableScenario::brief(seed));
-        let vehicle = on_host::stops(&VehicleScenario::brief(seed));
-        for (carrier, outcome) in [("stage", stage), ("turntable", turntable), ("vehicle", vehicle)]
-        {
-            let outcome = outcome.expect("the simulated board comes to an end");
-            writeln!(found, "{carrier}, seed {seed}").expect("memory takes it");
-            describe(&mut found, &outcome);
+        for job in JOBS {
+            let outcome = (job.on_host)(seed).expect("the simulated board comes to an end");
+            writeln!(found, "{}, seed {seed}: {:?}", job.word, outcome.reason)
+                .expect("memory takes it");
+            outcome.rows.iter().for_each(|row| describe(&mut found, row));
         }
     }
     let mut differing = Vec::new();
@@ -206,20 +201,14 @@ fn the_bits_that_the_emulated_firmware_is_compared_with_are_what_they_were() {
     assert!(differing.is_empty(), "{}", differing.join("\n"));
 }
 
-/// Writes the bits of a run: the azimuth and its standard deviation, then a line for each dwell, turn, stop
-/// and second that it was kept.
-fn describe(text: &mut String, outcome: &Outcome) {
-    let Outcome { azimuth_bits, sigma_bits, reason, rows, .. } = outcome;
-    let found = [*azimuth_bits, *sigma_bits];
-    writeln!(text, "azimuth {} {reason:?}", hexadecimal(&found)).expect("memory takes it");
-    for row in rows {
-        writeln!(text, "{} {}", row.kind.word, hexadecimal(&row.bits)).expect("memory takes it");
-    }
-}
-
-fn hexadecimal(bits: &[Option<u64>]) -> String {
-    let one = |bits: &Option<u64>| bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:x}"));
-    bits.iter().map(one).collect::<Vec<_>>().join(" ")
+/// Writes the bits of a dwell, a turn, a stop, a second that was kept, or the azimuth.
+fn describe(text: &mut String, row: &Row) {
+    let bits = row.bits.iter().map(|bits| match *bits {
+        ABSENT => "-".to_owned(),
+        bits => format!("{bits:x}"),
+    });
+    writeln!(text, "{} {}", row.kind(), bits.collect::<Vec<_>>().join(" "))
+        .expect("memory takes it");
 }
 
 fn readme() -> String {

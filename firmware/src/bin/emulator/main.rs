@@ -8,9 +8,9 @@
 //! ```
 //!
 //! `meridian emulate` builds and runs this image, reads its log, and compares its results with its
-//! own run of the same seed. The host parses these lines of the log: `outcome`, `dwell`, `turn`,
-//! `stop` and `kept` lines carry the bits of every result, `effort` and `stack` lines the cost. No
-//! output goes directly to semihosting: it would fall into the middle of the log.
+//! own run of the same seed. The host parses these lines of the log: `row` lines carry the bits of
+//! every result, `effort`, `task` and `stack` lines the cost. No output goes directly to
+//! semihosting: it would fall into the middle of the log.
 #![no_std]
 #![no_main]
 
@@ -22,7 +22,6 @@ mod job;
 mod log;
 mod meter;
 mod outside;
-mod results;
 mod setup;
 #[path = "../measure/stack.rs"]
 mod stack;
@@ -53,8 +52,6 @@ enum Failure {
     Deadlock,
     /// The session cannot begin.
     Session,
-    /// The session did not conclude.
-    NoConclusion,
 }
 
 /// State that the tasks share with [`main`].
@@ -99,8 +96,8 @@ fn run() -> Result<(), Failure> {
     spawner.spawn(instrument(harness, running).map_err(|_| Failure::NotStarted)?);
     let finished = || harness.finished.get();
     let finished = executor::run(executor, &harness.meter, finished).ok_or(Failure::Deadlock)?;
-    finished.log(job.base().seed).ok_or(Failure::NoConclusion)?;
-    log::effort(&harness.meter, job.base().sample_rate_hz);
+    finished.log();
+    log::effort(&harness.meter, job.sample_rate());
     log::task(&harness.acquisition);
     log::task(&harness.instrument);
     Ok(())

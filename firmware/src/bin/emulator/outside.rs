@@ -19,18 +19,19 @@ use firmware::event::Event;
 use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::fault::PortWrapper;
+use firmware::simulated::trace::Trace as _;
 use hal_mock::chip::Select;
 use orientation::alignment::{Progress, rotating, stepwise, stops};
 use orientation::attitude::Report;
 
 use crate::clock;
 use crate::meter::Meter;
-use crate::results;
+use crate::setup;
 
 /// A simulated port whose instructions are booked on the simulation's account: on the board, bus
 /// drivers and their interrupts take its place, so the cost of the simulated port says nothing
 /// about the board.
-pub struct Aiding<T> {
+pub struct Metered<T> {
     /// The wrapped port.
     port: T,
     /// The meter that keeps the two accounts.
@@ -41,20 +42,20 @@ pub struct Aiding<T> {
 pub struct Metering(pub &'static Meter);
 
 impl PortWrapper for Metering {
-    type Spi<S: SpiDevice> = Aiding<S>;
-    type Line<W: Wait> = Aiding<W>;
-    type I2c<B: I2c<Error = i2c::ErrorKind>> = Aiding<B>;
+    type Spi<S: SpiDevice> = Metered<S>;
+    type Line<W: Wait> = Metered<W>;
+    type I2c<B: I2c<Error = i2c::ErrorKind>> = Metered<B>;
 
-    fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Aiding<S> {
-        Aiding { port, meter: self.0 }
+    fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Metered<S> {
+        Metered { port, meter: self.0 }
     }
 
-    fn line<W: Wait>(&self, _: Select, port: W) -> Aiding<W> {
-        Aiding { port, meter: self.0 }
+    fn line<W: Wait>(&self, _: Select, port: W) -> Metered<W> {
+        Metered { port, meter: self.0 }
     }
 
-    fn i2c<B: I2c<Error = i2c::ErrorKind>>(&self, port: B) -> Aiding<B> {
-        Aiding { port, meter: self.0 }
+    fn i2c<B: I2c<Error = i2c::ErrorKind>>(&self, port: B) -> Metered<B> {
+        Metered { port, meter: self.0 }
     }
 }
 
@@ -64,11 +65,11 @@ async fn outside<F: Future>(meter: &Meter, future: F) -> F::Output {
     poll_fn(|context| meter.outside(|| future.as_mut().poll(context))).await
 }
 
-impl<T: SpiErrorType> SpiErrorType for Aiding<T> {
+impl<T: SpiErrorType> SpiErrorType for Metered<T> {
     type Error = T::Error;
 }
 
-impl<T: SpiDevice> SpiDevice for Aiding<T> {
+impl<T: SpiDevice> SpiDevice for Metered<T> {
     async fn transaction(
         &mut self,
         operations: &mut [Operation<'_, u8>],
@@ -77,11 +78,11 @@ impl<T: SpiDevice> SpiDevice for Aiding<T> {
     }
 }
 
-impl<T: i2c::ErrorType> i2c::ErrorType for Aiding<T> {
+impl<T: i2c::ErrorType> i2c::ErrorType for Metered<T> {
     type Error = T::Error;
 }
 
-impl<T: I2c> I2c for Aiding<T> {
+impl<T: I2c> I2c for Metered<T> {
     async fn transaction(
         &mut self,
         address: u8,
@@ -91,11 +92,11 @@ impl<T: I2c> I2c for Aiding<T> {
     }
 }
 
-impl<T: PinErrorType> PinErrorType for Aiding<T> {
+impl<T: PinErrorType> PinErrorType for Metered<T> {
     type Error = T::Error;
 }
 
-impl<T: Wait> Wait for Aiding<T> {
+impl<T: Wait> Wait for Metered<T> {
     async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
         outside(self.meter, self.port.wait_for_high()).await
     }
@@ -133,16 +134,18 @@ impl Observer for Log {
     }
 
     fn kept(&self, report: &Report) {
-        self.0.outside(|| results::kept(report));
+        self.0.outside(|| report.trace(&mut setup::row));
     }
 }
 
-/// Whether a dwell, a turn or a stop has ended, or a stop has begun.
+/// Whether a dwell, a turn or a stop has ended, or a stop has begun, or the tracking of a roll has
+/// changed.
 fn is_step(progress: &Progress) -> bool {
     matches!(
         progress,
         Progress::Stepwise(stepwise::Progress::Dwelled(..))
             | Progress::Rotating(rotating::Progress::Turned(..))
+            | Progress::Roll(_)
             | Progress::Stops(
                 stops::Progress::Standing
                     | stops::Progress::Stopped(..)

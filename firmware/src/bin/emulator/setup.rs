@@ -1,150 +1,139 @@
-//! The parts of a run in static memory: the simulated board, its ports, the channels and the
-//! session.
+//! The parts of a run in static memory: the simulated board, its ports, the channels and the method.
 //!
-//! Every kind of run has its variant of one `enum`, so the kinds share the same memory, and a part
+//! Every carrier has its variant of one `enum`, so the carriers share the same memory, and a part
 //! that is built lies where it stays.
 
 use core::cell::RefCell;
 
-use firmware::acquire::{TriadAcquisition, acquire, on_stage};
+use defmt::println;
+use drivers::tmc5160::configuration::Configuration as Motor;
+use firmware::acquire::{self, SpinAcquisition, TriadAcquisition, acquire};
 use firmware::configuration::{
-    Configuration, KeepConfiguration, TurntableConfiguration, VehicleConfiguration,
+    Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
+use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::mechanism::Strapdown;
-use firmware::ports::{NoRecorder, Ports};
+use firmware::mechanism::{Mechanism, Strapdown};
+use firmware::ports::{Aiding, Frames, NoRecorder};
 use firmware::run::navigate;
-use firmware::shared::Channels;
-use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
-use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
+use firmware::shared::{Channels, LatestAngle};
+use firmware::simulated::fault::Injection;
+use firmware::simulated::mount::{FramePorts, FrameSensors, FramesScenario};
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::spin::{Course, SimulatedSpin, SpinScenario};
+use firmware::simulated::trace::{AZIMUTH, Trace};
+use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::{self, SimulatedTriad, VehicleAiding, VehicleScenario};
+use firmware::simulated::{
+    self, Chips, SimulatedPorts, SimulatedSensors, Wires, scenario, turntable,
+};
+use firmware::spin::configuration::SpinConfiguration;
 use firmware::stage::Stage;
 use firmware::turntable::Turntable;
+use hal_mock::gimbal::board::GimbalBoard;
+use hal_mock::spin::board::SpinBoard;
 use hal_mock::vehicle::board::VehicleBoard;
-use orientation::alignment::rotating::session as rotating;
-use orientation::alignment::rotating::turn::Stretch;
-use orientation::alignment::stepwise::session::Session;
-use orientation::alignment::stops::session as stops;
-use orientation::attitude as keep;
+use orientation::alignment::{Method, rotating, stepwise, stops};
 use orientation::attitude::Keeper;
-use orientation::signal::InertialSample;
+use orientation::roll::Flight;
+use orientation::signal::{InertialSample, Sample, SpinSample, Timed};
 use static_cell::StaticCell;
 
+use crate::job::Job;
 use crate::meter::Meter;
 use crate::outside::{Log, Metering, NoLink};
-use crate::results;
 
-/// The simulated board of an instrument on a stage or on a turntable.
-pub type StageRig = RefCell<Chips<'static>>;
-/// The simulated board of a strapdown instrument in a vehicle.
-pub type VehicleRig = RefCell<VehicleBoard<'static>>;
-/// The sensors of an instrument on a stage or on a turntable.
-pub type StageInputs = SimulatedSensors<'static, Chips<'static>, Metering>;
-/// The motor, link and recorder of an instrument on a stage or on a turntable.
-pub type StageOutputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink, NoRecorder>;
-/// The gyros and accelerometers of an instrument in a vehicle.
-pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering>;
-/// The position aiding of an instrument in a vehicle.
-pub type Place = KnownPlace<'static, 'static>;
-/// The attitude keeper of a vehicle, without aiding and without memory over a loss of supply.
-pub type VehicleKeeping = Keeping<'static, (), ()>;
-/// The channels of an instrument on a stage or on a turntable.
-type StageSeams = Channels<'static>;
-/// The channels of an instrument in a vehicle, which carry inertial samples.
-type VehicleSeams = Channels<'static, InertialSample>;
+/// Injection without faults, for every carrier.
+static HEALTHY: Injection = Injection::NONE;
 
-/// The simulated board of either kind of run.
+/// The motor, link and recorder of a stage or a turntable.
+type StageOutputs = SimulatedPorts<'static, Metering, NoLink, NoRecorder>;
+/// The motors, link and recorder of a two-frame mount.
+type FrameOutputs = FramePorts<'static, Metering, NoLink, NoRecorder>;
+
+/// The simulated board of any carrier.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Rig {
-    Stage(StageRig),
-    Vehicle(VehicleRig),
+    Stage(RefCell<Chips<'static>>),
+    Frames(RefCell<GimbalBoard<'static>>),
+    Vehicle(RefCell<VehicleBoard<'static>>),
+    Spin(RefCell<SpinBoard<'static>>),
 }
 
-/// The sensors, the other ports and the channels of either kind of run.
+/// The sensors, the other ports and the channels of any carrier.
+#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Parts {
-    Stage(StageInputs, StageOutputs, StageSeams),
-    Vehicle(VehicleInputs, Place, VehicleSeams),
+    Stage(SimulatedSensors<'static, Metering>, StageOutputs, Channels<'static>),
+    Frames(
+        FrameSensors<'static, Metering>,
+        FrameOutputs,
+        (FramesConfiguration, Frames<LatestAngle>),
+        Channels<'static>,
+    ),
+    Vehicle(
+        SimulatedTriad<'static, Metering>,
+        VehicleAiding<'static, 'static>,
+        Channels<'static, InertialSample>,
+    ),
+    Spin(SimulatedSpin<'static, Metering>, SpinConfiguration, Channels<'static, SpinSample>),
 }
 
-/// The session of any kind of run, the largest object in memory.
+/// The method of any carrier, the largest object in memory.
 #[expect(clippy::large_enum_variant, reason = "there is one, and it stays where it is")]
-pub enum AnySession {
-    /// A session of multi-position alignment.
-    Stepwise(Session),
-    /// A session of continuous rotation.
-    Turning(rotating::Session),
-    /// A session of inertial-frame alignment.
+enum AnyMethod {
+    Stepwise(stepwise::Session),
+    Rotating(rotating::Session),
     Stops(stops::Session),
+    Flight(Flight),
 }
 
-/// The board of this run.
 static RIG: StaticCell<Rig> = StaticCell::new();
-/// The observer of this run.
+static COURSE: StaticCell<Course> = StaticCell::new();
 static LOG: StaticCell<Log> = StaticCell::new();
-/// Ports and channels of this run.
 static PARTS: StaticCell<Parts> = StaticCell::new();
-/// The session of this run.
-static SESSION: StaticCell<AnySession> = StaticCell::new();
-/// The attitude keeper of this run.
+static METHOD: StaticCell<AnyMethod> = StaticCell::new();
 static KEEPER: StaticCell<Keeper> = StaticCell::new();
 
-/// Builds the board of a stage with its ports and channels in static memory; [`None`] if a board of
-/// another kind is there already.
-///
-/// May be called once: a second call panics, as the memory is taken.
-#[inline(never)]
-pub fn stage(
-    board: impl FnOnce() -> Chips<'static>,
-    inputs: impl FnOnce(&'static StageRig) -> StageInputs,
-    outputs: impl FnOnce(&'static StageRig) -> StageOutputs,
-    meter: &'static Meter,
-) -> Option<(&'static mut StageInputs, &'static mut StageOutputs, &'static StageSeams)> {
-    let Rig::Stage(rig) = RIG.init_with(|| Rig::Stage(RefCell::new(board()))) else { return None };
-    let log = LOG.init(Log(meter));
-    let parts = PARTS.init_with(|| Parts::Stage(inputs(rig), outputs(rig), Channels::new(log)));
-    let Parts::Stage(inputs, outputs, channels) = parts else { return None };
-    Some((inputs, outputs, channels))
+/// Builds a part in static memory and takes out its variant. Not inlined, so that temporary copies on
+/// the stack are gone when the method runs.
+macro_rules! built {
+    ($cell:ident, $pattern:pat => $found:expr, $build:expr) => {{
+        #[inline(never)]
+        fn place<T>(cell: &'static StaticCell<T>, build: impl FnOnce() -> T) -> &'static mut T {
+            cell.init_with(build)
+        }
+        let $pattern = place(&$cell, || $build) else { return None };
+        $found
+    }};
 }
 
-/// Builds the board of a vehicle with its ports and channels in static memory; [`None`] if a board
-/// of another kind is there already.
-///
-/// May be called once: a second call panics, as the memory is taken.
-#[inline(never)]
-pub fn vehicle(
-    board: impl FnOnce() -> VehicleBoard<'static>,
-    inputs: impl FnOnce(&'static VehicleRig) -> VehicleInputs,
-    place: impl FnOnce(&'static VehicleRig) -> Place,
-    meter: &'static Meter,
-) -> Option<(&'static mut VehicleInputs, &'static mut Place, &'static VehicleSeams)> {
-    let rig = RIG.init_with(|| Rig::Vehicle(RefCell::new(board())));
-    let Rig::Vehicle(rig) = rig else { return None };
-    let log = LOG.init(Log(meter));
-    let parts = PARTS.init_with(|| Parts::Vehicle(inputs(rig), place(rig), Channels::new(log)));
-    let Parts::Vehicle(inputs, place, channels) = parts else { return None };
-    Some((inputs, place, channels))
-}
-
-/// Builds the session in static memory. Not inlined, so that the temporary copy on the stack is gone
-/// when the session runs.
-///
-/// May be called once: a second call panics, as the memory is taken.
-#[inline(never)]
-pub fn session(session: impl FnOnce() -> AnySession) -> &'static mut AnySession {
-    SESSION.init_with(session)
-}
-
-/// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.
-#[inline(never)]
-pub fn keeping(setting: &keep::Setting, configuration: &KeepConfiguration) -> VehicleKeeping {
-    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, (), ())
-}
-
-/// The sampling half of an instrument: sensors, configuration and channels.
+/// The sampling half of an instrument.
 pub enum Sampling {
-    /// Sampling on a stage or on a turntable.
-    Stage(&'static mut StageInputs, Configuration, &'static StageSeams),
-    /// Sampling in a vehicle.
-    Vehicle(&'static mut VehicleInputs, VehicleConfiguration, &'static VehicleSeams),
+    /// On a stage or on a turntable.
+    Stage(
+        &'static mut SimulatedSensors<'static, Metering>,
+        Configuration,
+        &'static Channels<'static>,
+    ),
+    /// On a two-frame mount.
+    Frames(
+        &'static mut FrameSensors<'static, Metering>,
+        Configuration,
+        &'static (FramesConfiguration, Frames<LatestAngle>),
+        &'static Channels<'static>,
+    ),
+    /// In a vehicle.
+    Vehicle(
+        &'static mut SimulatedTriad<'static, Metering>,
+        VehicleConfiguration,
+        &'static Channels<'static, InertialSample>,
+    ),
+    /// On a spinning body.
+    Spin(
+        &'static mut SimulatedSpin<'static, Metering>,
+        &'static SpinConfiguration,
+        &'static Channels<'static, SpinSample>,
+    ),
 }
 
 impl Sampling {
@@ -152,91 +141,268 @@ impl Sampling {
     pub async fn run(self) {
         match self {
             Self::Stage(inputs, configuration, channels) => {
-                acquire(&mut on_stage(inputs, &configuration, channels)).await;
+                acquire(&mut acquire::on_stage(inputs, &configuration, channels)).await;
+            }
+            Self::Frames(inputs, configuration, (frames, latest), channels) => {
+                acquire(&mut acquire::on_mount(inputs, &configuration, frames, latest, channels))
+                    .await;
             }
             Self::Vehicle(inputs, configuration, channels) => {
                 acquire(&mut TriadAcquisition::new(inputs, &configuration, channels)).await;
             }
+            Self::Spin(inputs, configuration, channels) => {
+                acquire(&mut SpinAcquisition::new(inputs, configuration, channels)).await;
+            }
         }
     }
 }
 
-/// The processing half of an instrument: session, ports and channels.
-#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
+/// The processing half of an instrument.
 pub enum Running {
     /// Multi-position alignment on a stage.
-    Stepwise(&'static mut Session, &'static mut StageOutputs, Configuration, &'static StageSeams),
+    Stage(
+        &'static mut stepwise::Session,
+        &'static mut StageOutputs,
+        Configuration,
+        &'static Channels<'static>,
+    ),
+    /// Multi-position alignment on a two-frame mount.
+    Frames(
+        &'static mut stepwise::Session,
+        &'static mut FrameOutputs,
+        &'static (FramesConfiguration, Frames<LatestAngle>),
+        &'static Channels<'static>,
+    ),
     /// Continuous rotation on a turntable.
-    Turning(&'static mut rotating::Session, &'static mut StageOutputs, &'static StageSeams),
+    Turntable(
+        &'static mut rotating::Session,
+        &'static mut StageOutputs,
+        &'static Channels<'static>,
+    ),
     /// Inertial-frame alignment from stop to stop in a vehicle.
-    Stops(&'static mut stops::Session, &'static mut Place, VehicleKeeping, &'static VehicleSeams),
+    Vehicle(
+        &'static mut stops::Session,
+        &'static VehicleAiding<'static, 'static>,
+        Keeping<'static, ()>,
+        &'static Channels<'static, InertialSample>,
+    ),
+    /// Tracking of the roll of a spinning body.
+    Spin(&'static mut Flight, &'static Channels<'static, SpinSample>),
+}
+
+/// Navigates with a method, and logs what it found.
+async fn run<M: Mechanism, S: Timed, T: Method<S> + Trace>(
+    mechanism: &mut M,
+    method: &mut T,
+    keeping: Option<Keeping<'_, ()>>,
+    aiding: &dyn Aiding,
+    channels: &Channels<'_, S>,
+) {
+    let outside = (&mut NoLink, &mut NoRecorder);
+    navigate(mechanism, method, keeping, aiding, outside, channels).await;
+}
+
+/// Logs the rows of a method and its verdict. Values are the bits of 64-bit numbers, without any
+/// rounding.
+fn log<S, T: Method<S> + Trace>(method: &T) {
+    method.trace(&mut row);
+    match method.verdict() {
+        Some(Ok(solution)) => {
+            let azimuth = solution.azimuth;
+            row(AZIMUTH, &[azimuth.angle, azimuth.sigma].map(f64::to_bits));
+        }
+        Some(Err(reason)) => println!("reason {}", reason),
+        None => {}
+    }
+}
+
+/// Logs a row of bit patterns, at every log level.
+pub fn row(kind: &'static str, bits: &[u64]) {
+    println!("row {=str} {=[?]}", kind, bits);
 }
 
 impl Running {
-    /// Runs the session to its conclusion and gives the session back.
+    /// Runs the instrument to its end.
     pub async fn run(self) -> Finished {
         match self {
-            Self::Stepwise(session, outputs, configuration, channels) => {
-                let Ports { actuator, link, recorder } = outputs;
-                let mut stage = Stage::new(actuator, &configuration.stage, &channels.shared);
-                let aligned = (&mut *session as _, &mut () as _);
-                navigate(&mut stage, aligned, link, recorder, &mut (), channels).await;
+            Self::Stage(session, outputs, configuration, channels) => {
+                let shared = &channels.shared;
+                let mut stage = Stage::new(&mut outputs.actuator, &configuration.stage, shared);
+                run(&mut stage, session, None, &(), channels).await;
                 Finished::Stepwise(session)
             }
-            Self::Turning(session, outputs, channels) => {
-                let Ports { actuator, link, recorder } = outputs;
-                let tolerances = TurntableConfiguration::default();
-                let mut platform = Turntable::new(actuator, &tolerances, &channels.shared);
-                let aligned = (&mut *session as _, &mut () as _);
-                navigate(&mut platform, aligned, link, recorder, &mut (), channels).await;
-                Finished::Turning(session)
+            Self::Frames(session, outputs, (frames, latest), channels) => {
+                let shared = &channels.shared;
+                let mut gimbal = Gimbal::new(&mut outputs.actuator, frames, latest, shared);
+                run(&mut gimbal, session, None, &(), channels).await;
+                Finished::Stepwise(session)
             }
-            Self::Stops(session, place, mut keeping, channels) => {
+            Self::Turntable(session, outputs, channels) => {
+                let tolerances = TurntableConfiguration::default();
+                let shared = &channels.shared;
+                let mut platform = Turntable::new(&mut outputs.actuator, &tolerances, shared);
+                run(&mut platform, session, None, &(), channels).await;
+                Finished::Rotating(session)
+            }
+            Self::Vehicle(session, aiding, keeping, channels) => {
                 let mut body = Strapdown::new(&channels.shared);
-                let aligned = (&mut *session as _, place as _);
-                let (link, recorder) = (&mut NoLink, &mut NoRecorder);
-                navigate(&mut body, aligned, link, recorder, &mut keeping, channels).await;
+                run(&mut body, session, Some(keeping), aiding, channels).await;
                 Finished::Stops(session)
+            }
+            Self::Spin(flight, channels) => {
+                run(&mut Strapdown::new(&channels.shared), flight, None, &(), channels).await;
+                Finished::Flight(flight)
             }
         }
     }
 }
 
-/// A session that has concluded.
+/// A method that has come to its end.
 pub enum Finished {
-    /// A session of multi-position alignment.
-    Stepwise(&'static Session),
-    /// A session of continuous rotation.
-    Turning(&'static rotating::Session),
-    /// A session of inertial-frame alignment.
+    /// Multi-position alignment.
+    Stepwise(&'static stepwise::Session),
+    /// Continuous rotation.
+    Rotating(&'static rotating::Session),
+    /// Inertial-frame alignment.
     Stops(&'static stops::Session),
+    /// Tracking of a roll.
+    Flight(&'static Flight),
 }
 
 impl Finished {
-    /// Logs the dwells, turns or stops and the outcome; [`None`] if the session has not concluded.
-    pub fn log(&self, seed: u64) -> Option<()> {
-        let verdict = match self {
-            Self::Stepwise(session) => {
-                session.dwells().iter().zip(1..).for_each(|(dwell, number)| {
-                    results::dwell(number, dwell);
-                });
-                session.conclusion()?.verdict
-            }
-            Self::Turning(session) => {
-                let stretches = session.turn_accumulator().stretches().iter();
-                stretches.flat_map(Stretch::turns).zip(1..).for_each(|(turn, number)| {
-                    results::turn(number, turn);
-                });
-                session.conclusion()?.verdict
-            }
-            Self::Stops(session) => {
-                session.stops().iter().zip(1..).for_each(|(stop, number)| {
-                    results::stop(number, stop);
-                });
-                session.conclusion()?.verdict
-            }
-        };
-        results::outcome(seed, &verdict);
-        Some(())
+    /// Logs what was found.
+    pub fn log(&self) {
+        match self {
+            Self::Stepwise(session) => log::<Sample, _>(*session),
+            Self::Rotating(session) => log::<Sample, _>(*session),
+            Self::Stops(session) => log::<InertialSample, _>(*session),
+            Self::Flight(flight) => log::<SpinSample, _>(*flight),
+        }
     }
+}
+
+impl Job {
+    /// Builds the whole run at its final place in memory; `None` where the scenario does not allow a
+    /// start.
+    pub fn begin(&self, meter: &'static Meter) -> Option<(Sampling, Running)> {
+        let outside = (&Metering(meter), &*LOG.init(Log(meter)));
+        match self {
+            Self::Stage(scenario) => on_stage(scenario, outside),
+            Self::Frames(scenario) => on_mount(scenario, outside),
+            Self::Turntable(scenario) => on_turntable(scenario, outside),
+            Self::Vehicle(scenario) => in_vehicle(scenario, outside),
+            Self::Spin(scenario) => on_spinning_body(scenario, outside),
+        }
+    }
+}
+
+/// The meter around every port, and the observer.
+type Outside<'m> = (&'m Metering, &'static Log);
+
+/// Builds a multi-position alignment on a stage.
+#[inline(never)]
+fn on_stage(scenario: &Scenario, (around, log): Outside<'_>) -> Option<(Sampling, Running)> {
+    let prepared = scenario.prepared()?;
+    let session = built!(METHOD, AnyMethod::Stepwise(session) => session,
+        AnyMethod::Stepwise(prepared.into()));
+    let rig = built!(RIG, Rig::Stage(rig) => &*rig,
+        Rig::Stage(RefCell::new(simulated::board(scenario, None, &HEALTHY))));
+    let wires = Wires(rig, around);
+    let (inputs, outputs, channels) = built!(PARTS, Parts::Stage(i, o, c) => (i, o, &*c), Parts::Stage(
+            wires.sensors(scenario, scenario::FORCE),
+            wires.ports(Motor::default(), NoLink, NoRecorder),
+            Channels::new(log)));
+    let configuration = scenario.configuration();
+    Some((
+        Sampling::Stage(inputs, configuration, channels),
+        Running::Stage(session, outputs, configuration, channels),
+    ))
+}
+
+/// Builds a multi-position alignment on a two-frame mount.
+#[inline(never)]
+fn on_mount(scenario: &FramesScenario, (around, log): Outside<'_>) -> Option<(Sampling, Running)> {
+    let prepared = scenario.prepared()?;
+    let frames = scenario.frames().ok()?;
+    let session = built!(METHOD, AnyMethod::Stepwise(session) => session,
+        AnyMethod::Stepwise(prepared.into()));
+    let rig = built!(RIG, Rig::Frames(rig) => &*rig,
+        Rig::Frames(RefCell::new(scenario.board(None, &HEALTHY))));
+    let wires = Wires(rig, around);
+    let (inputs, outputs, mount, channels) = built!(PARTS, Parts::Frames(i, o, m, c) => (i, o, &*m, &*c), Parts::Frames(
+            wires.frame_sensors(scenario),
+            wires.frame_ports(NoLink, NoRecorder),
+            (frames, Frames::unread()),
+            Channels::new(log)));
+    Some((
+        Sampling::Frames(inputs, scenario.base.configuration(), mount, channels),
+        Running::Frames(session, outputs, mount, channels),
+    ))
+}
+
+/// Builds an alignment on a rotating platform.
+#[inline(never)]
+fn on_turntable(
+    scenario: &TurntableScenario,
+    (around, log): Outside<'_>,
+) -> Option<(Sampling, Running)> {
+    let (setting, procedure) = scenario.checked()?;
+    let session = built!(METHOD, AnyMethod::Rotating(session) => session,
+        AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
+    let rig = built!(RIG, Rig::Stage(rig) => &*rig,
+        Rig::Stage(RefCell::new(scenario.board(&HEALTHY))));
+    let wires = Wires(rig, around);
+    let (inputs, outputs, channels) = built!(PARTS, Parts::Stage(i, o, c) => (i, o, &*c), Parts::Stage(
+            wires.sensors(&scenario.base, turntable::FORCE),
+            wires.ports(turntable::motor(), NoLink, NoRecorder),
+            Channels::new(log)));
+    Some((
+        Sampling::Stage(inputs, scenario.base.configuration(), channels),
+        Running::Turntable(session, outputs, channels),
+    ))
+}
+
+/// Builds an alignment in a vehicle.
+#[inline(never)]
+fn in_vehicle(
+    scenario: &VehicleScenario,
+    (around, log): Outside<'_>,
+) -> Option<(Sampling, Running)> {
+    let (setting, procedure) = scenario.checked()?;
+    let session = built!(METHOD, AnyMethod::Stops(session) => session,
+        AnyMethod::Stops(stops::Session::of(setting, procedure)));
+    let setting = scenario.keeper()?;
+    let keeper = KEEPER.init_with(|| Keeper::new(&setting));
+    let rig = built!(RIG, Rig::Vehicle(rig) => &*rig,
+        Rig::Vehicle(RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY))));
+    let wires = Wires(rig, around);
+    let (inputs, aiding, channels) = built!(PARTS, Parts::Vehicle(i, a, c) => (i, &*a, &*c), Parts::Vehicle(
+            wires.triad(scenario),
+            VehicleAiding::new(rig, scenario),
+            Channels::new(log)));
+    let keeping = Keeping { keeper, policy: scenario.policy(), store: () };
+    Some((
+        Sampling::Vehicle(inputs, scenario.configuration(), channels),
+        Running::Vehicle(session, aiding, keeping, channels),
+    ))
+}
+
+/// Builds the tracking of the roll of a spinning body.
+#[inline(never)]
+fn on_spinning_body(
+    scenario: &SpinScenario,
+    (around, log): Outside<'_>,
+) -> Option<(Sampling, Running)> {
+    let configuration = scenario.configuration()?;
+    let flight = built!(METHOD, AnyMethod::Flight(flight) => flight,
+        AnyMethod::Flight(scenario.flight()));
+    let course = &*COURSE.init_with(|| scenario.course(None));
+    let rig = built!(RIG, Rig::Spin(rig) => &*rig,
+        Rig::Spin(RefCell::new(scenario.board(course, &HEALTHY))));
+    let wires = Wires(rig, around);
+    let (inputs, configuration, channels) = built!(PARTS, Parts::Spin(i, s, c) => (i, &*s, &*c), Parts::Spin(
+            wires.spinning(),
+            configuration,
+            Channels::new(log)));
+    Some((Sampling::Spin(inputs, configuration, channels), Running::Spin(flight, channels)))
 }

@@ -8,7 +8,6 @@ use drivers::ads1262::GREATEST_BUS_HERTZ;
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::chip::Rig;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::board::{CHIPS, SpinBoard};
@@ -71,6 +70,12 @@ impl Default for SpinScenario {
 }
 
 impl SpinScenario {
+    /// The default with another seed, for half a second.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        Self { seed, seconds: 0.5, ..Self::default() }
+    }
+
     /// What the board is given about the gyro about x.
     #[must_use]
     pub fn setting(&self) -> Setting {
@@ -162,13 +167,12 @@ impl SpinScenario {
 }
 
 /// The sensors of a spinning body on simulated chips.
-pub type SimulatedSpin<'a, B, A> =
-    SpinSensors<AnalogueSensor<Bus<'a, B, A>, Line<'a, B, A>, Delay>>;
+pub type SimulatedSpin<'a, A> = SpinSensors<AnalogueSensor<Bus<'a, A>, Line<'a, A>, Delay>>;
 
-impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a spinning body.
     #[must_use]
-    pub fn spinning(&self) -> SimulatedSpin<'a, B, A> {
+    pub fn spinning(&self) -> SimulatedSpin<'a, A> {
         let configuration = Converter { rate: DataRate::Sps14400, ..Converter::default() };
         let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, configuration);
         SpinSensors(CHIPS.map(|select| AnalogueSensor(converter(select).clocked())))

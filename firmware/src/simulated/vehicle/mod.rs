@@ -11,7 +11,6 @@ use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::chip::Rig;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
@@ -350,13 +349,13 @@ fn sway() -> SwayConfiguration {
 }
 
 /// The sensors of a vehicle on simulated chips.
-pub type SimulatedTriad<'a, B, A> =
-    VehicleSensors<SimulatedGyro<'a, B, A>, chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>>;
+pub type SimulatedTriad<'a, A> =
+    VehicleSensors<SimulatedGyro<'a, A>, chips::PlatformAccelerometer<Bus<'a, A>, Delay>>;
 
-impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a vehicle.
     #[must_use]
-    pub fn triad(&self, scenario: &VehicleScenario) -> SimulatedTriad<'a, B, A> {
+    pub fn triad(&self, scenario: &VehicleScenario) -> SimulatedTriad<'a, A> {
         let gyro = |select| {
             let gyro = self.gyro(select, &scenario.base);
             chips::AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }

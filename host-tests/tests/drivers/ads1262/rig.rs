@@ -36,14 +36,13 @@ impl AnalogueInput for Input {
 }
 
 pub type Rig = RefCell<Single<Ads1262, Input>>;
-pub type Device<'a> =
-    Driver<SpiPort<'a, Single<Ads1262, Input>>, ReadyPin<'a, Single<Ads1262, Input>>, Delay>;
+pub type Device<'a> = Driver<SpiPort<'a>, ReadyPin<'a>, Delay>;
 
 pub fn rig(input: Input) -> Rig {
     RefCell::new(Single { chip: Ads1262::default(), environment: input })
 }
 
-pub fn port(rig: &Rig, hertz: u32) -> SpiPort<'_, Single<Ads1262, Input>> {
+pub fn port(rig: &Rig, hertz: u32) -> SpiPort<'_> {
     SpiPort::new(rig, Select::Gyro, hertz)
 }
 

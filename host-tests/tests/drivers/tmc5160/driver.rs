@@ -42,7 +42,7 @@ impl Wire {
     }
 }
 
-pub struct Tap<'a>(SpiPort<'a, Single<Chip, Motor>>, &'a Wire);
+pub struct Tap<'a>(SpiPort<'a>, &'a Wire);
 
 impl ErrorType for Tap<'_> {
     type Error = ErrorKind;

@@ -14,7 +14,7 @@ use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
 
 use super::{G, assert_near};
 
-type Converter<'a, 'b> = Ads1262<SpiPort<'a, SpinBoard<'b>>, ReadyPin<'a, SpinBoard<'b>>, Delay>;
+type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ReadyPin<'a>, Delay>;
 
 /// 100 turns a second.
 const SPIN: f64 = 200.0 * std::f64::consts::PI;

@@ -15,8 +15,7 @@ use hal_mock::vehicle::{Leg, Stop, VehicleConfiguration};
 
 use super::{EARTH, assert_near, sway, wave};
 
-type Converter<'a, 'b> =
-    Ads1262<SpiPort<'a, VehicleBoard<'b>>, ReadyPin<'a, VehicleBoard<'b>>, Delay>;
+type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ReadyPin<'a>, Delay>;
 
 /// Swaying fast enough that a conversion at 100 SPS is not what is felt at its end: 0.3° at 3 Hz.
 fn legs() -> [Leg; 1] {

@@ -1,0 +1,134 @@
+//! The runs of the image `emulator`: what each is called, what a sample may take in it, and the same
+//! run on the host.
+
+use std::cell::RefCell;
+
+use firmware::budget;
+use firmware::ports::NoRecorder;
+use firmware::simulated::fault::Injection;
+use firmware::simulated::mount::FramesScenario;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::spin::SpinScenario;
+use firmware::simulated::trace::Trace;
+use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::{BRIEF, VehicleScenario};
+use orientation::signal::{InertialSample, Sample, SpinSample};
+
+use super::outcome::Outcome;
+use crate::instrument::spinning::follow_spin;
+use crate::instrument::{self, RunError};
+
+/// A run of the image.
+#[derive(Debug)]
+pub struct Job {
+    /// The word by which it is requested.
+    pub word: &'static str,
+    /// What its figures are counted over.
+    pub title: &'static str,
+    /// Instructions that a sample may take in the whole instrument.
+    pub sample_budget: Option<u64>,
+    /// Whether a gyro at the highest sample rate must leave the core idle for most of the time.
+    pub is_idle: bool,
+    /// The same run on the host, by its seed.
+    pub on_host: fn(u64) -> Result<Outcome, String>,
+}
+
+/// The run of which the azimuth is printed.
+pub static STAGE: Job = Job {
+    word: "stage",
+    title: "from dwell to dwell at 400 Hz, on a stage",
+    sample_budget: None,
+    is_idle: false,
+    on_host: |seed| stage(&Scenario::usual(seed)),
+};
+
+/// A run at the highest sample rate.
+pub static BRIEF_STAGE: Job = Job {
+    word: "brief",
+    title: "from dwell to dwell at 2400 Hz, on a stage",
+    sample_budget: Some(budget::SAMPLE_INSTRUCTIONS),
+    is_idle: true,
+    on_host: |seed| stage(&Scenario::brief(seed)),
+};
+
+/// The run that learns the noise of its gyro and plans by it.
+pub static SURVEY: Job = Job {
+    word: "survey",
+    title: "from dwell to dwell at 100 Hz, after a survey of two minutes",
+    sample_budget: None,
+    is_idle: false,
+    on_host: |seed| stage(&Scenario::surveying(seed)),
+};
+
+/// A run on two frames.
+pub static TWO_FRAME: Job = Job {
+    word: "two-frame",
+    title: "from dwell to dwell at 2400 Hz, on a two-frame mount",
+    sample_budget: Some(budget::FRAMES_SAMPLE_INSTRUCTIONS),
+    is_idle: false,
+    on_host: |seed| frames(&FramesScenario::brief(seed)),
+};
+
+/// A run on a turntable.
+pub static TURNTABLE: Job = Job {
+    word: "turntable",
+    title: "from turn to turn at 2400 Hz, on a turntable",
+    sample_budget: Some(budget::TURNING_SAMPLE_INSTRUCTIONS),
+    is_idle: true,
+    on_host: |seed| turntable(&TurntableScenario::brief(seed)),
+};
+
+/// A run in a vehicle, with what it keeps afterwards.
+pub static VEHICLE: Job = Job {
+    word: "vehicle",
+    title: "from stop to stop at 50 Hz, in a vehicle",
+    sample_budget: Some(budget::STOPS_SAMPLE_INSTRUCTIONS),
+    is_idle: false,
+    on_host: |seed| vehicle(&VehicleScenario::brief(seed)),
+};
+
+/// A flight of a spinning body.
+pub static SPIN: Job = Job {
+    word: "spin",
+    title: "over a flight at 14.4 kHz, on a spinning body",
+    sample_budget: Some(budget::SPIN_SAMPLE_INSTRUCTIONS),
+    is_idle: false,
+    on_host: |seed| spin(&SpinScenario::brief(seed)),
+};
+
+/// All runs, in the order in which they are made.
+pub static JOBS: [&Job; 7] =
+    [&STAGE, &BRIEF_STAGE, &SURVEY, &TWO_FRAME, &TURNTABLE, &VEHICLE, &SPIN];
+
+fn stage(scenario: &Scenario) -> Result<Outcome, String> {
+    let run = instrument::align(scenario, None, NoRecorder, &()).map_err(failed)?;
+    Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
+}
+
+fn frames(scenario: &FramesScenario) -> Result<Outcome, String> {
+    let run = instrument::align_frames(scenario, None, NoRecorder, &()).map_err(failed)?.run;
+    Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
+}
+
+fn turntable(scenario: &TurntableScenario) -> Result<Outcome, String> {
+    let run = instrument::align_turning(scenario, None, NoRecorder, &()).map_err(failed)?.run;
+    Ok(Outcome::of::<Sample>(&run.replay, &[]))
+}
+
+fn vehicle(scenario: &VehicleScenario) -> Result<Outcome, String> {
+    let healthy = Injection::NONE;
+    let board = RefCell::new(scenario.board(&BRIEF, &[], &healthy));
+    let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &(), ());
+    let run = run.map_err(failed)?.run;
+    let kept: Vec<&dyn Trace> = run.reports.iter().map(|report| report as &dyn Trace).collect();
+    Ok(Outcome::of::<InertialSample>(&run.replay, &kept))
+}
+
+fn spin(scenario: &SpinScenario) -> Result<Outcome, String> {
+    let run = follow_spin(scenario, None, &()).map_err(failed)?.run;
+    Ok(Outcome::of::<SpinSample>(&run.replay, &[]))
+}
+
+fn failed(error: RunError) -> String {
+    format!("the host's run: {error}")
+}
