@@ -10,7 +10,7 @@ use embedded_storage_async::nor_flash::NorFlash;
 use orientation::alignment::rotating::Setting;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use orientation::alignment::rotating::session::{Procedure, Session};
-use orientation::alignment::rotating::solution::SPEEDS;
+use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::attitude::restart::Remembered as Heading;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;

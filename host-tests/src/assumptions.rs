@@ -10,9 +10,9 @@ use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::solution::{Fit, Pair};
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
-use orientation::alignment::stepwise::level::Tilt;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::stepwise::tilt::Tilt;
 use orientation::math::Complex;
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.

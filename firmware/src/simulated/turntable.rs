@@ -14,7 +14,7 @@ use hal_mock::stage::{Ripple, Unevenness};
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
 use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::session::Procedure;
-use orientation::alignment::rotating::solution::SPEEDS;
+use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::units::{DEGREE, TURN};
 

@@ -3,10 +3,11 @@
 
 use hal_mock::noise::Generator;
 use orientation::alignment::site::Site;
-use orientation::alignment::stepwise::direction::{Amplitude, Components};
+use orientation::alignment::stepwise::direction::Components;
 use orientation::alignment::stepwise::level::tilt;
+use orientation::alignment::stepwise::mount::Mount;
 use orientation::alignment::stepwise::quality::{Disturbance, ExpectedScatter};
-use orientation::alignment::stepwise::setting::{Half, Mount, Setting};
+use orientation::alignment::stepwise::setting::{Amplitude, Half, Setting};
 use orientation::earth::Latitude;
 use orientation::math::regression::{Column, Regression};
 use orientation::noise::model::{GyroNoise, StatedNoise};

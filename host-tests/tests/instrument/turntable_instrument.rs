@@ -10,7 +10,7 @@ use host::instrument::{TurntableRun, align_turning};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::rotating::solution::SPEEDS;
+use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::device::{Device, Trouble};
 use rayon::prelude::*;
 

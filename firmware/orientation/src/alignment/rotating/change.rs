@@ -10,8 +10,7 @@
 
 use heapless::Vec;
 
-use super::turn::{Stretch, TURNS, Turn};
-use super::turn_accumulator::STRETCHES;
+use super::turn::{STRETCHES, Stretch, TURNS, Turn};
 use crate::math::regression::{COLUMNS, Column, Regression, Solution};
 use crate::math::{Complex, median, sort};
 

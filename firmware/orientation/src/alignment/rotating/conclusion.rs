@@ -8,10 +8,10 @@ use super::average::{Average, steady_part, typical_size, variance_of_neighbours}
 use super::change::{MARKS, Mark};
 use super::heading::Directions;
 use super::misalignment::AxisMisalignment;
-use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_one_turn, of_turn};
+use super::solution::{Fit, Pair, Problem, force_density, of_one_turn, of_turn};
 use super::tilting::Tilting;
-use super::turn::{Sense, Stretch, Turn};
-use super::turn_accumulator::{STRETCHES, TurnAccumulator};
+use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
+use super::turn_accumulator::TurnAccumulator;
 use crate::alignment::Azimuth;
 use crate::alignment::refusal::Refusal;
 use crate::alignment::slow::SlowMotion;

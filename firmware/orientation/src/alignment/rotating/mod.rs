@@ -30,7 +30,7 @@ pub use progress::Progress;
 pub use session::Session;
 
 use self::misalignment::AxisMisalignment;
-use self::solution::SPEEDS;
+use self::turn::SPEEDS;
 use super::refusal::Refusal;
 use super::site::Site;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};

@@ -10,6 +10,7 @@ use super::level::Lean;
 use super::misalignment::{self, AxisMisalignment};
 use super::molecular::{self, Freed, Halves};
 use super::tilting::Tilting;
+use super::turn::SPEEDS;
 use crate::alignment::budget::Budget;
 use crate::math::Complex;
 use crate::noise::model::GyroNoise;
@@ -43,9 +44,6 @@ const ELLIPTIC: f64 = 0.6;
 const ROUNDED: f64 = 0.32;
 /// Greatest value of J₁.
 const BESSEL: f64 = 0.58;
-
-/// Greatest number of speeds.
-pub const SPEEDS: usize = 2;
 
 /// Averages of both senses at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,17 +12,13 @@
 use heapless::Vec;
 
 use super::part::{AXES, Broken, EIGHTH, Ellipse, Forces, Modulated, Part, is_jump};
-use super::solution::SPEEDS;
-use super::turn::{Sense, Stretch, Turn};
+use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
 use crate::device::Trouble;
 use crate::math::Complex;
 use crate::math::reference_table::Table;
 use crate::signal::Sample;
 use crate::signal::phasor::{Block, Blocks, Reference, Sums};
 use crate::units::{Angle, SpecificForce, TURN as WHOLE_TURN};
-
-/// Greatest number of stretches: two speeds, both senses.
-pub const STRETCHES: usize = 4;
 
 /// Number of eighths in a turn.
 const EIGHTHS: u32 = 8;

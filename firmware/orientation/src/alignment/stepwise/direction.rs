@@ -7,18 +7,9 @@
 //! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
 //! is scanned before the best is refined.
 
-use super::setting::Half;
+use super::setting::{Amplitude, Half};
 use crate::math::reference_table as table;
 use crate::math::reference_table::Table;
-
-/// Prior knowledge of ρ, the Earth rate found over the expected one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Amplitude {
-    /// No prior knowledge: A = atan2(·,·).
-    Free,
-    /// Expected value one with this standard deviation; zero means exactly one.
-    Known(f64),
-}
 
 /// The two components with their covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,6 +18,7 @@ pub mod progress;
 pub mod quality;
 pub mod session;
 pub mod setting;
+pub mod tilt;
 
 pub use progress::Progress;
 pub use session::Session;

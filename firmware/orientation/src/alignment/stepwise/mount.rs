@@ -1,4 +1,4 @@
-//! The two-frame mount (Burov, Fig. 2): pointing of the precise gyro for two frame angles, and
+//! Mounts of the gyro: the stage, and the two-frame mount (Burov, Fig. 2) with its pointing of the precise gyro for two frame angles, and
 //! frame angles for a wanted pointing.
 //!
 //! ```text
@@ -17,13 +17,57 @@
 //! vertical at 90° (up) and 270° (down): unlike on a stage, `k_o` then meets all of gravity, and turns
 //! the azimuth as an Earth rate along body y would. The third part, across both, does so along body x.
 
-use super::level::Tilt;
-use super::setting::Mount;
+use super::tilt::Tilt;
 use crate::earth::Latitude;
 use crate::math::rotation::{IDENTITY, dot};
 use crate::signal::dwell::Dwell;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
 use crate::words::Rounded;
+
+/// Mechanism that carries the gyro, and the place of its accelerometer. A mount brings its own
+/// geometry as functions, so that firmware for one mount contains no code for another.
+#[derive(Clone, Copy, Debug)]
+pub struct Mount {
+    /// Name of the mount, by which mounts are compared.
+    pub name: &'static str,
+    /// Whether the accelerometer is fixed to the base, so that its biases act as tilt; otherwise it
+    /// rides beside the gyro, and they average out over a circle.
+    pub is_on_base: bool,
+    /// Function for the sensitive axis in a dwell: unit vector in the levelled frame, forward,
+    /// right, down.
+    pub axis: fn(&Tilt, &Dwell) -> [f64; 3],
+    /// Function for the specific force that κ multiplies in a dwell, g.
+    pub force: fn(&Tilt, &Dwell) -> [f64; 2],
+}
+
+impl Mount {
+    /// Single-axis stage: the sensitive axis stays in the stage's plane, and the accelerometer
+    /// rides on the stage.
+    pub const STAGE: Self = Self {
+        name: "stage",
+        is_on_base: false,
+        axis: |tilt, dwell| tilt.sensitive_axis(dwell.stage.rad()),
+        force: |tilt, dwell| tilt.force(dwell.stage.rad()),
+    };
+
+    /// Angle by which a dwell has turned the accelerometer from the base's axes, rad.
+    #[must_use]
+    pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
+        if self.is_on_base { 0.0 } else { dwell.stage.rad() }
+    }
+}
+
+impl Default for Mount {
+    fn default() -> Self {
+        Self::STAGE
+    }
+}
+
+impl PartialEq for Mount {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
 
 /// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for the corrections of its
 /// calibration.
@@ -225,7 +269,7 @@ impl Station {
     }
 }
 
-/// The two-frame mount in a [`Setting`](super::setting::Setting).
+/// The two-frame mount, for the setting of an alignment.
 pub const TWO_FRAMES: Mount =
     Mount { name: "two frames", is_on_base: true, axis: raised_axis, force: case_force };
 

@@ -4,8 +4,9 @@
 //! slow push as a slope that the other dwells do not share. All are compared with the gyro's noise;
 //! where that is unknown, with the median of the dwells.
 
+use super::CAPACITY;
 use super::setting::Setting;
-use super::{CAPACITY, level};
+use super::tilt::Tilt;
 use crate::math::rotation::length;
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::BlockStatistics;
@@ -230,12 +231,7 @@ pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
 /// The usual scatter comes from the differences of successive dwells, which a platform that moves
 /// once affects at one place only, however many dwells stand on either side.
 #[inline(never)]
-pub fn moved(
-    setting: &Setting,
-    dwells: &[Dwell],
-    tilt: &level::Tilt,
-    mark: &mut [Option<Disturbance>],
-) {
+pub fn moved(setting: &Setting, dwells: &[Dwell], tilt: &Tilt, mark: &mut [Option<Disturbance>]) {
     let deviations: heapless::Vec<[f64; 2], CAPACITY> = dwells
         .iter()
         .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(setting, dwell, force, tilt)))
@@ -394,7 +390,7 @@ fn is_moved(mark: &Disturbance) -> bool {
 }
 
 /// Deviation of a dwell's mean force from that of the tilt and the biases, g.
-fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
+fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &Tilt) -> [f64; 2] {
     let gravity = setting.site.latitude.gravity();
     let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
     let bias = tilt.bias_at(dwell.middle);

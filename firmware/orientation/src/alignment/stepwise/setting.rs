@@ -1,10 +1,8 @@
 //! Configuration of a multi-position alignment: site, mount, and what is known beforehand.
 
-use super::direction::Amplitude;
-use super::level::Tilt;
+use super::mount::Mount;
 use crate::alignment::site::Site;
 use crate::earth::Latitude;
-use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
 
 /// Half circle in which the azimuth is known to lie: the ambiguity that two opposite positions
@@ -26,49 +24,13 @@ impl Half {
     }
 }
 
-/// Mechanism that carries the gyro, and the place of its accelerometer. A mount brings its own
-/// geometry as functions, so that firmware for one mount contains no code for another.
-#[derive(Clone, Copy, Debug)]
-pub struct Mount {
-    /// Name of the mount, by which mounts are compared.
-    pub name: &'static str,
-    /// Whether the accelerometer is fixed to the base, so that its biases act as tilt; otherwise it
-    /// rides beside the gyro, and they average out over a circle.
-    pub is_on_base: bool,
-    /// Function for the sensitive axis in a dwell: unit vector in the levelled frame, forward,
-    /// right, down.
-    pub axis: fn(&Tilt, &Dwell) -> [f64; 3],
-    /// Function for the specific force that κ multiplies in a dwell, g.
-    pub force: fn(&Tilt, &Dwell) -> [f64; 2],
-}
-
-impl Mount {
-    /// Single-axis stage: the sensitive axis stays in the stage's plane, and the accelerometer
-    /// rides on the stage.
-    pub const STAGE: Self = Self {
-        name: "stage",
-        is_on_base: false,
-        axis: |tilt, dwell| tilt.sensitive_axis(dwell.stage.rad()),
-        force: |tilt, dwell| tilt.force(dwell.stage.rad()),
-    };
-
-    /// Angle by which a dwell has turned the accelerometer from the base's axes, rad.
-    #[must_use]
-    pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
-        if self.is_on_base { 0.0 } else { dwell.stage.rad() }
-    }
-}
-
-impl Default for Mount {
-    fn default() -> Self {
-        Self::STAGE
-    }
-}
-
-impl PartialEq for Mount {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
+/// Prior knowledge of ρ, the Earth rate found over the expected one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amplitude {
+    /// No prior knowledge: A = atan2(·,·).
+    Free,
+    /// Expected value one with this standard deviation; zero means exactly one.
+    Known(f64),
 }
 
 /// Site, mount, and what is known beforehand.

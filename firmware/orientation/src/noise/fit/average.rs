@@ -10,13 +10,25 @@
 //! host-tests/tests/cores/allan/simulated.rs.
 
 use super::Estimate;
-use super::regression::COLUMNS;
-use super::search::Choice;
+use super::regression::{COLUMNS, Columns};
 
 /// Number of neighbouring points that carry the same information, about.
 const REPEATS: f64 = 2.0;
 /// Least part of the weight with which a coefficient counts as found.
 const CERTAIN: f64 = 0.75;
+
+/// Fit of one choice of coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Coefficients that the choice allows to be positive.
+    pub columns: Columns,
+    /// Squares of the coefficients, SI units.
+    pub squares: [f64; COLUMNS],
+    /// Standard deviations of the squares, as if the points were independent.
+    pub spreads: [f64; COLUMNS],
+    /// Deviance plus the prices of the coefficients.
+    pub cost: f64,
+}
 
 /// Weighted sums over choices: a mixture of normal distributions.
 #[derive(Clone, Copy, Debug, Default)]

@@ -13,7 +13,7 @@
 
 use heapless::Vec;
 
-use super::average::average;
+use super::average::{Choice, average};
 use super::regression::{COLUMNS, Columns, Sums, WHITE, sum};
 use super::{Estimate, NoiseFit};
 use crate::noise::allan::covariance::degrees_of_freedom;
@@ -60,19 +60,6 @@ impl Model {
             rate_ramp: r,
         }
     }
-}
-
-/// Fit of one choice of coefficients.
-#[derive(Clone, Copy, Debug)]
-pub struct Choice {
-    /// Coefficients that the choice allows to be positive.
-    pub columns: Columns,
-    /// Squares of the coefficients, SI units.
-    pub squares: [f64; COLUMNS],
-    /// Standard deviations of the squares, as if the points were independent.
-    pub spreads: [f64; COLUMNS],
-    /// Deviance plus the prices of the coefficients.
-    pub cost: f64,
 }
 
 /// State of the search over all choices.

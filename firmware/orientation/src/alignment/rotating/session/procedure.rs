@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::alignment::rotating::solution::SPEEDS;
+use crate::alignment::rotating::turn::SPEEDS;
 use crate::alignment::setup::SetupError;
 use crate::math::reference_table::Table;
 use crate::units::TURN;

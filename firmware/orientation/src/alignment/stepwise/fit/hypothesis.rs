@@ -6,10 +6,9 @@
 //! remains possible, σ covers it by solution separation, as in integrity monitoring: the distance
 //! of its azimuth from the one given, plus an allowance for what may remain unseen.
 
-use super::uncertainty::WRONG;
 use super::{Fit, Model, Problem, ROUNDS, Row, Trial};
 use crate::alignment::stepwise::different_positions;
-use crate::alignment::stepwise::direction::Amplitude;
+use crate::alignment::stepwise::setting::Amplitude;
 use crate::math::chi_square_tail;
 use crate::math::regression::{COLUMNS, Column, Regression};
 use crate::signal::dwell::Dwell;
@@ -80,6 +79,9 @@ const FAR_COVERED: f64 = 2.71;
 /// Allowance, in σ of an alternative's azimuth, for its being further away than it shows: one of
 /// fifty is.
 pub(super) const MISSED: f64 = 1.8;
+/// Multiple of σ beyond which an azimuth counts as wrong: σ is at least the protection level over
+/// this factor.
+pub(super) const WRONG: f64 = 5.0;
 /// Change of heading, rad, from which a step or a rotation is fitted again with its exact angle:
 /// its square is then a tenth of a step that is just detected.
 const TURNED: f64 = 0.003;

@@ -16,9 +16,9 @@ pub use hypothesis::{HeadingStep, Hypothesis, Protection};
 pub use model::Model;
 pub use uncertainty::FEW_DEGREES;
 
-use super::direction::{Amplitude, Components, Direction, dot, inverted, product, quadratic};
-use super::level::Tilt;
-use super::setting::Setting;
+use super::direction::{Components, Direction, dot, inverted, product, quadratic};
+use super::setting::{Amplitude, Setting};
+use super::tilt::Tilt;
 use crate::alignment::budget::Budget;
 use crate::math::regression::{COLUMNS, Regression, Solution};
 use crate::noise::model::GyroNoise;

@@ -3,7 +3,7 @@
 
 use super::{Hypothesis, Problem, Trial};
 use crate::alignment::stepwise::different_positions;
-use crate::alignment::stepwise::direction::Amplitude;
+use crate::alignment::stepwise::setting::Amplitude;
 use crate::math::regression::{COLUMNS, Column, Regression, Solution};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.

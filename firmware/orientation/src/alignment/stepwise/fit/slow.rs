@@ -4,7 +4,7 @@ use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
 use crate::alignment::slow::SlowMotion;
 use crate::alignment::stepwise::direction::quadratic;
 use crate::alignment::stepwise::level;
-use crate::alignment::stepwise::level::TiltRate;
+use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::regression::COLUMNS;
 use crate::signal::dwell::Dwell;
 

@@ -1,11 +1,12 @@
 //! Standard deviation of the azimuth: its Cramér–Rao bound, its budget, and the contributions of
 //! tilt and κ.
 
-use super::hypothesis::{MISSED, OBSERVABLE, separation};
+use super::hypothesis::{MISSED, OBSERVABLE, WRONG, separation};
 use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, block};
 use crate::alignment::budget::Budget;
-use crate::alignment::stepwise::direction::{Amplitude, Direction, dot, product, quadratic};
-use crate::alignment::stepwise::level::TiltRate;
+use crate::alignment::stepwise::direction::{Direction, dot, product, quadratic};
+use crate::alignment::stepwise::setting::Amplitude;
+use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::chi_square_tail;
 use crate::math::regression::{COLUMNS, Column, Regression};
 use crate::noise::model::GyroNoise;
@@ -120,9 +121,6 @@ impl Problem<'_> {
     }
 }
 
-/// Multiple of σ beyond which an azimuth counts as wrong: σ is at least the protection level over
-/// this factor.
-pub(super) const WRONG: f64 = 5.0;
 /// Probability of the residuals below which they count as an anomaly.
 const ANOMALOUS_PROBABILITY: f64 = 0.01;
 /// Deviation of the Earth-rate ratio, in σ, that counts as an anomaly (p = 0.01).

@@ -12,7 +12,7 @@ mod accuracy;
 mod prepared;
 pub mod procedure;
 pub mod schedule;
-pub mod survey;
+mod survey;
 mod timing;
 
 pub use prepared::Prepared;

@@ -4,13 +4,12 @@ use heapless::Vec;
 
 use super::procedure::Procedure;
 use super::survey::Store;
-use super::timing::{Target, Timing, samples};
+use super::timing::{Target, Timing, designed};
 use super::{Phase, SECTIONS, Session, Task};
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;
 use crate::math::reference_table::Table;
-use crate::signal::dwell;
 
 /// Prerequisites of a session. They are small, so that the session itself can be built at its final
 /// place in memory.
@@ -59,25 +58,6 @@ impl From<Prepared> for Session {
             conclusion: None,
         }
     }
-}
-
-/// Filter of a procedure, and its first target.
-pub(super) fn designed(
-    procedure: &Procedure,
-) -> Result<(Coefficients<SECTIONS>, Target), SetupError> {
-    let rate = 1.0 / procedure.sample_seconds;
-    let coefficients =
-        Coefficients::low_pass(procedure.cutoff(), rate).map_err(SetupError::Filter)?;
-    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
-    let needed = dwell::shortest(&coefficients);
-    if samples < needed {
-        return Err(SetupError::DwellTooShort { samples, needed });
-    }
-    if let Some(angle) = procedure.beyond_travel() {
-        return Err(SetupError::BeyondTravel(angle));
-    }
-    let first = procedure.schedule.next(&[], 0.0).ok_or(SetupError::NoPosition)?;
-    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
 }
 
 impl Session {

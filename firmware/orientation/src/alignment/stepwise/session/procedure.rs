@@ -1,10 +1,10 @@
 //! Procedure of a multi-position alignment: schedule, retries, travel and tolerances.
 
 use super::schedule::{Schedule, StopRule};
-use super::survey::Survey;
 use crate::alignment::period::PERIOD_TOLERANCE;
 use crate::alignment::stepwise::criterion::Criterion;
-use crate::planner::POSITIONS;
+use crate::planner::order::Order;
+use crate::planner::{POSITIONS, Rotation};
 use crate::units::TURN;
 
 /// Product of the filter's cut-off and the shortest dwell: the taper then costs 1.2 % of σ.
@@ -16,6 +16,24 @@ const LOWEST_CUTOFF: f64 = 2.5e-4;
 
 /// Change of the encoder angle that counts as standstill, rad: seven steps of a 21-bit encoder.
 pub const STILL: f64 = 20e-6;
+
+/// Survey of the gyro's noise, and conditions of the plan that follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Survey {
+    /// Time for which the stage stands still, s.
+    pub seconds: f64,
+    /// Rotation time of the stage.
+    pub rotation: Rotation,
+    /// Orders of positions that the stage can turn through; text does not hold them, because they
+    /// belong to the mount.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub orders: &'static [Order],
+    /// Length of the shortest dwell of the plan, s.
+    pub shortest: f64,
+    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy decides instead.
+    pub plan_seconds: f64,
+}
 
 /// Procedure of a session.
 #[must_use]

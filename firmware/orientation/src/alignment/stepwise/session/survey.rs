@@ -3,8 +3,8 @@
 
 use heapless::Vec;
 
-use super::prepared::designed;
 use super::schedule::{Schedule, StopRule};
+use super::timing::designed;
 use super::{Phase, Session, Task};
 use crate::alignment::method::Request;
 use crate::alignment::progress::Listener;
@@ -15,32 +15,13 @@ use crate::alignment::stepwise::progress::Progress;
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::{GyroNoise, StatedNoise};
-use crate::planner::order::Order;
-use crate::planner::{Conditions, FEWEST, PlanError, Rotation, for_sigma, for_time};
+use crate::planner::{Conditions, FEWEST, PlanError, for_sigma, for_time};
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, SampleFault};
 use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
 
 /// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
 const RESERVE: f64 = 0.95;
-
-/// Survey of the gyro's noise, and conditions of the plan that follows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Survey {
-    /// Time for which the stage stands still, s.
-    pub seconds: f64,
-    /// Rotation time of the stage.
-    pub rotation: Rotation,
-    /// Orders of positions that the stage can turn through; text does not hold them, because they
-    /// belong to the mount.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub orders: &'static [Order],
-    /// Length of the shortest dwell of the plan, s.
-    pub shortest: f64,
-    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy decides instead.
-    pub plan_seconds: f64,
-}
 
 /// Data of a session: first the Allan variance, then dwells, in the same memory.
 #[allow(clippy::large_enum_variant, reason = "without an allocator both live in this one place")]

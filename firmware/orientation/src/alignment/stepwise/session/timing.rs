@@ -1,7 +1,12 @@
-//! Procedure in the units of the sample path: angles as fractions of a turn, times as counts.
+//! Procedure in the units of the sample path: angles as fractions of a turn, times as counts, and
+//! its filter.
 
+use super::SECTIONS;
 use super::procedure::Procedure;
 use super::schedule::Position;
+use crate::alignment::setup::SetupError;
+use crate::filter::Coefficients;
+use crate::signal::dwell;
 use crate::units::{Angle, Instant};
 
 /// Commanded position and length of its dwell, in the units of the sample path.
@@ -58,7 +63,26 @@ impl Timing {
     }
 }
 
+/// Filter of a procedure, and its first target.
+pub(super) fn designed(
+    procedure: &Procedure,
+) -> Result<(Coefficients<SECTIONS>, Target), SetupError> {
+    let rate = 1.0 / procedure.sample_seconds;
+    let coefficients =
+        Coefficients::low_pass(procedure.cutoff(), rate).map_err(SetupError::Filter)?;
+    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
+    let needed = dwell::shortest(&coefficients);
+    if samples < needed {
+        return Err(SetupError::DwellTooShort { samples, needed });
+    }
+    if let Some(angle) = procedure.beyond_travel() {
+        return Err(SetupError::BeyondTravel(angle));
+    }
+    let first = procedure.schedule.next(&[], 0.0).ok_or(SetupError::NoPosition)?;
+    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
+}
+
 /// Converts a time to samples, rounded to nearest.
-pub(super) fn samples(seconds: f64, sample_seconds: f64) -> u32 {
+fn samples(seconds: f64, sample_seconds: f64) -> u32 {
     libm::round(seconds / sample_seconds) as u32
 }
