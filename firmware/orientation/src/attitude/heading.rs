@@ -5,8 +5,9 @@
 //! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
 //! over the net turn, of a ramp of its bias, and of rotation during gaps.
 
+use super::quaternion as attitude;
+use super::setting::Gyro;
 use super::vertical::Vertical;
-use super::{Gyro, quaternion as attitude};
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
 use crate::units::{TURN, wrapped};

@@ -2,9 +2,10 @@
 //! from switch-on and reports pitch, roll and azimuth.
 
 use super::heading::{Heading, Realigned, frame_rate};
+use super::quaternion as attitude;
 use super::restart::{self, RecallRefusal, Remembered};
+use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical};
-use super::{Gyro, Setting, quaternion as attitude};
 use crate::signal::InertialSample;
 use crate::units::Instant;
 use crate::words::Rounded;

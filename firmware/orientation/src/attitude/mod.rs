@@ -10,87 +10,10 @@ pub mod heading;
 pub mod keeper;
 pub mod quaternion;
 pub mod restart;
+mod setting;
 pub mod vertical;
 
 pub use heading::Realigned;
 pub use keeper::{Azimuth, Keeper, Report, State};
+pub use setting::{Gyro, Setting};
 pub use vertical::Trust;
-
-use crate::earth::Latitude;
-use crate::noise::model::GyroNoise;
-use crate::units::DEGREE;
-use vertical::Expected;
-
-/// Configured properties of a gyro.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gyro {
-    /// Noise model of the gyro.
-    pub noise: GyroNoise,
-    /// Standard deviation of the switch-on bias, 1σ, rad/s.
-    pub bias_sigma: f64,
-    /// Standard deviation of the scale factor (relative), and of the direction of the axis, rad,
-    /// 1σ.
-    pub scale_sigma: f64,
-}
-
-/// Configuration of three gyros and accelerometers on a body, and its site.
-#[must_use]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
-    /// Geodetic latitude.
-    pub latitude: Latitude,
-    /// Gyros about forward, right, down.
-    pub gyros: [Gyro; 3],
-    /// Standard deviation of the accelerometers' biases, 1σ, m/s².
-    pub force_bias_sigma: f64,
-    /// Sample period, s.
-    pub sample_seconds: f64,
-}
-
-/// Time over which flicker noise is represented by a random walk of the rate, s: equivalent over
-/// half an hour after a rest of some minutes.
-const FLICKER_SECONDS: f64 = 600.0;
-
-impl Gyro {
-    /// An uncalibrated micromechanical gyro of the class of LSM6DSL: N 2.5 °/√h in motion (0.3 to 2 at rest), B 10 °/h,
-    /// K 10 °/h/√h, turn-on bias 0.5 °/s, scale factor and axis alignment 0.5 %; each 1σ.
-    #[must_use]
-    pub fn coarse() -> Self {
-        let noise = GyroNoise::from_field_units(2.5, 10.0, 10.0, 0.0);
-        Self { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 5e-3 }
-    }
-
-    /// Variance that a bias gains per second, (rad/s)²/s.
-    fn drift(&self) -> f64 {
-        let (k, b) = (self.noise.rate_random_walk, self.noise.bias_instability);
-        k * k + b * b / FLICKER_SECONDS
-    }
-}
-
-impl Setting {
-    /// Configuration of a coarse IMU whose accelerometers are calibrated to 2 mg.
-    pub fn coarse(latitude: Latitude, sample_seconds: f64) -> Self {
-        Self { latitude, gyros: [Gyro::coarse(); 3], force_bias_sigma: 0.02, sample_seconds }
-    }
-
-    /// Configuration of three equal gyros, with accelerometers calibrated to 0.1 mg.
-    pub fn precise(latitude: Latitude, sample_seconds: f64, gyro: Gyro) -> Self {
-        Self { latitude, gyros: [gyro; 3], force_bias_sigma: 1e-3, sample_seconds }
-    }
-
-    /// Configuration with another gyro about the down axis.
-    pub fn with_down(self, gyro: Gyro) -> Self {
-        let [forward, right, _] = self.gyros;
-        Self { gyros: [forward, right, gyro], ..self }
-    }
-
-    /// Noise parameters of the gyros for the filter.
-    fn expected(&self) -> Expected {
-        let squared = |part: f32| part * part;
-        Expected {
-            walk: self.gyros.map(|gyro| squared(gyro.noise.angle_random_walk as f32)),
-            drift: self.gyros.map(|gyro| gyro.drift() as f32),
-            scale: self.gyros.map(|gyro| squared(gyro.scale_sigma as f32)),
-        }
-    }
-}

@@ -26,8 +26,11 @@ const ON_END: f64 = 1e-8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attitude([i64; 4]);
 
+/// A vector in single precision.
+pub type Vector = [f32; 3];
+
 /// A 3×3 matrix in single precision, row by row.
-pub type Matrix = [[f32; 3]; 3];
+pub type Matrix = [Vector; 3];
 
 impl Default for Attitude {
     fn default() -> Self {

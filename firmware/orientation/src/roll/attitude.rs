@@ -1,8 +1,8 @@
 //! Attitude of a spinning body (Nekrasova 2017, Fig. 2): the roll from the gyro is replaced by the
 //! corrected one, and course and pitch are propagated by the transverse gyros.
 
-use super::Spin;
 use super::phase_accumulator::sine_and_cosine;
+use super::spin::Spin;
 use crate::signal::SpinSample;
 use crate::units::{Angle, AngleIncrement, wrapped};
 

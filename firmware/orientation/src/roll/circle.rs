@@ -6,8 +6,8 @@
 //! whose rate varies by h twice a turn adds h/4 against the lift, and h/4 three times a turn, which
 //! no accelerometer error does; its angle is off by up to h/2.
 
-use super::Complex;
 use super::fit::Fit;
+use super::harmonics::Complex;
 
 /// Fading of the averages at each evaluation.
 const FADING: f32 = 1.0 / 1024.0;

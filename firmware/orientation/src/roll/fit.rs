@@ -5,9 +5,9 @@
 //! slow change; Q is the lift and its change. The phase of Q₀ is the lag of γ̂ at the middle.
 //! Further harmonics are removed ([`super::harmonics`]), alternating with this fit.
 
-use super::harmonics::{Harmonics, PARTS, Ripple};
+use super::harmonics::{Complex, Harmonics, PARTS, Ripple};
 use super::phase_accumulator::sine_and_cosine;
-use super::{Accelerometer, Complex};
+use super::state::Accelerometer;
 use crate::units::{Angle, SpinForce};
 
 /// Size of a force step, m/s².

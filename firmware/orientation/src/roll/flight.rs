@@ -2,7 +2,9 @@
 
 use super::attitude::Attitude;
 use super::progress::Progress;
-use super::{Condition, Setting, Spin, State};
+use super::setting::Setting;
+use super::spin::Spin;
+use super::state::{Condition, State};
 use crate::alignment::progress::Listener;
 use crate::alignment::{Input, Method, Request, Verdict};
 use crate::signal::SpinSample;

@@ -5,7 +5,8 @@
 //! Removing them keeps them from biasing the lift's phase and from counting as noise; their meaning
 //! for the sensors is in [`super::circle`].
 
-use super::Complex;
+/// Complex numbers in single precision, for the sums of a spinning body.
+pub(super) type Complex = crate::math::Complex<f32>;
 
 /// Orders of the harmonics, per turn.
 const ORDERS: [i32; PARTS] = [AGAINST, 2, -2, THRICE];

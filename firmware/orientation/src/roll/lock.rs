@@ -8,7 +8,8 @@
 use super::circle::Circle;
 use super::fit::{Fit, Sums};
 use super::phase_accumulator::PhaseAccumulator;
-use super::{Condition, Setting, State};
+use super::setting::Setting;
+use super::state::{Condition, State};
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant, TURN};
 

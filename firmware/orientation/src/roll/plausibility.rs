@@ -1,7 +1,7 @@
 //! Plausibility check of the spin gyro: increments that saturate, that jump as no body does, or
 //! that repeat.
 
-use super::Setting;
+use super::setting::Setting;
 use crate::units::AngleIncrement;
 
 /// Number of identical samples after which a noisy gyro counts as stuck.

@@ -1,6 +1,6 @@
 //! Progress of the tracking of a roll, with the sentences of the log.
 
-use super::{Condition, State};
+use super::state::{Condition, State};
 use crate::alignment::refusal::Refusal;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN, wrapped};
 use crate::words::Rounded;

@@ -1,5 +1,5 @@
-//! Mounts of the gyro: the stage, and the two-frame mount (Burov, Fig. 2) with its pointing of the precise gyro for two frame angles, and
-//! frame angles for a wanted pointing.
+//! Mounts of the precise gyro: the single-axis stage, and the two-frame mount (Burov, Fig. 2) with
+//! its pointing for two frame angles, and frame angles for a wanted pointing.
 //!
 //! ```text
 //!  base ─▶ outer frame, about body x ─▶ inner frame, across it ─▶ sensitive axis, perpendicular

@@ -13,10 +13,11 @@
 //! Gravity does not observe the heading, and axis errors that motion makes it estimate wrongly
 //! would remain in the heading for good.
 
-use super::Vector;
 use super::floor::{Floor, Verdict};
 use super::motion::{FADING, LEAST_SPEED, Motion};
 use super::stretch::Stretch;
+use crate::attitude::quaternion::Vector;
+use crate::attitude::setting::Setting;
 use crate::math::rotation::dot;
 
 /// Number of states.
@@ -72,6 +73,18 @@ pub struct Expected {
     pub drift: [f32; 3],
     /// Squared error of scale and axes.
     pub scale: [f32; 3],
+}
+
+impl Expected {
+    /// Expected errors of the gyros of a setting, as variances.
+    pub(super) fn of(setting: &Setting) -> Self {
+        let squared = |part: f32| part * part;
+        Self {
+            walk: setting.gyros.map(|gyro| squared(gyro.noise.angle_random_walk as f32)),
+            drift: setting.gyros.map(|gyro| gyro.drift() as f32),
+            scale: setting.gyros.map(|gyro| squared(gyro.scale_sigma as f32)),
+        }
+    }
 }
 
 /// Corrections that the filter found.

@@ -14,9 +14,9 @@
 //!
 //! Source of the low-pass in the gyros' frame: D. Laidig and T. Seel, VQF, Information Fusion 2023.
 
-use super::motion::{BAND, Motion};
+use super::motion::{BAND, GRAVITY, Motion};
 use super::stretch::Stretch;
-use super::{GRAVITY, Vector};
+use crate::attitude::quaternion::Vector;
 use crate::math::rotation::dot;
 
 /// Significance, in σ, at which the floor deviates from the filter's vertical.

@@ -1,10 +1,12 @@
 //! Supervision of the gyrovertical: the forces ten times a second, rest detection twice a second.
 
 use super::filter::{Correction, Filter, TURN};
+use super::motion::GRAVITY;
 use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
 use super::sums::{Rested, Window};
-use super::{GRAVITY, Trust, Vector, Vertical};
+use super::{Trust, Vertical};
+use crate::attitude::quaternion::Vector;
 use crate::math::rotation::{difference, dot, scaled, sum, turned};
 
 /// Time between two steps of the filter, s.

@@ -22,26 +22,21 @@ mod stretch;
 mod sums;
 
 pub use self::course::Course;
-pub use self::filter::Expected;
-use self::filter::{Filter, TURN};
+use self::filter::{Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
+use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
-use super::Setting;
-use super::quaternion::{Attitude, Matrix};
+use super::quaternion::{Attitude, Matrix, Vector};
+use super::setting::Setting;
 use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
 use crate::units::{Instant, SpecificForce};
 
-/// A vector in single precision.
-type Vector = [f32; 3];
-
 /// Time between attitude updates, µs: 50 Hz.
 const TICK: u64 = 20_000;
-/// Standard gravity, m/s².
-const GRAVITY: f32 = 9.806_65;
 /// Greatest delay of a sample, in sample periods.
 const LATE: f32 = 0.5;
 /// Greatest plausible force of an accelerometer on a vehicle or in a hand, µm/s²: 100 g; beyond it
@@ -138,7 +133,7 @@ impl Vertical {
         let sigmas = setting
             .gyros
             .map(|gyro| libm::sqrt(gyro.bias_sigma * gyro.bias_sigma + unknown) as f32);
-        let expected = setting.expected();
+        let expected = Expected::of(setting);
         let period = setting.sample_seconds as f32;
         Self {
             priors: setting.gyros.map(|gyro| (gyro.bias_sigma * gyro.bias_sigma) as f32),
@@ -324,7 +319,7 @@ impl Vertical {
     /// Replaces the gyro of the down axis by another one, whose bias is unknown.
     pub fn exchange_down(&mut self, setting: &Setting) {
         self.finish();
-        self.expected = setting.expected();
+        self.expected = Expected::of(setting);
         let [.., down] = &setting.gyros;
         let sigma = down.bias_sigma as f32;
         self.priors[2] = sigma * sigma;

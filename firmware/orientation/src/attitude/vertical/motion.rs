@@ -14,8 +14,10 @@
 //! counts fully.
 
 use super::stretch::Stretch;
-use super::{GRAVITY, Vector};
+use crate::attitude::quaternion::Vector;
 
+/// Standard gravity, m/s².
+pub(super) const GRAVITY: f32 = 9.806_65;
 /// Fading time of the band's speed, s, and averaging time of the mean that is subtracted from the
 /// force.
 pub(super) const BAND: f32 = 7.0;

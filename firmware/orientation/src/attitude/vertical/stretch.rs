@@ -1,7 +1,6 @@
 //! Integrals of the motion since the filter's last step.
 
-use super::Vector;
-use crate::attitude::quaternion::Matrix;
+use crate::attitude::quaternion::{Matrix, Vector};
 use crate::math::rotation::{dot, scaled, sum};
 
 /// Integrals of the motion since the filter's last step.

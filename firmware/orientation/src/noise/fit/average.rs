@@ -9,7 +9,7 @@
 //! allow it, also those in which it came out as zero. The error rates are asserted in
 //! host-tests/tests/cores/allan/simulated.rs.
 
-use super::Estimate;
+use super::coefficients::Estimate;
 use super::regression::{COLUMNS, Columns};
 
 /// Number of neighbouring points that carry the same information, about.

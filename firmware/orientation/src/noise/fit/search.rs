@@ -14,8 +14,8 @@
 use heapless::Vec;
 
 use super::average::{Choice, average};
+use super::coefficients::{Estimate, NoiseFit};
 use super::regression::{COLUMNS, Columns, Sums, WHITE, sum};
-use super::{Estimate, NoiseFit};
 use crate::noise::allan::covariance::degrees_of_freedom;
 use crate::noise::allan::{MOST_POINTS, Point, terms, variance};
 use crate::noise::model::GyroNoise;

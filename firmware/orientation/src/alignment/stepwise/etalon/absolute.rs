@@ -6,11 +6,11 @@
 
 use libm::floor;
 
+use super::answer::{Acceptance, Match};
 use super::arc::{Cover, Judge, Side};
 use super::exact;
 use super::series::Series;
 use super::sweep::{Piece, Sweep};
-use super::{Acceptance, Match};
 use crate::math::reference_table::{STEP, TURN, Table};
 use crate::math::sort;
 

@@ -1,6 +1,6 @@
 //! The smallest arc that covers an accepted set, built while walking once round the circle.
 
-use super::Accepted;
+use super::answer::Accepted;
 use crate::math::reference_table::TURN;
 
 /// Side of the limit on which the continuous objective and its error bound put one index.

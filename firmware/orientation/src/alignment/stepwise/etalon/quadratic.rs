@@ -6,11 +6,11 @@
 
 use libm::{fabs, sqrt};
 
+use super::answer::{Acceptance, Match};
 use super::arc::{Cover, Judge, Side, last_within};
 use super::exact::Squares;
 use super::landscape::Landscape;
 use super::series::Series;
-use super::{Acceptance, Match};
 use crate::math::reference_table::{TURN, Table};
 use crate::math::sort;
 

@@ -22,7 +22,7 @@ use heapless::Vec;
 use self::procedure::Procedure;
 use self::schedule::{Position, StopRule};
 use self::survey::Store;
-use self::timing::{Target, Timing};
+use self::timing::{SECTIONS, Target, Timing};
 use super::conclusion::Conclusion;
 use super::criterion::Criterion;
 use super::progress::Progress;
@@ -39,9 +39,6 @@ use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, DwellAverage};
 use crate::units::{Instant, TURN};
-
-/// Number of second-order sections of the stage filter: order six (Sokolov 2019).
-const SECTIONS: usize = 3;
 
 /// Fraction of the planned dwell above which a dwell counts as complete.
 const WHOLE: f64 = 0.99;

@@ -4,8 +4,8 @@ use heapless::Vec;
 
 use super::procedure::Procedure;
 use super::survey::Store;
-use super::timing::{Target, Timing, designed};
-use super::{Phase, SECTIONS, Session, Task};
+use super::timing::{SECTIONS, Target, Timing, designed};
+use super::{Phase, Session, Task};
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;

@@ -1,13 +1,15 @@
 //! Procedure in the units of the sample path: angles as fractions of a turn, times as counts, and
 //! its filter.
 
-use super::SECTIONS;
 use super::procedure::Procedure;
 use super::schedule::Position;
 use crate::alignment::setup::SetupError;
 use crate::filter::Coefficients;
 use crate::signal::dwell;
 use crate::units::{Angle, Instant};
+
+/// Number of second-order sections of the stage filter: order six (Sokolov 2019).
+pub(super) const SECTIONS: usize = 3;
 
 /// Commanded position and length of its dwell, in the units of the sample path.
 #[derive(Clone, Copy, Debug)]
