@@ -75,7 +75,7 @@ pub struct Setting {
     /// Standard deviation of the encoder's zero, 1σ, rad. It enters the azimuth fully, and no
     /// rotation shows it.
     pub encoder_zero_sigma: f64,
-    /// Whether the encoder's error twice per turn is within [`Common::encoder_sigma`]; otherwise
+    /// Whether the encoder's error twice per turn is within [`Site::encoder_sigma`]; otherwise
     /// modulation of the platform's rate at that frequency may be such an error.
     pub harmonics_known: bool,
     /// Quantisation step of the gyro's rates, rad/s, as far as their noise does not hide it:

@@ -109,7 +109,7 @@ impl Procedure {
     }
 
     /// Procedure that continues until the accuracy of
-    /// [`crate::alignment::stepwise::setting::Setting::required_sigma`] is reached or `seconds` have passed.
+    /// [`crate::alignment::site::Site::required_sigma`] is reached or `seconds` have passed.
     pub fn until_accurate(self, seconds: f64) -> Self {
         let retry_budget = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
         let longest_seconds = self.longest_seconds.max(retry_budget);
