@@ -77,7 +77,7 @@ fn limits(budget: &str) -> io::Result<String> {
     Ok(format!(
         "ASSERT({flash} <= {}, \"the image takes more flash than budget.toml allows\");\n\
          ASSERT({ram} <= {}, \"the statics take more RAM than budget.toml allows\");\n",
-        limit("flash_bytes")?,
-        limit("static_ram_bytes")?
+        limit("board_flash_bytes")?,
+        limit("board_static_ram_bytes")?
     ))
 }

@@ -101,17 +101,17 @@ pub static JOBS: [&Job; 7] =
     [&STAGE, &BRIEF_STAGE, &SURVEY, &TWO_FRAME, &TURNTABLE, &VEHICLE, &SPIN];
 
 fn stage(scenario: &Scenario) -> Result<Outcome, String> {
-    let run = instrument::align(scenario, None, NoRecorder, &()).map_err(failed)?;
+    let run = told(instrument::align(scenario, None, NoRecorder, &()))?;
     Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
 }
 
 fn frames(scenario: &FramesScenario) -> Result<Outcome, String> {
-    let run = instrument::align_frames(scenario, None, NoRecorder, &()).map_err(failed)?.run;
+    let run = told(instrument::align_frames(scenario, None, NoRecorder, &()))?.run;
     Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
 }
 
 fn turntable(scenario: &TurntableScenario) -> Result<Outcome, String> {
-    let run = instrument::align_turning(scenario, None, NoRecorder, &()).map_err(failed)?.run;
+    let run = told(instrument::align_turning(scenario, None, NoRecorder, &()))?.run;
     Ok(Outcome::of::<Sample>(&run.replay, &[]))
 }
 
@@ -119,16 +119,17 @@ fn vehicle(scenario: &VehicleScenario) -> Result<Outcome, String> {
     let healthy = Injection::NONE;
     let board = RefCell::new(scenario.board(&BRIEF, &[], &healthy));
     let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &(), ());
-    let run = run.map_err(failed)?.run;
+    let run = told(run)?.run;
     let kept: Vec<&dyn Trace> = run.reports.iter().map(|report| report as &dyn Trace).collect();
     Ok(Outcome::of::<InertialSample>(&run.replay, &kept))
 }
 
 fn spin(scenario: &SpinScenario) -> Result<Outcome, String> {
-    let run = follow_spin(scenario, None, &()).map_err(failed)?.run;
+    let run = told(follow_spin(scenario, None, &()))?.run;
     Ok(Outcome::of::<SpinSample>(&run.replay, &[]))
 }
 
-fn failed(error: RunError) -> String {
-    format!("the host's run: {error}")
+/// A run, or why there is none.
+fn told<R>(run: Result<R, RunError>) -> Result<R, String> {
+    run.map_err(|error| format!("the host's run: {error}"))
 }

@@ -57,7 +57,9 @@ impl Outcome {
     pub fn of<S>(method: &(impl Method<S> + Trace), others: &[&dyn Trace]) -> Self {
         let mut rows = Vec::new();
         let mut add = |head: &str, bits: &[u64]| rows.push(Row::new(head, bits));
-        others.iter().for_each(|other| other.trace(&mut add));
+        for other in others {
+            other.trace(&mut add);
+        }
         method.trace(&mut add);
         let verdict = method.verdict();
         if let Some(Ok(Solution { azimuth, .. })) = &verdict {

@@ -10,7 +10,7 @@ use super::error::ReplayError;
 use crate::recording::{Body, Header};
 use crate::setting::{Described, describe};
 
-/// Greatest 1σ that is accepted where none is asked for, rad: 10°, as [`Setting`] has it.
+/// Greatest 1σ that is accepted where none is asked for, rad: 10°, as [`orientation::alignment::site::Site`] has it.
 pub const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
 
 /// What a user asks of a replay, whatever the method; what is not asked for is as the recording has it.

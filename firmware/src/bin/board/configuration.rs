@@ -3,11 +3,13 @@
 //!
 //! | what | where to get it |
 //! |---|---|
-//! | [`CARRIER`] | what carries the gyro: a stage, a platform on a slip ring, a vehicle with three, or a spinning body with three |
+//! | [`CARRIER`] | what carries the gyro: a stage, two frames, a platform on a slip ring, a vehicle with three, or a spinning body with three |
 //! | [`LATITUDE`] | a map; 0.01° is near enough |
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
+//! | [`HOLDS`] | on a stage or on two frames, once the azimuth is known: a choice |
+//! | [`GEOMETRY`], [`ORTHOGONALITY_SIGMA`], [`PASSES`] | of two frames: their calibration, and how often each heading is taken |
 //! | [`SPEEDS`], [`SENSOR`], [`MODULATED_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
 //! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
@@ -18,28 +20,32 @@
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
-use embassy_time::Duration;
 use firmware::calibration::Harmonics;
 use firmware::configuration::{
-    Alignment, Configuration, KeepConfiguration, Realignment, TurntableConfiguration,
-    VehicleConfiguration,
+    Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
+use firmware::ports::Frames;
 use firmware::spin::configuration::{Channel, SpinConfiguration};
 use orientation::alignment::period::CONVERTER_TOLERANCE;
 use orientation::alignment::rotating;
 use orientation::alignment::rotating::Sensor;
 use orientation::alignment::rotating::session::Procedure as Turning;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::mount::{
+    ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
+};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::procedure::Survey;
-use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stops;
 use orientation::alignment::stops::session::Procedure as Driving;
 use orientation::earth::Latitude;
+use orientation::navigation::{Policy, Realignment};
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
+use orientation::signal::sway::CoarseSensors;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 use orientation::{attitude as keep, roll as spin};
 
@@ -49,6 +55,8 @@ use orientation::{attitude as keep, roll as spin};
 pub enum Carrier {
     /// A stage that stands at positions.
     Stage,
+    /// A mount with two frames about horizontal axes, on which the gyro stands at four headings.
+    TwoFrames,
     /// A platform on a slip ring that rotates continuously.
     Turntable,
     /// A vehicle that drives from stop to stop, with three gyros.
@@ -164,6 +172,107 @@ pub fn procedure() -> Procedure {
     }
 }
 
+/// Whether a stage or a mount holds azimuth, pitch and roll without end after the alignment, by the
+/// LSM6DSL of the board itself. It compensates the sway of the base too: the board is fixed to the
+/// base, the chip's x axis forward, y to the right, z down.
+pub const HOLDS: bool = true;
+/// Decimation of the LSM6DSL: read once in this many samples of the gyro, 200 times a second.
+pub const BASE_DIVIDER: u32 = 2;
+/// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
+/// its oscillator and the outputs that are not read.
+const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];
+/// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases
+/// after calibration, m/s².
+const BASE_SIGMAS: (f64, f64, f64) = (3.0, 0.005, 2e-3 * 9.80665);
+/// Distance of the board from the point about which the base sways, m.
+const BASE_LEVER: f64 = 0.4;
+
+/// Time between two readings of the LSM6DSL, s.
+fn base_period() -> f64 {
+    f64::from(BASE_DIVIDER) / CONVERTER.rate.hertz()
+}
+
+/// Properties of the LSM6DSL, for the compensation of sway. An output is half a period old on average
+/// when it is read, and is held until the next reading.
+pub fn base_sensors() -> CoarseSensors {
+    let [rate, force] = BASE_NOISE;
+    let output = 1.0 / 208.0;
+    let held = 0.5 * (base_period() - 1.0 / CONVERTER.rate.hertz());
+    CoarseSensors {
+        mismatch: BASE_SIGMAS.1 as f32,
+        delay: (0.5 * output + held) as f32,
+        delay_sigma: (0.29 * output) as f32,
+        lever: BASE_LEVER as f32,
+        ..CoarseSensors::of_densities(rate, force)
+    }
+}
+
+/// Site and gyros for attitude and heading on a stage or on two frames.
+pub fn base_keeper() -> keep::Setting {
+    let (bias_deg_s, scale_sigma, force_bias_sigma) = BASE_SIGMAS;
+    let usual = keep::Gyro::coarse();
+    let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
+    let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
+    let gyro = keep::Gyro { noise, bias_sigma: bias_deg_s * DEGREE, scale_sigma };
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds: base_period() }
+}
+
+/// Policy after the alignment on a stage or on two frames: the azimuth is held until it is renewed from
+/// outside.
+pub fn base_policy() -> Policy {
+    let [_, _, beside] = base_keeper().gyros;
+    Policy {
+        hold_seconds: f64::INFINITY,
+        realignment: Realignment::Never,
+        knows_stops: false,
+        skips_known: false,
+        beside,
+        precise: kept_gyro(),
+    }
+}
+
+/// Calibration of the two frames; until it is known a perfect mount, and a greater
+/// [`ORTHOGONALITY_SIGMA`].
+const GEOMETRY: TwoFrame =
+    TwoFrame { azimuth: 0.0, pitch: 0.0, frames: 0.0, gyro: 0.0, outer_zero: 0.0, inner_zero: 0.0 };
+/// Standard deviation of each non-orthogonality that the calibration leaves, 1σ, rad.
+const ORTHOGONALITY_SIGMA: f64 = 0.05 * DEGREE;
+/// Number of times that the four headings are taken, each for a dwell.
+const PASSES: usize = 6;
+/// Headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
+const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
+
+/// Site and instrument on two frames.
+pub fn mount_setting() -> Setting {
+    let site = site();
+    let encoder_sigma = azimuth_sigma(ORTHOGONALITY_SIGMA, ENCODER_SIGMA, site.latitude);
+    let accelerometer_bias_sigma = FORCE_CALIBRATED_SIGMA;
+    let site = Site { accelerometer_bias_sigma, encoder_sigma, ..site };
+    Setting { mount: TWO_FRAMES, ..Setting::new(site) }
+}
+
+/// Procedure of the session on two frames.
+pub fn mount_procedure() -> Procedure {
+    let pass = PASS.map(|heading| Position { angle: heading * DEGREE, seconds: DWELL });
+    let positions = core::iter::repeat_n(pass, PASSES).flatten().collect();
+    let procedure = Procedure::new(Schedule::Listed(positions), 1.0 / CONVERTER.rate.hertz());
+    Procedure {
+        arrival: ARRIVAL,
+        settle_seconds: RINGING,
+        period_tolerance: CONVERTER_TOLERANCE,
+        ..procedure
+    }
+}
+
+/// Geometry, encoders and drives of the two frames.
+///
+/// # Errors
+/// A geometry with which an orientation is out of reach.
+pub fn frames() -> Result<FramesConfiguration, MountError> {
+    FramesConfiguration::new(GEOMETRY, Frames { outer: ENCODER, inner: ENCODER })
+}
+
 /// Configuration of the stage's devices.
 pub fn instrument() -> Configuration {
     let rate = CONVERTER.rate.hertz();
@@ -260,13 +369,13 @@ fn kept_gyro() -> keep::Gyro {
     }
 }
 
-/// Operation after the alignment: without end.
-pub fn keeping() -> KeepConfiguration {
-    KeepConfiguration {
-        hold: Duration::MAX,
+/// Policy after the alignment: the azimuth is held without end.
+pub fn policy() -> Policy {
+    Policy {
+        hold_seconds: f64::INFINITY,
         realignment: if REALIGNS { Realignment::BetweenStops } else { Realignment::Never },
         knows_stops: true,
-        alignment: if ALIGNS_ALWAYS { Alignment::Always } else { Alignment::UnlessKnown },
+        skips_known: !ALIGNS_ALWAYS,
         beside: kept_gyro(),
         precise: kept_gyro(),
     }

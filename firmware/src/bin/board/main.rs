@@ -11,13 +11,13 @@
 //! | | 4, D11 | PA7 | SPI1 data out: ADS1262 DIN, ADXL355 MOSI |
 //! | | 3, D10 | PA2 | ADS1262 CS |
 //! | | 2, D9 | PA15 | ADXL355 CS |
-//! | | 1, D8 | PB2 | in a vehicle: right ADS1262 CS |
+//! | | 1, D8 | PB2 | in a vehicle: right ADS1262 CS; with two frames: inner MT6835 CSN |
 //! | Arduino CN3 | 3, D2 | PD14 | ADS1262 DRDY |
 //! | | 4, D3 | PB0 | in a vehicle: right ADS1262 DRDY |
 //! | | 5, D4 | PA3 | on a spinning body: CS of the ADS1262 of the accelerometer up |
 //! | | 6, D5 | PB4 | on a spinning body: CS of that of the accelerometer to the right |
 //! | | 7, D6 | PB1 | in a vehicle: down ADS1262 DRDY |
-//! | | 8, D7 | PA4 | in a vehicle: down ADS1262 CS |
+//! | | 8, D7 | PA4 | in a vehicle: down ADS1262 CS; with two frames: inner TMC5160 CSN |
 //! | Arduino CN4 | 2, A1 | PC4 | on a spinning body: DRDY of the accelerometer up |
 //! | | 3, A2 | PC3 | on a spinning body: DRDY of the accelerometer to the right |
 //! | Arduino CN2 | 4, 5, 6 | | 3.3 V, 5 V, ground |
@@ -28,6 +28,7 @@
 //! | | 8 | PD0 | MT6835 CSN |
 //! | | 7 | PD2 | TMC5160 `DRV_ENN`, with a pull-up at the driver |
 //! | | 5, 6 | | ground, 3.3 V |
+//! | on the board | | PB10, PB11 | I2C2: LSM6DSL, on a stage or with two frames |
 //! | ST-LINK CN7 | USB | PB6 | status lines (USART1) |
 //!
 //! Connectors after UM2153 rev. 5: Table 4 (Arduino), Table 10 (PMOD, solder bridges as delivered:
@@ -37,7 +38,10 @@
 //! vehicle there is no PMOD side; the ADS1262 on D10 has the forward gyro, and one oscillator of 7.3728 MHz
 //! is at the CLKIN of all three, so that they convert in step. On a spinning body there are five so: those
 //! of a vehicle for the gyros forward, right and up (in the place of down), and two for accelerometers, each
-//! sensor between AIN0 and AIN1 of its own; up and right are those of the body at roll zero.
+//! sensor between AIN0 and AIN1 of its own; up and right are those of the body at roll zero. With two
+//! frames the PMOD side is that of the outer one; the inner one shares clock, data and `DRV_ENN` with it.
+//! On a stage or with two frames the board is fixed to the base, the LSM6DSL's x axis forward, y to
+//! the right, z down.
 #![no_std]
 #![no_main]
 
@@ -55,17 +59,14 @@ mod wiring;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Instant, Timer};
-use firmware::acquire::{acquire, on_stage};
 use firmware::health::Health;
+use firmware::keep::Keeping;
 use firmware::link;
-use firmware::log::DefmtLog;
 use firmware::shared::Shared;
 use panic_probe as _;
-use static_cell::StaticCell;
 
 use configuration::Carrier;
-use ports::Inputs;
-use wiring::{Link, SensorWires};
+use wiring::Link;
 
 /// The channels between the instrument's parts.
 type Channels = firmware::shared::Channels<'static>;
@@ -83,26 +84,18 @@ async fn main(spawner: Spawner) {
     let wiring = defmt::unwrap!(wiring::connect(peripherals));
     // Tasks that are never spawned are not in the image.
     match configuration::CARRIER {
-        Carrier::Stage => spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring))),
+        Carrier::Stage => spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(spawner, wiring))),
+        Carrier::TwoFrames => {
+            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(spawner, wiring)));
+        }
         Carrier::Turntable => spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring))),
         Carrier::SpinningBody => spawner.spawn(defmt::unwrap!(spinning::follow(spawner, wiring))),
         Carrier::Vehicle => spawner.spawn(defmt::unwrap!(stops::align(spawner, wiring))),
     }
 }
 
-/// Creates the channels, with the sensors sampling into them.
-fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
-    static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    let channels: &'static Channels = CHANNELS.init_with(|| Channels::new(&DefmtLog));
-    spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), channels)));
-    channels
-}
-
-/// Task that acquires samples for ever.
-#[embassy_executor::task]
-async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
-    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
-}
+/// A carrier without inertial sensors beside its precise gyro keeps no attitude.
+const NOT_KEPT: Option<Keeping<'static, ()>> = None;
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
 /// the motor would lose its current and the link its last bytes.

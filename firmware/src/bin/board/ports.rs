@@ -3,45 +3,71 @@
 use drivers::ads1262::Ads1262;
 use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
+use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate as BaseRate};
+use drivers::lsm6dsl::{self, Lsm6dsl};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
 use firmware::chips::{
-    AnalogueGyro, AnalogueSensor, PlatformAccelerometer, StageEncoder, StageMotor,
+    AnalogueGyro, AnalogueSensor, BaseImu, PlatformAccelerometer, StageEncoder, StageMotor,
 };
-use firmware::ports::{NoBase, Sensors, SpinSensors, VehicleSensors};
+use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 
 use crate::configuration;
 use crate::configuration::{CARRIER, Carrier};
-use crate::wiring::{ConverterWires, Device, Ready, SensorWires};
+use crate::wiring::{BaseBus, BaseWires, ConverterWires, Device, Ready, SensorWires, StageDevice};
 
 /// Gyro behind its converter.
 type Gyro = AnalogueGyro<Device, Ready, Delay>;
 /// Accelerometer on the platform, or in the vehicle.
 type Accelerometer = PlatformAccelerometer<Device, Delay>;
-/// Sensors of a stage or a rotating platform.
-pub type Inputs = Sensors<Gyro, Accelerometer, StageEncoder<Device, Delay>>;
+/// Encoder of an axis.
+type AxisEncoder = StageEncoder<StageDevice, Delay>;
+/// Motor of an axis.
+pub type AxisMotor = StageMotor<StageDevice, Delay>;
+/// IMU of the board on the base.
+pub type Base = BaseImu<BaseBus, Delay>;
+/// Sensors of a stage or a turntable, and of their base.
+pub type Inputs<B> = Sensors<Gyro, Accelerometer, AxisEncoder, B>;
+/// Sensors of a two-frame mount and of its base.
+pub type MountInputs<B> = Sensors<Gyro, Accelerometer, Frames<AxisEncoder>, B>;
 /// Sensors of a vehicle.
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
 pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
 
-/// Connects the sensors of a stage to their wires.
-pub fn inputs(wires: SensorWires) -> Inputs {
-    let SensorWires { converter, others: _, more: _, accelerometer, encoder } = wires;
-    Sensors {
-        gyro: gyro(self::converter(converter)),
-        accelerometer: self::accelerometer(accelerometer),
-        encoder: StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
-        base: NoBase,
+/// Connects the sensors on a stage, a turntable or two frames to their wires.
+pub fn inputs<E, B>(
+    converter: ConverterWires,
+    force: Device,
+    encoder: E,
+    base: B,
+) -> Sensors<Gyro, Accelerometer, E, B> {
+    let gyro = gyro(self::converter(converter));
+    Sensors { gyro, accelerometer: accelerometer(force), encoder, base }
+}
+
+/// Encoder of an axis.
+pub fn encoder(wires: StageDevice) -> AxisEncoder {
+    StageEncoder(Mt6835::new(wires, Delay, mt6835::Configuration::default()))
+}
+
+/// Connects the IMU of the board.
+pub fn base(wires: BaseWires) -> Base {
+    let configuration =
+        lsm6dsl::Configuration { output: BaseRate::Hz208, ..lsm6dsl::Configuration::default() };
+    BaseImu {
+        chip: Lsm6dsl::new(wires.connect(), Delay, ADDRESS_LOW, configuration),
+        sensors: configuration::base_sensors(),
+        divider: configuration::BASE_DIVIDER,
     }
 }
 
 /// Connects the sensors of a vehicle to their wires.
 pub fn triad(wires: SensorWires) -> Triad {
-    let SensorWires { converter, others: [right, down], more: _, accelerometer, encoder: _ } =
-        wires;
+    let SensorWires { converter, others, accelerometer, .. } = wires;
+    let [right, down] = others.converters();
     VehicleSensors {
         gyros: [converter, right, down].map(|wires| gyro(self::converter(wires).clocked())),
         accelerometer: self::accelerometer(accelerometer),
@@ -51,7 +77,8 @@ pub fn triad(wires: SensorWires) -> Triad {
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
 /// along y and z.
 pub fn spinning(wires: SensorWires) -> Spinning {
-    let SensorWires { converter, others: [right, up], more, accelerometer: _, encoder: _ } = wires;
+    let SensorWires { converter, others, more, .. } = wires;
+    let [right, up] = others.converters();
     let [force_up, force_right] = more.connect();
     SpinSensors([converter, up, right, force_up, force_right].map(|wires| {
         let rate = configuration::SPIN_CONVERTER;
@@ -75,7 +102,7 @@ fn accelerometer(bus: Device) -> Accelerometer {
 }
 
 /// Connects the motor to its wires.
-pub fn motor(wires: Device) -> StageMotor<Device, Delay> {
+pub fn motor(wires: StageDevice) -> AxisMotor {
     StageMotor(Tmc5160::new(wires, Delay, drive()))
 }
 
@@ -83,7 +110,9 @@ pub fn motor(wires: Device) -> StageMotor<Device, Delay> {
 /// which a platform must not turn far, nor a vehicle sway; a vehicle's is read 400 times a second.
 fn force() -> adxl355::Configuration {
     let rate = match CARRIER {
-        Carrier::Stage | Carrier::SpinningBody => adxl355::Configuration::default().rate,
+        Carrier::Stage | Carrier::TwoFrames | Carrier::SpinningBody => {
+            adxl355::Configuration::default().rate
+        }
         Carrier::Turntable => OutputRate::Hz1000,
         Carrier::Vehicle => OutputRate::Hz500,
     };

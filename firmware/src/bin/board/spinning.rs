@@ -3,17 +3,18 @@
 use embassy_executor::Spawner;
 use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::log::DefmtLog;
+use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
-use firmware::run::run_spin;
+use firmware::run::navigate;
 use firmware::shared::Channels;
-use firmware::spin::Flight;
 use firmware::spin::configuration::SpinConfiguration;
+use orientation::roll::Flight;
 use orientation::signal::SpinSample;
 use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::Wiring;
-use crate::{configuration, ports, report_conclusion};
+use crate::{NOT_KEPT, configuration, ports, report_conclusion};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
@@ -23,12 +24,14 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     let Some(sensors) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };
-    let Wiring { sensors: wires, mut link, motor: _, motor_enable: _, flash: _ } = wiring;
+    let Wiring { sensors: wires, mut link, axis: _, motor_enable: _, flash: _ } = wiring;
     let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     let (setting, launch) = (configuration::spin_setting(), configuration::launch());
     let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));
-    let health = run_spin(&mut link, &mut NoRecorder, flight, channels).await;
+    let mut body = Strapdown::new(&channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut body, flight, NOT_KEPT, &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

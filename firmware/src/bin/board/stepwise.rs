@@ -1,36 +1,124 @@
-//! Program of the board on a stage that stands at positions.
+//! Programs of the board on a stage or on two frames that stand at positions. They hold azimuth, pitch
+//! and roll afterwards, by the IMU of the board on the base.
 
 use embassy_executor::Spawner;
-use firmware::ports::NoRecorder;
+use firmware::acquire::{acquire, on_mount, on_stage};
+use firmware::configuration::FramesConfiguration;
+use firmware::gimbal::Gimbal;
+use firmware::keep::Keeping;
+use firmware::log::DefmtLog;
+use firmware::ports::{Frames, NoRecorder};
 use firmware::run::navigate;
+use firmware::shared::LatestAngle;
 use firmware::stage::Stage;
+use firmware::sway::SwayCompensation;
 use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::{Prepared, Session};
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::attitude::Keeper;
 use static_cell::StaticCell;
 
-use crate::wiring::Wiring;
-use crate::{configuration, ports, report_conclusion, sample};
+use crate::flash::{Store, store};
+use crate::ports::{Base, Inputs, MountInputs};
+use crate::wiring::{AxisWires, BaseWires, SensorWires, Wiring};
+use crate::{Channels, configuration, ports, report_conclusion};
 
-/// Runs the instrument to its conclusion, then reports it without end.
+/// The IMU on the base, which measures its sway.
+type OnBase = SwayCompensation<'static, Base>;
+
+/// The two frames, and the latest angles of their encoders.
+type Mount = (FramesConfiguration, Frames<LatestAngle>);
+
+/// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn align(spawner: Spawner, wiring: Wiring) {
-    let session = match session() {
+pub async fn on_a_stage(spawner: Spawner, wiring: Wiring) {
+    let session = match session(configuration::setting(), configuration::procedure()) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let Wiring { sensors, motor, mut link, motor_enable: _enabled, flash: _ } = wiring;
-    let channels = sample(spawner, sensors);
+    let Wiring { sensors, axis, mut link, motor_enable: _enabled, flash } = wiring;
+    let SensorWires { converter, accelerometer, base, .. } = sensors;
+    let AxisWires { encoder, motor } = axis;
+    let inputs = ports::inputs(converter, accelerometer, ports::encoder(encoder), on_base(base));
+    let channels = channels();
+    spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let mut motor = ports::motor(motor);
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
-    let health =
-        navigate(&mut stage, (session, &mut ()), &mut link, &mut NoRecorder, &mut (), channels)
-            .await;
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut stage, session, keeping(store(flash)), &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
+/// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
+/// axis vertical.
+#[embassy_executor::task]
+pub async fn on_two_frames(spawner: Spawner, wiring: Wiring) {
+    static MOUNT: StaticCell<Mount> = StaticCell::new();
+    let frames = match configuration::frames() {
+        Ok(frames) => frames,
+        Err(error) => return defmt::error!("board: no mount: {}", error),
+    };
+    let session = match session(configuration::mount_setting(), configuration::mount_procedure()) {
+        Ok(session) => session,
+        Err(error) => return defmt::error!("board: no session: {}", error),
+    };
+    let Wiring { sensors, axis: outer, mut link, motor_enable: _enabled, flash } = wiring;
+    let SensorWires { converter, accelerometer, base, others, .. } = sensors;
+    let (mount, channels) = (&*MOUNT.init((frames, Frames::unread())), channels());
+    let inner = others.inner_frame();
+    let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
+    let inputs = ports::inputs(converter, accelerometer, encoders, on_base(base));
+    spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, mount, channels)));
+    let mut motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
+    let mut gimbal = Gimbal::new(&mut motors, &mount.0, &mount.1, &channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health =
+        navigate(&mut gimbal, session, keeping(store(flash)), &(), outside, channels).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Task that acquires samples on a stage for ever.
+#[embassy_executor::task]
+async fn stage_acquisition(mut inputs: Inputs<OnBase>, channels: &'static Channels) {
+    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
+}
+
+/// Task that acquires samples on two frames for ever.
+#[embassy_executor::task]
+async fn mount_acquisition(
+    mut inputs: MountInputs<OnBase>,
+    mount: &'static Mount,
+    channels: &'static Channels,
+) {
+    let ((frames, latest), configuration) = (mount, configuration::instrument());
+    acquire(&mut on_mount(&mut inputs, &configuration, frames, latest, channels)).await;
+}
+
+/// Channels of the instrument at their final place in memory.
+fn channels() -> &'static Channels {
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    CHANNELS.init_with(|| Channels::new(&DefmtLog))
+}
+
+/// Connects the IMU on the base.
+fn on_base(wires: BaseWires) -> OnBase {
+    static BASE: StaticCell<Base> = StaticCell::new();
+    SwayCompensation::new(BASE.init(ports::base(wires)))
+}
+
+/// Attitude and heading after the alignment, where they are held.
+fn keeping(store: Store) -> Option<Keeping<'static, Store>> {
+    static KEEPER: StaticCell<Keeper> = StaticCell::new();
+    configuration::HOLDS.then(|| {
+        let keeper = KEEPER.init_with(|| Keeper::new(&configuration::base_keeper()));
+        Keeping { keeper, policy: configuration::base_policy(), store }
+    })
+}
+
 /// Creates the session at its final place in memory.
-fn session() -> Result<&'static mut Session, SetupError> {
+fn session(setting: Setting, procedure: Procedure) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let prepared = Prepared::new(configuration::setting(), configuration::procedure())?;
+    let prepared = Prepared::new(setting, procedure)?;
     Ok(SESSION.init_with(|| Session::from(prepared)))
 }

@@ -28,15 +28,14 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let Wiring { sensors, mut link, motor: _, motor_enable: _, flash } = wiring;
+    let Wiring { sensors, mut link, axis: _, motor_enable: _, flash } = wiring;
     let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
-    let configuration = configuration::keeping();
-    let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));
+    let policy = configuration::policy();
+    let keeping = Some(Keeping { keeper: keeper(), policy, store: store(flash) });
     let mut body = Strapdown::new(&channels.shared);
-    let health =
-        navigate(&mut body, (session, &mut ()), &mut link, &mut NoRecorder, &mut keeping, channels)
-            .await;
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut body, session, keeping, &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

@@ -2,7 +2,9 @@
 //! in flash.
 
 use embassy_executor::Spawner;
-use firmware::ports::NoRecorder;
+use firmware::acquire::{acquire, on_stage};
+use firmware::log::DefmtLog;
+use firmware::ports::{NoBase, NoRecorder};
 use firmware::run::navigate;
 use firmware::storage::{Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
@@ -10,8 +12,9 @@ use orientation::alignment::rotating::session::{Session, check};
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
-use crate::wiring::Wiring;
-use crate::{Channels, configuration, ports, report_conclusion, sample};
+use crate::ports::Inputs;
+use crate::wiring::{AxisWires, SensorWires, Wiring};
+use crate::{Channels, NOT_KEPT, configuration, ports, report_conclusion};
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -19,23 +22,27 @@ const TODAY: Today = Today { date: None, longest: None };
 /// Runs the instrument to its conclusion, then reports it without end.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
-    let Wiring { sensors, motor, mut link, motor_enable: _enabled, flash } = wiring;
-    let channels = sample(spawner, sensors);
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    let Wiring { sensors, axis, mut link, motor_enable: _enabled, flash } = wiring;
+    let SensorWires { converter, accelerometer, .. } = sensors;
+    let AxisWires { encoder, motor } = axis;
+    let channels: &'static Channels = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let inputs = ports::inputs(converter, accelerometer, ports::encoder(encoder), NoBase);
+    spawner.spawn(defmt::unwrap!(acquisition(inputs, channels)));
     let mut store = store(flash);
     let Some(session) = session(&mut store, channels).await else { return };
     let mut motor = ports::motor(motor);
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
-    let health = navigate(
-        &mut platform,
-        (&mut *session, &mut ()),
-        &mut link,
-        &mut NoRecorder,
-        &mut (),
-        channels,
-    )
-    .await;
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut platform, session, NOT_KEPT, &(), outside, channels).await;
     save_calibration(&mut store, session, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Task that acquires samples for ever.
+#[embassy_executor::task]
+async fn acquisition(mut inputs: Inputs<NoBase>, channels: &'static Channels) {
+    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.
