@@ -247,6 +247,14 @@ impl<S> Recorder<S> for NoRecorder {
     async fn record(&mut self, _: &S) {}
 }
 
+/// Two recorders of the same samples.
+impl<S, A: Recorder<S>, B: Recorder<S>> Recorder<S> for (A, B) {
+    async fn record(&mut self, sample: &S) {
+        self.0.record(sample).await;
+        self.1.record(sample).await;
+    }
+}
+
 /// The observer of the instrument: a log, or a test.
 pub trait Observer {
     /// An event at a time of the instrument's clock.

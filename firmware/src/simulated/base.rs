@@ -101,12 +101,16 @@ pub fn rig<'a>(scenario: &Scenario, journey: Option<&JourneyConfiguration<'a>>) 
     Single { chip: SimulatedImu::new(Instant::MIN, ADDRESS_LOW, CLOCK), environment }
 }
 
+/// A base IMU behind a simulated bus with a wrapper around it.
+pub type SimulatedBase<'r, 'a, A> =
+    BaseImu<<A as PortWrapper>::I2c<I2cPort<'r, SimulatedImu, Base<'a>>>, Delay>;
+
 /// The port of a base IMU with a wrapper around its bus.
 pub fn imu<'r, 'a, A: PortWrapper>(
     rig: &'r RefCell<Rig<'a>>,
     scenario: &Scenario,
     wrapper: &A,
-) -> BaseImu<A::I2c<I2cPort<'r, SimulatedImu, Base<'a>>>, Delay> {
+) -> SimulatedBase<'r, 'a, A> {
     let bus = wrapper.i2c(I2cPort::new(rig, lsm6dsl::BUS_HERTZ));
     let configuration =
         lsm6dsl::Configuration { output: output(scenario), ..lsm6dsl::Configuration::default() };

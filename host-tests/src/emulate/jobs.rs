@@ -1,22 +1,18 @@
 //! The runs of the image `emulator`: what each is called, what a sample may take in it, and the same
 //! run on the host.
 
-use std::cell::RefCell;
-
 use firmware::budget;
-use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Injection;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::spin::SpinScenario;
 use firmware::simulated::trace::Trace;
 use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::{BRIEF, VehicleScenario};
+use firmware::simulated::vehicle::{BRIEF, Day, VehicleScenario};
 use orientation::signal::{InertialSample, Sample, SpinSample};
 
 use super::outcome::Outcome;
-use crate::instrument::spinning::follow_spin;
-use crate::instrument::{self, RunError};
+use crate::instrument::{RunError, Trial, VehiclePlan};
 
 /// A run of the image.
 #[derive(Debug)]
@@ -101,31 +97,30 @@ pub static JOBS: [&Job; 7] =
     [&STAGE, &BRIEF_STAGE, &SURVEY, &TWO_FRAME, &TURNTABLE, &VEHICLE, &SPIN];
 
 fn stage(scenario: &Scenario) -> Result<Outcome, String> {
-    let run = told(instrument::align(scenario, None, NoRecorder, &()))?;
+    let run = told(Trial::of(scenario).run())?;
     Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
 }
 
 fn frames(scenario: &FramesScenario) -> Result<Outcome, String> {
-    let run = told(instrument::align_frames(scenario, None, NoRecorder, &()))?.run;
+    let run = told(Trial::of(scenario).run())?.run;
     Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
 }
 
 fn turntable(scenario: &TurntableScenario) -> Result<Outcome, String> {
-    let run = told(instrument::align_turning(scenario, None, NoRecorder, &()))?.run;
+    let run = told(Trial::of(scenario).run())?.run;
     Ok(Outcome::of::<Sample>(&run.replay, &[]))
 }
 
 fn vehicle(scenario: &VehicleScenario) -> Result<Outcome, String> {
-    let healthy = Injection::NONE;
-    let board = RefCell::new(scenario.board(&BRIEF, &[], &healthy));
-    let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &(), ());
-    let run = told(run)?.run;
+    let day = Day { legs: BRIEF.into_iter().collect(), ..scenario.day(None) };
+    let plan = VehiclePlan { day, chips: Injection::NONE };
+    let run = told(Trial::of(scenario).plan(plan).run())?.run;
     let kept: Vec<&dyn Trace> = run.reports.iter().map(|report| report as &dyn Trace).collect();
     Ok(Outcome::of::<InertialSample>(&run.replay, &kept))
 }
 
 fn spin(scenario: &SpinScenario) -> Result<Outcome, String> {
-    let run = told(follow_spin(scenario, None, &()))?.run;
+    let run = told(Trial::of(scenario).run())?.run;
     Ok(Outcome::of::<SpinSample>(&run.replay, &[]))
 }
 

@@ -17,14 +17,14 @@ use super::{Run, RunError};
 use crate::virtual_time;
 
 /// Keeps what the board reports and passes it on.
-pub(super) struct Log<'w, W> {
+pub(super) struct Log<'w> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
     base: RefCell<Vec<(Instant, BaseReading)>>,
-    watch: &'w W,
+    watch: &'w dyn Observer,
 }
 
-impl<W: Observer> Observer for Log<'_, W> {
+impl Observer for Log<'_> {
     fn event(&self, at: Instant, event: &Event) {
         self.events.borrow_mut().push((at, *event));
         self.watch.event(at, event);
@@ -65,8 +65,8 @@ impl Write for Wire<'_> {
 }
 
 /// A harness on which a board is put.
-pub(super) struct Harness<'w, W> {
-    log: Log<'w, W>,
+pub(super) struct Harness<'w> {
+    log: Log<'w>,
     bytes: RefCell<Vec<u8>>,
 }
 
@@ -76,9 +76,9 @@ pub(super) struct Ended {
     at: Instant,
 }
 
-impl<'w, W: Observer> Harness<'w, W> {
+impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
-    pub(super) fn new(watch: &'w W) -> Self {
+    pub(super) fn new(watch: &'w dyn Observer) -> Self {
         let (events, reports, base) = Default::default();
         Self { log: Log { events, reports, base, watch }, bytes: RefCell::default() }
     }

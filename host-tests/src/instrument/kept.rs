@@ -1,13 +1,19 @@
 //! What a board kept after its alignment, beside the truth.
 
+use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 
+use firmware::simulated::base::{self, SimulatedBase};
 use firmware::simulated::fault::{Fault, Injection};
-use firmware::simulated::keep::Day;
+use firmware::simulated::keep::{Day, journey};
+use firmware::simulated::scenario::Scenario;
 use hal_mock::earth::Attitude;
+use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::vehicle::motion::Motion;
 use hal_mock::vehicle::{Event, SensorFault};
 use orientation::attitude::Report;
+
+use super::{Run, RunError};
 
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]
@@ -27,8 +33,35 @@ impl KeptPlan {
         Self { chips: Injection::of(fault), base: Vec::new(), events: Vec::new() }
     }
 
+    /// Runs a board on a base with coarse sensors, which goes along the day after the alignment where
+    /// the scenario goes on; then looks at what was kept.
+    ///
+    /// # Errors
+    /// Those of the run.
+    pub(super) fn on_base<O: AsMut<Run>>(
+        &self,
+        scenario: &Scenario,
+        day: Day,
+        run: impl FnOnce(
+            &mut SimulatedBase<'_, '_, Injection>,
+            Option<JourneyConfiguration<'_>>,
+        ) -> Result<O, RunError>,
+    ) -> Result<O, RunError> {
+        let day = self.day(day);
+        let journey = journey(&day, &self.base);
+        let journey = (scenario.hold.seconds > 0.0).then_some(journey);
+        let rig = RefCell::new(base::rig(scenario, journey.as_ref()));
+        let mut found = run(&mut base::imu(&rig, scenario, &self.chips), journey)?;
+        let of_run = found.as_mut();
+        let rig = rig.borrow();
+        let violations = base::violations(&rig).iter();
+        of_run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
+        of_run.kept = Kept::of(&of_run.reports, day.configuration().motion());
+        Ok(found)
+    }
+
     /// A day with what happens on the way; of too many events the first ones.
-    pub(super) fn day(&self, day: Day) -> Day {
+    fn day(&self, day: Day) -> Day {
         let mut day = day;
         let room = self.events.len().min(day.events.capacity() - day.events.len());
         day.events.extend(self.events.iter().take(room).copied());

@@ -5,15 +5,18 @@ mod frames;
 mod harness;
 pub mod kept;
 pub mod recorder;
-pub mod spinning;
+mod spinning;
 mod stage;
+mod trial;
 mod turntable;
 mod vehicle;
 
-pub use frames::{FramesRun, align_frames, align_frames_and_keep};
-pub use stage::{align, align_and_keep, align_on};
-pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
-pub use vehicle::{VehicleRun, align_stops, align_stops_along, align_stops_on};
+pub use frames::FramesRun;
+pub use spinning::{FlightPlan, SpinRun};
+pub use stage::align_on;
+pub use trial::{Around, Carrier, Trial};
+pub use turntable::{TurntablePlan, TurntableRun};
+pub use vehicle::{VehiclePlan, VehicleRun};
 
 use embassy_time::Instant;
 use firmware::event::Event;
@@ -57,6 +60,12 @@ impl Run {
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.replay.session.conclusion()
+    }
+}
+
+impl AsMut<Self> for Run {
+    fn as_mut(&mut self) -> &mut Self {
+        self
     }
 }
 

@@ -6,11 +6,11 @@ use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::event::Event;
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
-use firmware::ports::Observer;
+use firmware::ports::{Recorder, Store};
 use firmware::run::navigate;
 use firmware::simulated::Wires;
-use firmware::simulated::fault::Fault;
-use firmware::simulated::spin::SpinScenario;
+use firmware::simulated::fault::{Fault, Injection};
+use firmware::simulated::spin::{Course, SpinScenario};
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
 use orientation::alignment::Progress;
@@ -21,7 +21,17 @@ use orientation::units::Instant;
 
 use super::harness::{self, Harness};
 use super::recorder::Samples;
+use super::trial::{Around, Carrier};
 use super::{Run, RunError};
+
+/// Where a spinning body flies, and what goes wrong.
+#[derive(Clone, Debug)]
+pub struct FlightPlan {
+    /// Its course, with what its sensors feel wrongly.
+    pub course: Course,
+    /// Faults of its chips.
+    pub chips: Injection,
+}
 
 /// A finished flight.
 #[derive(Clone, Debug)]
@@ -49,43 +59,49 @@ impl Run<Flight> {
     }
 }
 
-/// Runs a scenario in virtual time on this thread.
-///
-/// # Errors
-/// A scale factor that is none, and a deadlock.
-pub fn follow_spin<W: Observer>(
-    scenario: &SpinScenario,
-    fault: Option<Fault>,
-    watch: &W,
-) -> Result<SpinRun, RunError> {
-    let (course, injection) = (scenario.course(fault), scenario.injection(fault));
-    let configuration = scenario.configuration().ok_or(RunError::Scale)?;
-    let board = RefCell::new(scenario.board(&course, &injection));
-    let (mut flight, mut kept) = (scenario.flight(), Samples::default());
-    let harness = Harness::new(watch);
-    let channels = harness.channels();
-    let mut sensors = Wires(&board, &injection).spinning();
-    let ended = harness::run(
-        acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
-        navigate(
-            &mut Strapdown::new(&channels.shared),
-            &mut flight,
-            None::<Keeping<'_, ()>>,
-            &(),
-            (&mut harness.wire(), &mut &mut kept),
-            &channels,
-        ),
-    )?;
-    drop(channels);
-    let run = harness.clear(&ended, &board, flight);
-    // Another body of the same course, which has not flown yet.
-    let fresh = scenario.board(&course, &injection).plant;
-    let at = |plant: &SpinPlant, time: Instant| {
-        plant.truth_at(embassy_time::Instant::from_micros(time.0))
-    };
-    let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
-    let (start, flown) = (at(&fresh, time(kept.taken.first())), &board.borrow().plant);
-    let rolls_rad = kept.taken.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
-    let truth = at(flown, time(kept.taken.last()));
-    Ok(SpinRun { run, samples: kept.taken, rolls_rad, start, truth })
+impl Carrier for SpinScenario {
+    type Sample = SpinSample;
+    type Plan = FlightPlan;
+    type Run = SpinRun;
+
+    fn plan(&self, fault: Option<Fault>) -> FlightPlan {
+        FlightPlan { course: self.course(fault), chips: self.injection(fault) }
+    }
+
+    fn run<R: Recorder<SpinSample>, T: Store>(
+        &self,
+        plan: &FlightPlan,
+        around: Around<'_, R, T>,
+    ) -> Result<SpinRun, RunError> {
+        let FlightPlan { course, chips: injection } = plan;
+        let configuration = self.configuration().ok_or(RunError::Scale)?;
+        let board = RefCell::new(self.board(course, injection));
+        let (mut flight, mut kept) = (self.flight(), Samples::default());
+        let harness = Harness::new(around.watch);
+        let channels = harness.channels();
+        let mut sensors = Wires(&board, injection).spinning();
+        let ended = harness::run(
+            acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
+            navigate(
+                &mut Strapdown::new(&channels.shared),
+                &mut flight,
+                None::<Keeping<'_, ()>>,
+                &(),
+                (&mut harness.wire(), &mut (&mut kept, around.recorder)),
+                &channels,
+            ),
+        )?;
+        drop(channels);
+        let run = harness.clear(&ended, &board, flight);
+        // Another body of the same course, which has not flown yet.
+        let fresh = self.board(course, injection).plant;
+        let at = |plant: &SpinPlant, time: Instant| {
+            plant.truth_at(embassy_time::Instant::from_micros(time.0))
+        };
+        let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
+        let (start, flown) = (at(&fresh, time(kept.taken.first())), &board.borrow().plant);
+        let rolls_rad = kept.taken.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
+        let truth = at(flown, time(kept.taken.last()));
+        Ok(SpinRun { run, samples: kept.taken, rolls_rad, start, truth })
+    }
 }

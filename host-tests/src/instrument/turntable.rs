@@ -4,26 +4,29 @@ use std::cell::RefCell;
 
 use firmware::acquire::{acquire, on_stage};
 use firmware::configuration::TurntableConfiguration;
-use firmware::ports::{Observer, Ports, Recorder};
+use firmware::keep::Keeping;
+use firmware::ports::{Ports, Recorder, Store};
 use firmware::run::navigate;
 use firmware::simulated::Wires;
-use firmware::simulated::fault::{Fault, FaultyRecorder};
-use firmware::simulated::flash::Flash;
+use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::turntable::{self, TurntableScenario};
-use firmware::storage::{FlashStore, Today, load_calibration, save_calibration};
+use firmware::storage::{Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
 use orientation::alignment::rotating::session as rotating;
+use orientation::signal::Sample;
 
 use super::harness::{self, Harness};
+use super::trial::{Around, Carrier};
 use super::{Run, RunError};
 use crate::virtual_time;
 
-/// The store of a board that keeps misalignments, and what it is given of the time.
-pub struct Keeping {
-    /// Where they are kept.
-    pub store: FlashStore<Flash>,
-    /// The day.
-    pub today: Today,
+/// What goes wrong on a turning platform, and the day, where it keeps misalignments.
+#[derive(Clone, Debug)]
+pub struct TurntablePlan {
+    /// Faults of its chips and of its axis.
+    pub chips: Injection,
+    /// The day; without one nothing is taken from the store, and nothing kept in it.
+    pub today: Option<Today>,
 }
 
 /// A finished run on a turning platform.
@@ -35,66 +38,62 @@ pub struct TurntableRun {
     pub rate: f64,
 }
 
-/// Runs a scenario in virtual time on this thread, on a board that keeps nothing.
-///
-/// # Errors
-/// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
-pub fn align_turning<R: Recorder, W: Observer>(
-    scenario: &TurntableScenario,
-    fault: Option<Fault>,
-    recorder: R,
-    watch: &W,
-) -> Result<TurntableRun, RunError> {
-    align_turning_again(scenario, fault, recorder, watch, None)
-}
+impl Carrier for TurntableScenario {
+    type Sample = Sample;
+    type Plan = TurntablePlan;
+    type Run = TurntableRun;
 
-/// Runs a scenario on a board that may have stored axis misalignments, and stores those that it finds.
-///
-/// # Errors
-/// Fails as [`align_turning`] does.
-pub fn align_turning_again<R: Recorder, W: Observer>(
-    scenario: &TurntableScenario,
-    fault: Option<Fault>,
-    recorder: R,
-    watch: &W,
-    mut keeping: Option<&mut Keeping>,
-) -> Result<TurntableRun, RunError> {
-    let mut setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
-    let mut procedure = scenario.procedure();
-    let injection = scenario.injection(fault);
-    let board = RefCell::new(scenario.board(&injection));
-    let harness = Harness::new(watch);
-    let channels = harness.channels();
-    if let Some(Keeping { store, today }) = &mut keeping {
-        let given = (&mut setting, &mut procedure);
-        let prepared = virtual_time::run(load_calibration(store, *today, given, &channels.shared));
-        prepared.map_err(|_| RunError::Deadlock)?;
+    fn plan(&self, fault: Option<Fault>) -> TurntablePlan {
+        TurntablePlan { chips: self.injection(fault), today: None }
     }
-    let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
-    let configuration = scenario.base.configuration();
-    let platform = TurntableConfiguration::default();
-    let wires = Wires(&board, &injection);
-    let mut sensors = wires.sensors(&scenario.base, turntable::FORCE);
-    let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let Ports { mut actuator, mut link, mut recorder } =
-        wires.ports(turntable::motor(), harness.wire(), recorder);
-    let instrument = async {
-        let health = navigate(
-            &mut Turntable::new(&mut actuator, &platform, &channels.shared),
-            &mut session,
-            None::<firmware::keep::Keeping<'_, ()>>,
-            &(),
-            (&mut link, &mut recorder),
-            &channels,
-        )
-        .await;
-        if let Some(Keeping { store, .. }) = keeping {
-            save_calibration(store, &session, &channels).await;
+
+    fn run<R: Recorder, T: Store>(
+        &self,
+        plan: &TurntablePlan,
+        around: Around<'_, R, T>,
+    ) -> Result<TurntableRun, RunError> {
+        let mut setting = self.setting().ok_or(RunError::Latitude(self.base.latitude_deg))?;
+        let mut procedure = self.procedure();
+        let Around { watch, recorder, mut store } = around;
+        let injection = &plan.chips;
+        let board = RefCell::new(self.board(injection));
+        let harness = Harness::new(watch);
+        let channels = harness.channels();
+        if let Some(today) = plan.today {
+            let given = (&mut setting, &mut procedure);
+            let load = load_calibration(&mut store, today, given, &channels.shared);
+            let prepared = virtual_time::run(load);
+            prepared.map_err(|_| RunError::Deadlock)?;
         }
-        health
-    };
-    let ended =
-        harness::run(acquire(&mut on_stage(&mut sensors, &configuration, &channels)), instrument)?;
-    let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
+        let mut session =
+            rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
+        let configuration = self.base.configuration();
+        let platform = TurntableConfiguration::default();
+        let wires = Wires(&board, injection);
+        let mut sensors = wires.sensors(&self.base, turntable::FORCE);
+        let recorder = FaultyRecorder::new(recorder, injection.hang);
+        let Ports { mut actuator, mut link, mut recorder } =
+            wires.ports(turntable::motor(), harness.wire(), recorder);
+        let instrument = async {
+            let health = navigate(
+                &mut Turntable::new(&mut actuator, &platform, &channels.shared),
+                &mut session,
+                None::<Keeping<'_, ()>>,
+                &(),
+                (&mut link, &mut recorder),
+                &channels,
+            )
+            .await;
+            if plan.today.is_some() {
+                save_calibration(&mut store, &session, &channels).await;
+            }
+            health
+        };
+        let ended = harness::run(
+            acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
+            instrument,
+        )?;
+        let rate = board.borrow().plant.truth().stage.rate_rad_s;
+        Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
+    }
 }

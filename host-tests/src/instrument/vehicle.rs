@@ -6,20 +6,29 @@ use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::event::Event;
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
-use firmware::ports::{Observer, Recorder, Store};
+use firmware::ports::{Recorder, Store};
 use firmware::run::navigate;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
-use hal_mock::vehicle::board::VehicleBoard;
 use orientation::alignment::{Progress, stops};
 use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 
 use super::harness::{self, Harness};
 use super::kept::{Kept, Point};
+use super::trial::{Around, Carrier};
 use super::{Run, RunError};
+
+/// What a vehicle does, and what goes wrong.
+#[derive(Clone, Debug)]
+pub struct VehiclePlan {
+    /// Its day, with what its sensors feel wrongly.
+    pub day: Day,
+    /// Faults of its chips.
+    pub chips: Injection,
+}
 
 /// A finished run in a vehicle.
 #[derive(Clone, Debug)]
@@ -45,71 +54,46 @@ impl VehicleRun {
     }
 }
 
-/// Runs a scenario in virtual time on this thread.
-///
-/// # Errors
-/// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
-pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
-    scenario: &VehicleScenario,
-    fault: Option<Fault>,
-    recorder: R,
-    watch: &W,
-) -> Result<VehicleRun, RunError> {
-    let (day, injection) = (scenario.day(fault), scenario.injection(fault));
-    align_stops_along(&day, &injection, scenario, recorder, watch, ())
-}
+impl Carrier for VehicleScenario {
+    type Sample = InertialSample;
+    type Plan = VehiclePlan;
+    type Run = VehicleRun;
 
-/// Runs a scenario on a given day, with what goes wrong, and with a store of the heading over a loss of supply.
-///
-/// # Errors
-/// Fails as [`align_stops`] does.
-pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
-    day: &Day,
-    injection: &Injection,
-    scenario: &VehicleScenario,
-    recorder: R,
-    watch: &W,
-    store: impl Store,
-) -> Result<VehicleRun, RunError> {
-    let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
-    let mut found = align_stops_on(&board, injection, scenario, recorder, watch, store)?;
-    found.run.kept = Kept::of(&found.run.reports, day.configuration().motion());
-    Ok(found)
-}
+    fn plan(&self, fault: Option<Fault>) -> VehiclePlan {
+        VehiclePlan { day: self.day(fault), chips: self.injection(fault) }
+    }
 
-/// Runs a scenario on a board to which something else may be done, with something around its ports.
-///
-/// # Errors
-/// Fails as [`align_stops`] does.
-pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
-    board: &RefCell<VehicleBoard<'_>>,
-    injection: &Injection,
-    scenario: &VehicleScenario,
-    recorder: R,
-    watch: &W,
-    store: impl Store,
-) -> Result<VehicleRun, RunError> {
-    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
-    let session = stops::Session::new(setting, scenario.procedure());
-    let mut session = session.map_err(RunError::Procedure)?;
-    let harness = Harness::new(watch);
-    let channels = harness.channels();
-    let mut sensors = Wires(board, injection).triad(scenario);
-    let aiding = VehicleAiding::new(board, scenario);
-    let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
-    let mut keeper = Keeper::new(&setting);
-    let ended = harness::run(
-        acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
-        navigate(
-            &mut Strapdown::new(&channels.shared),
-            &mut session,
-            Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store }),
-            &aiding,
-            (&mut harness.wire(), &mut FaultyRecorder::new(recorder, injection.hang)),
-            &channels,
-        ),
-    )?;
-    let truth = board.borrow().plant.truth();
-    let run = harness.clear(&ended, board, session);
-    Ok(VehicleRun { run, truth })
+    fn run<R: Recorder<InertialSample>, T: Store>(
+        &self,
+        plan: &VehiclePlan,
+        around: Around<'_, R, T>,
+    ) -> Result<VehicleRun, RunError> {
+        let setting = self.setting().ok_or(RunError::Latitude(self.base.latitude_deg))?;
+        let session = stops::Session::new(setting, self.procedure());
+        let mut session = session.map_err(RunError::Procedure)?;
+        let (VehiclePlan { day, chips: injection }, Around { watch, recorder, store }) =
+            (plan, around);
+        let board = RefCell::new(self.board(&day.legs, &day.events, injection));
+        let harness = Harness::new(watch);
+        let channels = harness.channels();
+        let mut sensors = Wires(&board, injection).triad(self);
+        let aiding = VehicleAiding::new(&board, self);
+        let setting = self.keeper().ok_or(RunError::Latitude(self.base.latitude_deg))?;
+        let mut keeper = Keeper::new(&setting);
+        let ended = harness::run(
+            acquire(&mut TriadAcquisition::new(&mut sensors, &self.configuration(), &channels)),
+            navigate(
+                &mut Strapdown::new(&channels.shared),
+                &mut session,
+                Some(Keeping { keeper: &mut keeper, policy: self.policy(), store }),
+                &aiding,
+                (&mut harness.wire(), &mut FaultyRecorder::new(recorder, injection.hang)),
+                &channels,
+            ),
+        )?;
+        let truth = board.borrow().plant.truth();
+        let mut run = harness.clear(&ended, &board, session);
+        run.kept = Kept::of(&run.reports, day.configuration().motion());
+        Ok(VehicleRun { run, truth })
+    }
 }

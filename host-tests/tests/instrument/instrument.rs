@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use std::thread;
 
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use host::instrument::recorder::{self, Samples};
-use host::instrument::{self, Run};
+use host::instrument::{Run, Trial};
 use host::methods::asked::Asked;
 use host::methods::stepwise::replay;
 use host::output::{azimuth_error, degrees};
@@ -23,7 +22,7 @@ fn short(seed: u64) -> Scenario {
 }
 
 fn run(scenario: &Scenario) -> Run {
-    instrument::align(scenario, None, NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(scenario).run().expect("the scenario is possible")
 }
 
 fn conclusion(run: &Run) -> &Conclusion {
@@ -77,7 +76,7 @@ fn a_recorded_run_replays_to_the_same_azimuth_without_what_its_session_was_given
         let scratch = Scratch::new("recorded");
         let path = PathBuf::from(scratch.path("recorded.csv"));
         let mut samples = Samples::default();
-        let run = instrument::align(&scenario, None, &mut samples, &()).expect("it is possible");
+        let run = Trial::of(&scenario).record(&mut samples).run().expect("it is possible");
         recorder::write(&path, &scenario, &run, &samples.taken).expect("the folder is ours");
         let (header, body, truth) = recording::read(&path).expect("it is well-formed").into_parts();
         assert_eq!(truth.azimuth_deg, Some(scenario.azimuth_deg));

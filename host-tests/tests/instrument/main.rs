@@ -4,6 +4,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod carriers;
 mod instrument;
 mod instrument_parts;
 mod keeping_instrument;

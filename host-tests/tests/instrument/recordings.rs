@@ -5,16 +5,16 @@ use std::fmt::Debug;
 use std::path::Path;
 
 use firmware::event::Event;
-use firmware::ports::{Frames, NoRecorder};
+use firmware::ports::Frames;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
 use firmware::simulated::spin::SpinScenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
-use host::instrument::recorder::{self, Carrier, Samples};
-use host::instrument::spinning::{SpinRun, follow_spin};
-use host::instrument::{Run, align, align_frames, align_stops, align_turning};
+
+use host::instrument::recorder::{self, Recorded, Samples};
+use host::instrument::{Run, SpinRun, Trial};
 use host::methods::asked::{Asked, REQUIRED_SIGMA};
 use host::methods::spin::{Known, follow};
 use host::methods::{rotating, spin, stepwise, stops};
@@ -45,7 +45,7 @@ fn some_faults(platform: Platform) -> impl Iterator<Item = Fault> {
 }
 
 /// What a reader finds in the recording of a run; none of a run without a sample.
-fn read_back<C: Carrier>(
+fn read_back<C: Recorded>(
     carrier: &C,
     run: &C::Run,
     samples: &[C::Sample],
@@ -77,7 +77,7 @@ fn reported_of_stage(replay: &stepwise::Replay) -> (Value, String) {
 }
 
 /// Compares runs without and with a recorder with what a replay makes of the recording.
-fn compare_stage<C: Carrier>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
+fn compare_stage<C: Recorded>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
     assert_eq!(reported_of_stage(&plain.replay), reported_of_stage(&of.replay));
     let Some((header, body)) = read_back(carrier, run, it) else { return };
     let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
@@ -87,20 +87,21 @@ fn compare_stage<C: Carrier>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, i
 }
 
 fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
-    let plain = align(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
     let found = plain.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
-    let run = align(scenario, fault, &mut samples, &()).expect("it is possible");
+    let run = Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
     compare_stage(&plain, scenario, &run, &run, &samples.taken);
 }
 
 fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
-    let plain = align_frames(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
     let found = plain.run.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
-    let frames = align_frames(scenario, fault, &mut samples, &()).expect("it is possible");
+    let frames =
+        Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
     compare_stage(&plain.run, scenario, &frames, &frames.run, &samples.taken);
 }
 
@@ -110,11 +111,11 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
         let replay = rotating::Replay { session, zero_s: 0.0, assumed };
         reported(&replay, &replay.session.conclusion())
     };
-    let plain = align_turning(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
     let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
-    let run = align_turning(scenario, fault, &mut samples, &()).expect("it is possible");
+    let run = Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
     assert_eq!(of_run(&plain.run), of_run(&run.run));
     let Some((header, body)) = read_back(scenario, &run, &samples.taken) else { return };
     let again = rotating::replay(&header, &body, &Asked::default());
@@ -126,11 +127,12 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
     let reported = |session: &stops_session::Session| {
         format!("{:?} {:?}", session.conclusion(), session.stops())
     };
-    let plain = align_stops(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
     let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
-    let found = align_stops(scenario, fault, &mut samples, &()).expect("it is possible");
+    let found =
+        Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
     assert_eq!(reported(&plain.run.replay), reported(&found.run.replay));
     let Some((header, body)) = read_back(scenario, &found, &samples.taken) else { return };
     let again = stops::replay(&header, &body, &Asked::default());
@@ -139,7 +141,7 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
 }
 
 fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
-    let run = follow_spin(scenario, fault, &()).expect("it is possible");
+    let run = Trial::of(scenario).fault(fault).run().expect("it is possible");
     let Some((header, body)) = read_back(scenario, &run, &run.samples) else { return };
     let again = spin::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
@@ -253,7 +255,7 @@ fn a_recorded_stage_on_a_base_that_sways_replays_bit_for_bit() {
 fn a_recording_on_a_base_with_sensors_holds_what_they_showed() {
     let scenario = Scenario { sway_deg: 0.2, has_base_imu: true, ..stage(1) };
     let mut samples = Samples::default();
-    let run = align(&scenario, None, &mut samples, &()).expect("it is possible");
+    let run = Trial::of(&scenario).record(&mut samples).run().expect("it is possible");
     let read = read_back(&scenario, &run, &samples.taken);
     let Some((_, Body::Stage(rows))) = read else { panic!("it is a stage") };
     let shown: Vec<f64> =
@@ -293,7 +295,7 @@ fn a_recorded_mount_with_a_fault_replays_bit_for_bit() {
 #[test]
 fn what_a_session_was_given_counts_as_the_run_wrote_it_or_not_at_all() {
     let scenario = SpinScenario { seconds: 0.6, ..SpinScenario::default() };
-    let run = follow_spin(&scenario, None, &()).expect("it is possible");
+    let run = Trial::of(&scenario).run().expect("it is possible");
     let (header, body) = read_back(&scenario, &run, &run.samples).expect("there are samples");
     let changed = Header { session: Some("{}".to_owned()), ..header };
     let refused = spin::replay(&changed, &body, &Asked::default()).map(|_| ());

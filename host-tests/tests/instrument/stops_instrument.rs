@@ -2,16 +2,15 @@
 //! lost conversion costs.
 
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
-use host::instrument::{VehicleRun, align_stops};
+use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Progress, stops};
 
 fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
-    align_stops(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(scenario).fault(fault).run().expect("the scenario is possible")
 }
 
 fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {

@@ -1,10 +1,9 @@
 //! The instrument in a vehicle with something wrong: every fault is survived or refused for its reason,
 //! and no rotation that was lost is hidden.
 
-use firmware::ports::NoRecorder;
 use firmware::simulated::fault::{ChipFault, Fault, Platform};
 use firmware::simulated::vehicle::VehicleScenario;
-use host::instrument::{VehicleRun, align_stops};
+use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::{Device, Trouble};
@@ -61,7 +60,7 @@ fn of_chip(device: Device, fault: ChipFault) -> End {
 
 fn run(fault: Fault) -> VehicleRun {
     let scenario = VehicleScenario { stops: 2, stop_s: 30.0, ..VehicleScenario::usual(1) };
-    align_stops(&scenario, Some(fault), NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(&scenario).fault(Some(fault)).run().expect("the scenario is possible")
 }
 
 fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {

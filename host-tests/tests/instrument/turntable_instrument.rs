@@ -2,11 +2,10 @@
 //! tells what it did, comes to rest at the end, and never reports a wrong north.
 
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
 use firmware::simulated::fault::{AxisFault, ChipFault, Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
-use host::instrument::{TurntableRun, align_turning};
+use host::instrument::{Trial, TurntableRun};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
@@ -22,7 +21,7 @@ fn short(seed: u64) -> TurntableScenario {
 }
 
 fn run_with(scenario: &TurntableScenario, fault: Option<Fault>) -> TurntableRun {
-    align_turning(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(scenario).fault(fault).run().expect("the scenario is possible")
 }
 
 fn run(scenario: &TurntableScenario) -> TurntableRun {

@@ -4,12 +4,12 @@
 use drivers::fault::Fault;
 use firmware::date::Day;
 use firmware::event::Event;
-use firmware::ports::{NoRecorder, Store};
+use firmware::ports::Store;
 use firmware::simulated::flash::Flash;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{FlashStore, Today, keep, recall};
-use host::instrument::{Keeping, TurntableRun, align_turning_again};
+use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun};
 use host::output::{azimuth_error, degrees};
 use host::virtual_time::run;
 use orientation::alignment::Azimuth;
@@ -127,6 +127,12 @@ const THEN: u64 = 1_773_480_413;
 /// 2026-03-20.
 const NOW: u64 = 1_773_964_800;
 
+/// The store of a board that keeps misalignments, and the day.
+struct Keeping {
+    store: FlashStore<Flash>,
+    today: Today,
+}
+
 fn keeping(flash: Flash, date: u64) -> Keeping {
     Keeping { store: flash.store(), today: Today { date: Some(date), longest: None } }
 }
@@ -145,7 +151,9 @@ fn molecular(modulated_turns: u32) -> TurntableScenario {
 }
 
 fn aligned(scenario: &TurntableScenario, keeping: &mut Keeping) -> TurntableRun {
-    align_turning_again(scenario, None, NoRecorder, &(), Some(keeping)).expect("it is possible")
+    let plan = TurntablePlan { today: Some(keeping.today), ..scenario.plan(None) };
+    let trial = Trial::of(scenario).plan(plan).store(&mut keeping.store);
+    trial.run().expect("it is possible")
 }
 
 fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {

@@ -2,7 +2,6 @@
 
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::ports::NoRecorder;
 use firmware::simulated::base::CoarseClass;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::mount::FramesScenario;
@@ -14,8 +13,7 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 
-use crate::instrument::spinning::follow_spin;
-use crate::instrument::{self, Run, RunError};
+use crate::instrument::{Run, RunError, Trial};
 use crate::output::{azimuth_error, degrees};
 
 /// Sample rate of all but the spinning body, Hz.
@@ -114,14 +112,14 @@ fn base(fault: Fault, seed: u64) -> Scenario {
 
 fn on_stage(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = base(fault, seed);
-    let run = instrument::align(&scenario, Some(fault), NoRecorder, &())?;
+    let run = Trial::of(&scenario).fault(Some(fault)).run()?;
     Ended::with_dwells(&run, scenario.azimuth_deg)
 }
 
 fn on_frames(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario =
         FramesScenario { base: base(fault, seed), passes: PASSES, ..FramesScenario::default() };
-    let frames = instrument::align_frames(&scenario, Some(fault), NoRecorder, &())?;
+    let frames = Trial::of(&scenario).fault(Some(fault)).run()?;
     Ended::with_dwells(&frames.run, scenario.base.azimuth_deg)
 }
 
@@ -133,7 +131,7 @@ fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
         turns: TURNS,
         ..TurntableScenario::default()
     };
-    let run = instrument::align_turning(&scenario, Some(fault), NoRecorder, &())?.run;
+    let run = Trial::of(&scenario).fault(Some(fault)).run()?.run;
     let conclusion = run.replay.conclusion().ok_or(RunError::Deadlock)?;
     Ok(Ended::new(&run, in_sigmas(conclusion.verdict, scenario.base.azimuth_deg)))
 }
@@ -141,7 +139,7 @@ fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 fn in_vehicle(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let usual = VehicleScenario::usual(seed);
     let scenario = VehicleScenario { stops: STOPS, stop_s: STOP_S, drive_s: DRIVE_S, ..usual };
-    let found = instrument::align_stops(&scenario, Some(fault), NoRecorder, &())?;
+    let found = Trial::of(&scenario).fault(Some(fault)).run()?;
     let conclusion = found.run.replay.conclusion().ok_or(RunError::Deadlock)?;
     let truth_deg = degrees(found.truth.attitude.azimuth_rad);
     Ok(Ended::new(&found.run, in_sigmas(conclusion.verdict, truth_deg)))
@@ -149,7 +147,7 @@ fn in_vehicle(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 
 fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
-    let flown = follow_spin(&scenario, Some(fault), &())?;
+    let flown = Trial::of(&scenario).fault(Some(fault)).run()?;
     let spin = flown.run.replay.spin();
     let verdict = match (flown.run.ended(), spin.sigma().map(degrees)) {
         (Some(reason), _) => Err(reason.to_string()),

@@ -2,7 +2,6 @@
 
 pub(super) mod report;
 
-use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use orientation::alignment::refusal::Refusal;
@@ -10,7 +9,7 @@ use serde::Serialize;
 
 use super::over;
 use super::statistics::{Answer, Precision};
-use crate::instrument::{self, RunError};
+use crate::instrument::{RunError, Trial};
 
 /// Greatest latitude that is drawn, °.
 const LATITUDE_DEG: f64 = 70.0;
@@ -65,7 +64,7 @@ pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Runs, RunError> 
 
 /// One run's answer, how many dwells were measured again, and how many accesses were forbidden.
 fn outcome(scenario: &Scenario) -> Result<(Result<Answer, Refusal>, usize, usize), RunError> {
-    let run = instrument::align(scenario, None, NoRecorder, &())?;
+    let run = Trial::of(scenario).run()?;
     let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
     let answer = Answer::of_stage(conclusion, scenario.azimuth_deg);
     Ok((answer, run.replay.session.repetitions().len(), run.violations.len()))

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
-use host::instrument::recorder::{self, Carrier, Samples};
+use host::instrument::recorder::{self, Recorded, Samples};
 use host::unwritten;
 
 use crate::command::faults::{self, FaultChoice};
@@ -39,7 +39,7 @@ impl Common {
     ///
     /// # Errors
     /// The recording cannot be written; the words say why.
-    pub fn write<C: Carrier>(
+    pub fn write<C: Recorded>(
         &self,
         carrier: &C,
         run: &C::Run,

@@ -3,7 +3,7 @@
 use clap::Args;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
-use host::instrument::spinning::{SpinRun, follow_spin};
+use host::instrument::{SpinRun, Trial};
 use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Known, Replay, follow};
 use host::outcome::run::RunDetails;
@@ -49,8 +49,9 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (flown, wall) =
-            Terminal::watching("samples", |watch| follow_spin(&scenario, fault, watch))?;
+        let (flown, wall) = Terminal::watching("samples", |watch| {
+            Trial::of(&scenario).fault(fault).watch(watch).run()
+        })?;
         let written = self.common.write(&scenario, &flown, &flown.samples);
         let SpinRun { run, samples, rolls_rad, .. } = flown;
         let assumed = vec![GIVEN.to_owned()];

@@ -5,8 +5,7 @@ use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
-use host::instrument::kept::KeptPlan;
-use host::instrument::{self, FramesRun, Run};
+use host::instrument::{FramesRun, Run, Trial};
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::RunDetails;
@@ -182,7 +181,7 @@ impl Simulated for StageOptions {
         let scenario = self.scenario();
         let mut wanted = self.base.common.wanted();
         let (run, wall) = Terminal::watching("positions", |watch| {
-            instrument::align_and_keep(&scenario, &KeptPlan::of(fault), &mut wanted, watch, ())
+            Trial::of(&scenario).fault(fault).record(&mut wanted).watch(watch).run()
         })?;
         let written = self.base.common.write(&scenario, &run, &wanted.taken);
         let details = RunDetails::of(&run, scenario.sample_rate_hz, wall);
@@ -214,7 +213,7 @@ impl Simulated for FramesOptions {
         let scenario = self.scenario();
         let mut wanted = self.base.common.wanted();
         let (run, wall) = Terminal::watching("positions", |watch| {
-            instrument::align_frames(&scenario, fault, &mut wanted, watch)
+            Trial::of(&scenario).fault(fault).record(&mut wanted).watch(watch).run()
         })?;
         let written = self.base.common.write(&scenario, &run, &wanted.taken);
         let FramesRun { run, axis: [forward, right, down] } = run;

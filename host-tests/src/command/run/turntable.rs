@@ -6,11 +6,12 @@ use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
 use firmware::simulated::fault::Fault;
+use firmware::simulated::flash::Flash;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
-use firmware::storage::{Remembered, Today};
+use firmware::storage::{FlashStore, Remembered, Today};
 use host::instrument::recorder::{Samples, turning_rows};
-use host::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
+use host::instrument::{Carrier as _, Run, Trial, TurntablePlan, TurntableRun, flash_file};
 use host::methods::rotating::Replay;
 use host::outcome::run::RunDetails;
 use host::recording::{Body, GIVEN, Truth};
@@ -114,19 +115,15 @@ impl TurntableOptions {
         }
     }
 
-    /// The board's flash and the day; none where it keeps nothing.
-    fn keeping(&self) -> Result<Option<Keeping>, String> {
-        let Some(path) = &self.flash else { return Ok(None) };
-        let today = Today { date: self.date, longest: None };
-        Ok(Some(Keeping { store: flash_file::load(path)?.store(), today }))
+    /// The board's flash, an empty one where it keeps nothing.
+    fn store(&self) -> Result<FlashStore<Flash>, String> {
+        let flash = self.flash.as_deref().map_or(Ok(Flash::default()), flash_file::load)?;
+        Ok(flash.store())
     }
 
     /// Writes back what the board keeps.
-    fn put_away(&self, keeping: Option<Keeping>) -> Result<(), String> {
-        match (&self.flash, keeping) {
-            (Some(path), Some(keeping)) => flash_file::save(path, &keeping.store.into_flash()),
-            _ => Ok(()),
-        }
+    fn put_away(&self, store: FlashStore<Flash>) -> Result<(), String> {
+        self.flash.as_ref().map_or(Ok(()), |path| flash_file::save(path, &store.into_flash()))
     }
 }
 
@@ -154,12 +151,15 @@ impl Simulated for TurntableOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let (mut keeping, mut recorder) = (self.keeping()?, Samples::default());
+        let (mut store, mut recorder) = (self.store()?, Samples::default());
+        let today = self.flash.is_some().then_some(Today { date: self.date, longest: None });
+        let plan = TurntablePlan { today, ..scenario.plan(fault) };
         let (run, wall) = Terminal::watching("turns", |watch| {
-            align_turning_again(&scenario, fault, &mut recorder, watch, keeping.as_mut())
+            let trial = Trial::of(&scenario).plan(plan).record(&mut recorder);
+            trial.store(&mut store).watch(watch).run()
         })?;
         let recorded = self.common.write(&scenario, &run, &recorder.taken);
-        let written = self.put_away(keeping).and(recorded);
+        let written = self.put_away(store).and(recorded);
         let TurntableRun { run, .. } = run;
         let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
         details.recalled = Some(recalled(&run).map(Into::into).collect());

@@ -5,7 +5,7 @@ use firmware::ports::Recorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::{self, VehicleScenario};
-use host::instrument::align_stops;
+use host::instrument::Trial;
 use host::instrument::recorder::Samples;
 use host::methods::stops::{Method, Replay, Watched};
 use host::outcome::Finished;
@@ -90,8 +90,9 @@ impl Simulated for VehicleOptions {
         let beside = Session::new(setting, scenario.procedure());
         let watched = Watched::new(beside.map_err(|error| error.to_string())?);
         let mut seen = Seen { watched, wanted: self.common.wanted() };
-        let (run, wall) =
-            Terminal::watching("stops", |watch| align_stops(&scenario, fault, &mut seen, watch))?;
+        let (run, wall) = Terminal::watching("stops", |watch| {
+            Trial::of(&scenario).fault(fault).record(&mut seen).watch(watch).run()
+        })?;
         let written = self.common.write(&scenario, &run, &seen.wanted.taken);
         let azimuth_rad = run.azimuth_rad();
         let run = run.run;

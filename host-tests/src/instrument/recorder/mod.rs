@@ -22,6 +22,7 @@ use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, 
 
 pub use turntable::turning_rows;
 
+use super::Carrier;
 use crate::recording::Kind;
 
 /// The samples that a session was given, in order: the recorder of every carrier.
@@ -42,12 +43,7 @@ impl<S: Copy> Recorder<S> for &mut Samples<S> {
 }
 
 /// A carrier whose runs can be recorded.
-pub trait Carrier {
-    /// A finished run.
-    type Run;
-    /// What its session takes.
-    type Sample;
-
+pub trait Recorded: Carrier {
     /// Writes header, column names and rows.
     ///
     /// # Errors
@@ -59,7 +55,7 @@ pub trait Carrier {
 ///
 /// # Errors
 /// The file cannot be made or written, or there is no sample.
-pub fn write<C: Carrier>(
+pub fn write<C: Recorded>(
     path: &Path,
     carrier: &C,
     run: &C::Run,

@@ -6,16 +6,13 @@ use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use orientation::signal::SpinSample;
 use orientation::units::SpinForce;
 
-use super::{Carrier, mean_rate, row, seconds};
-use crate::instrument::spinning::SpinRun;
+use super::{Recorded, mean_rate, row, seconds};
+use crate::instrument::SpinRun;
 use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ay_m_s2,az_m_s2,truth_roll_rad";
 
-impl Carrier for SpinScenario {
-    type Run = SpinRun;
-    type Sample = SpinSample;
-
+impl Recorded for SpinScenario {
     fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
         let mut head = Vec::new();
         writeln!(head, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;

@@ -13,7 +13,7 @@ use orientation::alignment::stepwise::setting::Setting;
 use orientation::signal::Sample;
 use orientation::units::Angle;
 
-use super::{Carrier, forces, header, rate, row, seconds};
+use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::{FramesRun, Run};
 use crate::recording::{Given, Kind};
 
@@ -24,19 +24,13 @@ const COLUMNS: [&str; 3] = [
     "bgx_rad_s,bgy_rad_s,bgz_rad_s,bax_m_s2,bay_m_s2,baz_m_s2",
 ];
 
-impl Carrier for Scenario {
-    type Run = Run;
-    type Sample = Sample;
-
+impl Recorded for Scenario {
     fn write(&self, to: &mut impl Write, run: &Run, of: &[Sample]) -> io::Result<()> {
         write(to, self, (self.setting(), self.procedure()), run, of)
     }
 }
 
-impl Carrier for FramesScenario {
-    type Run = FramesRun;
-    type Sample = Sample;
-
+impl Recorded for FramesScenario {
     fn write(&self, to: &mut impl Write, run: &FramesRun, of: &[Sample]) -> io::Result<()> {
         write(to, &self.base, (self.setting(), self.procedure()), &run.run, of)
     }

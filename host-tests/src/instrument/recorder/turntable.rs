@@ -6,16 +6,13 @@ use firmware::simulated::turntable::TurntableScenario;
 use orientation::signal::Sample;
 use orientation::units::Angle;
 
-use super::{Carrier, forces, header, rate, row, seconds};
+use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::TurntableRun;
 use crate::recording::{Given, Kind, RotatingRow};
 
 const COLUMNS: &str = "t_s,stage_rad,stage_rate_rad_s,g_rad_s,a_m_s2,a_across_m_s2,force_is_new";
 
-impl Carrier for TurntableScenario {
-    type Run = TurntableRun;
-    type Sample = Sample;
-
+impl Recorded for TurntableScenario {
     fn write(&self, to: &mut impl Write, run: &TurntableRun, of: &[Sample]) -> io::Result<()> {
         let session = &run.run.replay;
         let (setting, procedure) = (*session.setting(), session.procedure().clone());

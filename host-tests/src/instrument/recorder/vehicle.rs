@@ -5,17 +5,14 @@ use std::io::{self, Write};
 use firmware::simulated::vehicle::VehicleScenario;
 use orientation::signal::InertialSample;
 
-use super::{Carrier, forces, header, mean_rate, row, seconds};
+use super::{Recorded, forces, header, mean_rate, row, seconds};
 use crate::instrument::VehicleRun;
 use crate::output::degrees;
 use crate::recording::{GREATEST_BODY_RATE, Given, Kind};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,force_is_new";
 
-impl Carrier for VehicleScenario {
-    type Run = VehicleRun;
-    type Sample = InertialSample;
-
+impl Recorded for VehicleScenario {
     fn write(
         &self,
         to: &mut impl Write,

@@ -2,10 +2,9 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle, when};
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::scenario::Scenario;
-use host::instrument::align_and_keep;
+use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;
 use orientation::navigation::Progress;
 
@@ -49,7 +48,7 @@ fn a_stage_keeps_by_its_coarse_gyros_alone_and_says_how_well() {
         let base = Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz: 100.0, ..usual };
         let scenario = Scenario { hold: Hold::of(600.0), has_base_imu: true, ..base };
         let plan = KeptPlan::of(None);
-        let found = align_and_keep(&scenario, &plan, NoRecorder, &(), ()).expect("possible");
+        let found = Trial::of(&scenario).plan(plan).run().expect("possible");
         let (_, [_, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
         // Micromechanical gyros: tenths of a degree after ten minutes, not hundredths.
         assert!((0.1..5.0).contains(&sigma.to_degrees()), "{}°", sigma.to_degrees());

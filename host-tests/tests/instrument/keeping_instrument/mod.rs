@@ -8,13 +8,12 @@ mod restart;
 
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::VehicleScenario;
 use host::instrument::kept::{Kept, KeptPlan};
-use host::instrument::{FramesRun, Run, VehicleRun, align_frames_and_keep, align_stops};
+use host::instrument::{FramesRun, Run, Trial, VehicleRun};
 
 /// A vehicle that goes on like this.
 fn vehicle(seed: u64, hold: Hold) -> VehicleScenario {
@@ -23,7 +22,7 @@ fn vehicle(seed: u64, hold: Hold) -> VehicleScenario {
 }
 
 fn drive(scenario: &VehicleScenario) -> VehicleRun {
-    align_stops(scenario, None, NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(scenario).run().expect("the scenario is possible")
 }
 
 /// Two passes of a mount on a base with a coarse IMU, at 100 Hz.
@@ -34,7 +33,7 @@ fn frames(seed: u64, hold: Hold) -> FramesScenario {
 }
 
 fn keep(scenario: &FramesScenario, plan: &KeptPlan) -> FramesRun {
-    align_frames_and_keep(scenario, plan, NoRecorder, &(), ()).expect("the scenario is possible")
+    Trial::of(scenario).plan(plan.clone()).run().expect("the scenario is possible")
 }
 
 /// When the base sets off, s.

@@ -2,7 +2,7 @@
 
 use super::{reported, vehicle};
 use firmware::event::Event;
-use firmware::ports::{NoRecorder, Store};
+use firmware::ports::Store;
 use firmware::simulated::fault::Injection;
 use firmware::simulated::flash::Flash;
 use firmware::simulated::keep::Hold;
@@ -10,7 +10,7 @@ use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
-use host::instrument::{VehicleRun, align_stops_along};
+use host::instrument::{Trial, VehiclePlan, VehicleRun};
 use orientation::attitude::restart::{RecallRefusal, Remembered};
 use orientation::navigation::Progress;
 
@@ -27,7 +27,11 @@ fn scenario(seed: u64, seconds: f64, gyro: GyroClass) -> VehicleScenario {
 fn first(seconds: f64, gyro: GyroClass, store: &mut FlashStore<Flash>) -> VehicleRun {
     let scenario = scenario(1, seconds, gyro);
     let (day, healthy) = (scenario.day(None), Injection::NONE);
-    align_stops_along(&day, &healthy, &scenario, NoRecorder, &(), store).expect("possible")
+    Trial::of(&scenario)
+        .plan(VehiclePlan { day, chips: healthy })
+        .store(store)
+        .run()
+        .expect("possible")
 }
 
 /// The second: the vehicle stands as it stood, but for these degrees of azimuth and pitch.
@@ -52,7 +56,11 @@ fn second(
         base: Scenario { azimuth_deg: truth.azimuth_rad.to_degrees() + azimuth, ..scenario.base },
         ..scenario
     };
-    align_stops_along(&day, &Injection::NONE, &scenario, NoRecorder, &(), store).expect("possible")
+    Trial::of(&scenario)
+        .plan(VehiclePlan { day, chips: Injection::NONE })
+        .store(store)
+        .run()
+        .expect("possible")
 }
 
 fn refusal(run: &VehicleRun) -> Option<RecallRefusal> {

@@ -2,7 +2,7 @@
 
 use embassy_time::{Duration, Instant};
 use firmware::event::Event;
-use firmware::ports::{Frames, NoRecorder};
+use firmware::ports::Frames;
 use firmware::simulated::fault::Injection;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
@@ -10,7 +10,7 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::StageFault;
 use host::campaign::statistics::rms;
 use host::instrument::kept::KeptPlan;
-use host::instrument::{FramesRun, align_frames_and_keep};
+use host::instrument::{FramesRun, Trial};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::TwoFrame;
@@ -57,7 +57,7 @@ fn short(seed: u64) -> FramesScenario {
 
 fn run(scenario: &FramesScenario, injection: &Injection) -> FramesRun {
     let plan = KeptPlan { chips: injection.clone(), ..KeptPlan::of(None) };
-    align_frames_and_keep(scenario, &plan, NoRecorder, &(), ()).expect("the scenario is possible")
+    Trial::of(scenario).plan(plan).run().expect("the scenario is possible")
 }
 
 fn healthy(scenario: &FramesScenario) -> FramesRun {

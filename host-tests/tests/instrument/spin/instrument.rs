@@ -4,7 +4,7 @@
 use firmware::event::Event;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::spin::SpinScenario;
-use host::instrument::spinning::{SpinRun, follow_spin};
+use host::instrument::{SpinRun, Trial};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::{Known, follow};
 use orientation::alignment;
@@ -19,7 +19,7 @@ macro_rules! rolled {
 }
 
 fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {
-    follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))
+    Trial::of(scenario).fault(fault).run().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A flight of one second.

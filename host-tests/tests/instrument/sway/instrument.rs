@@ -5,11 +5,11 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{BaseReading, BaseSensors, NoRecorder, Startable};
 use firmware::simulated::base::CoarseClass;
-use firmware::simulated::fault::{ChipFault, Fault};
+use firmware::simulated::fault::{ChipFault, Fault, Injection};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::sway::SwayCompensation;
-use host::instrument::{self, Run};
+use host::instrument::{Around, Run, RunError, Trial, align_on};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
@@ -24,7 +24,7 @@ const SWAYS: [(f64, f64); 6] =
     [(0.05, 2.0), (0.1, 1.0), (0.2, 0.5), (0.5, 0.3), (0.1, 0.5), (0.05, 0.3)];
 
 fn run(scenario: &Scenario) -> Run {
-    instrument::align(scenario, None, NoRecorder, &()).expect("the scenario is possible")
+    Trial::of(scenario).run().expect("the scenario is possible")
 }
 
 /// The scenario of a seed: another azimuth and another sway each.
@@ -220,19 +220,18 @@ impl BaseSensors for Failing {
     }
 }
 
+/// A run on a base with these sensors.
+fn on_base(base: &mut impl BaseSensors, scenario: &Scenario) -> Result<Run, RunError> {
+    let around = Around { watch: &(), recorder: NoRecorder, store: () };
+    align_on(SwayCompensation::new(base), scenario, None, &Injection::NONE, around)
+}
+
 #[test]
 fn a_base_imu_that_fails_ends_only_a_session_that_needs_it() {
     let scenario = Scenario { sample_rate_hz: 100.0, sway_deg: 0.0, ..scenario(2) };
     for (until, feels, goes_on) in [(0, false, true), (60, false, true), (60, true, false)] {
         let mut base = Failing { until: Instant::from_secs(until), feels, count: 0 };
-        let run = instrument::align_on(
-            SwayCompensation::new(&mut base),
-            &scenario,
-            None,
-            NoRecorder,
-            &(),
-        )
-        .expect("the scenario is possible");
+        let run = on_base(&mut base, &scenario).expect("the scenario is possible");
         let outcome = found(&scenario, &run);
         assert_eq!(outcome.is_ok(), goes_on, "{outcome:?}");
         let is_given_up = |(_, event): &(Instant, Event)| matches!(event, Event::GivenUp(..));
@@ -250,18 +249,10 @@ fn a_sway_that_a_missing_imu_would_have_measured_is_refused_for_the_missing_imu(
         let fault = Some(Fault::Chip(Device::Base, ChipFault::Identity));
         let frames = FramesScenario { base: scenario, passes: 2, ..FramesScenario::default() };
         // It never answers, on a stage and in two frames, or fails before it has seen enough.
-        let never = instrument::align(&scenario, fault, NoRecorder, &()).expect("possible");
-        let in_frames =
-            instrument::align_frames(&frames, fault, NoRecorder, &()).expect("possible").run;
+        let never = Trial::of(&scenario).fault(fault).run().expect("possible");
+        let in_frames = Trial::of(&frames).fault(fault).run().expect("possible").run;
         let mut base = Failing { until: Instant::from_secs(5), feels: false, count: 0 };
-        let early = instrument::align_on(
-            SwayCompensation::new(&mut base),
-            &scenario,
-            None,
-            NoRecorder,
-            &(),
-        )
-        .expect("possible");
+        let early = on_base(&mut base, &scenario).expect("possible");
         for run in [&never, &in_frames, &early] {
             let reason = found(&scenario, run).expect_err("nothing takes the sway off");
             assert_eq!(reason, Refusal::SwayUnmeasured, "seed {seed}");
@@ -276,9 +267,7 @@ fn rates_that_are_subtracted_are_small_beside_what_a_still_base_leaves_in_them()
     // subtracted but that.
     let scenario = Scenario { sample_rate_hz: 100.0, sway_deg: 0.0, ..scenario(2) };
     let mut base = Failing { until: Instant::MAX, feels: true, count: 0 };
-    let felt =
-        instrument::align_on(SwayCompensation::new(&mut base), &scenario, None, NoRecorder, &())
-            .expect("possible");
+    let felt = on_base(&mut base, &scenario).expect("possible");
     let bound = 2.0 * 0.1 * DEGREE / 10.0 * 1.1;
     let azimuth = scenario.azimuth_deg.to_radians();
     let rate = 15.041 * scenario.latitude_deg.to_radians().cos() * DEGREE_PER_HOUR;

@@ -1,0 +1,94 @@
+//! A run of any carrier on simulated chips: what goes wrong in it, and what surrounds the board.
+
+use firmware::ports::{NoRecorder, Observer, Recorder, Store};
+use firmware::simulated::fault::Fault;
+
+use super::RunError;
+
+/// A scenario by which the simulated board of a carrier is run.
+pub trait Carrier: Sized {
+    /// What its method takes.
+    type Sample;
+    /// What goes wrong, and when.
+    type Plan;
+    /// A finished run.
+    type Run;
+
+    /// The plan in which one fault happens in the middle of the alignment, or none.
+    fn plan(&self, fault: Option<Fault>) -> Self::Plan;
+
+    /// Runs the board to its end.
+    ///
+    /// # Errors
+    /// As [`Trial::run`].
+    fn run<R: Recorder<Self::Sample>, T: Store>(
+        &self,
+        plan: &Self::Plan,
+        around: Around<'_, R, T>,
+    ) -> Result<Self::Run, RunError>;
+}
+
+/// What surrounds a board.
+pub struct Around<'t, R, T> {
+    /// Is told what the board reports.
+    pub watch: &'t dyn Observer,
+    /// Takes the samples of the method.
+    pub recorder: R,
+    /// Outlasts a loss of supply.
+    pub store: T,
+}
+
+/// A run that is to be made: healthy, with nobody watching, unless something else is said.
+#[must_use]
+pub struct Trial<'t, C: Carrier, R = NoRecorder, T = ()> {
+    carrier: &'t C,
+    plan: C::Plan,
+    around: Around<'t, R, T>,
+}
+
+impl<'t, C: Carrier> Trial<'t, C> {
+    /// The run of a scenario.
+    pub fn of(carrier: &'t C) -> Self {
+        let around = Around { watch: &(), recorder: NoRecorder, store: () };
+        Self { carrier, plan: carrier.plan(None), around }
+    }
+}
+
+impl<'t, C: Carrier, R, T> Trial<'t, C, R, T> {
+    /// With a fault in the middle of the alignment, or none.
+    pub fn fault(self, fault: Option<Fault>) -> Self {
+        Self { plan: self.carrier.plan(fault), ..self }
+    }
+
+    /// With all that goes wrong.
+    pub fn plan(self, plan: C::Plan) -> Self {
+        Self { plan, ..self }
+    }
+
+    /// With somebody who is told what the board reports.
+    pub fn watch(self, watch: &'t dyn Observer) -> Self {
+        Self { around: Around { watch, ..self.around }, ..self }
+    }
+
+    /// With a recorder of the samples.
+    pub fn record<S: Recorder<C::Sample>>(self, recorder: S) -> Trial<'t, C, S, T> {
+        let Self { carrier, plan, around: Around { watch, recorder: _, store } } = self;
+        Trial { carrier, plan, around: Around { watch, recorder, store } }
+    }
+
+    /// With a store that outlasts a loss of supply.
+    pub fn store<U: Store>(self, store: U) -> Trial<'t, C, R, U> {
+        let Self { carrier, plan, around: Around { watch, recorder, store: _ } } = self;
+        Trial { carrier, plan, around: Around { watch, recorder, store } }
+    }
+}
+
+impl<C: Carrier, R: Recorder<C::Sample>, T: Store> Trial<'_, C, R, T> {
+    /// Runs it in virtual time on this thread.
+    ///
+    /// # Errors
+    /// What keeps the alignment from beginning, and a deadlock. A refusal is a result.
+    pub fn run(self) -> Result<C::Run, RunError> {
+        self.carrier.run(&self.plan, self.around)
+    }
+}
