@@ -8,8 +8,8 @@ use orientation::navigation;
 use orientation::words;
 use orientation::words::Rounded;
 
+use crate::remembered::Remembered;
 use crate::retry_budget::Symptom;
-use crate::storage::Remembered;
 
 /// An event. Angles are in degrees and times in seconds, unless the variant states another unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,12 +16,12 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::FramesConfiguration;
 use crate::event::Event;
-use crate::link::Status;
 use crate::mechanism::Mechanism;
 use crate::motor::Axis;
 use crate::ports::{Actuator, Frames};
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
+use crate::status::Status;
 
 /// Names of the outer frame's drive and encoder in the log.
 const OUTER: Axis = Axis { drive: Device::OuterFrame, encoder: Device::OuterEncoder };

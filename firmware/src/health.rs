@@ -1,15 +1,6 @@
-//! Counters of all that went wrong, so that no loss goes unreported, and the supervision of the
-//! sample stream.
+//! Counters of all that went wrong, so that no loss goes unreported.
 
-use embassy_time::{Duration, Timer};
-use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-
-use crate::shared::Shared;
-
-/// Time without samples after which the session is ended: longer than all restarts of a sensor
-/// together take.
-const SILENCE: Duration = Duration::from_secs(30);
 
 /// Counters since the start; each saturates at the limit of its type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,16 +63,4 @@ fn count(counters: &mut [u16; 5], device: Device) {
         Device::Base => 4,
     }];
     *counter = counter.saturating_add(1);
-}
-
-/// Ends the session with [`Refusal::TimeExhausted`] when no samples arrive for 30 s, whatever the
-/// reason.
-pub async fn watch(shared: &Shared<'_>) {
-    loop {
-        let before = shared.health.get().samples;
-        Timer::after(SILENCE).await;
-        if shared.health.get().samples == before {
-            shared.fail(Refusal::TimeExhausted);
-        }
-    }
 }

@@ -19,14 +19,12 @@ use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::attitude::Keeper;
 use orientation::attitude::restart::Remembered;
-use orientation::navigation::progress::VerticalGyro;
 use orientation::navigation::{Navigator, Output, Policy};
-use orientation::signal::InertialSample;
 use orientation::units;
 
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
-use crate::shared::Shared;
+use crate::shared::{Motion, Shared};
 use crate::storage::HEADING;
 
 /// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
@@ -34,19 +32,8 @@ use crate::storage::HEADING;
 const REST: Duration = Duration::from_millis(4);
 /// Time without an inertial sample after which the navigator goes by the clock, µs.
 const SILENCE: u64 = 100_000;
-/// Time after which a device that was given up is tried again while an azimuth is kept.
-pub(crate) const RETRY: Duration = Duration::from_secs(10);
 /// The item that invalidates the stored heading: its checksum is wrong.
 const NOTHING: [u8; Remembered::BYTES] = [0; Remembered::BYTES];
-
-/// A message from acquisition to the navigator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// An increment of rotation and velocity of the body.
-    Moved(InertialSample),
-    /// From the next increment on, another gyro measures about the down axis.
-    Exchanged(VerticalGyro),
-}
 
 /// What an instrument that keeps its attitude is given.
 pub struct Keeping<'k, T> {

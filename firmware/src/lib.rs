@@ -46,6 +46,9 @@ pub mod date;
 pub mod event;
 pub mod health;
 pub mod link;
+pub mod remembered;
+pub mod status;
+pub mod watch;
 
 pub mod configuration;
 pub mod run;

@@ -1,7 +1,8 @@
-//! The retry budget of a device: the failures after which it is started again, and after which it
-//! is given up.
+//! The retry budget of a device: the failures after which it is started again, after which it is
+//! given up, and the pause after which it is tried again all the same.
 
 use drivers::fault::Fault;
+use embassy_time::Duration;
 use orientation::device::Trouble;
 use orientation::words;
 
@@ -10,6 +11,8 @@ const LOST_IN_A_ROW: u8 = 3;
 /// Number of restarts that a device may need in one session. A device that needs more is defective,
 /// and its gaps would cost more dwells than a session may repeat.
 const RESTARTS: u8 = 5;
+/// Time after which a device that was given up is tried again while an azimuth is kept.
+pub(crate) const RETRY: Duration = Duration::from_secs(10);
 
 /// A symptom of a failing device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,12 +15,13 @@ use orientation::alignment::Method;
 use orientation::signal::Timed;
 
 use crate::align::align;
-use crate::health::{self, Health};
+use crate::health::Health;
 use crate::keep::{self, Keeping};
 use crate::link;
 use crate::mechanism::Mechanism;
 use crate::ports::{Aiding, Recorder, Store};
-use crate::shared::Channels;
+use crate::shared::{Channels, discard};
+use crate::watch::watch;
 
 /// Runs a method from power-on to its verdict, and keeps the azimuth until the policy's duration is
 /// over. Whatever the outcome, the mechanism is parked. Returns the counters of faults.
@@ -48,13 +49,6 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, S: Timed
     shared.health.get()
 }
 
-/// Discards samples while another part finishes.
-pub(crate) async fn discard<S>(channels: &Channels<'_, S>) {
-    loop {
-        channels.samples.receive().await;
-    }
-}
-
 /// Joins the parts with the control of the mechanism and with the navigator, whose end is the end
 /// of all. The kinds of mechanism and store are not part of the type, so that its code exists once.
 async fn join<L: Write, R: Recorder<S>, S: Timed>(
@@ -69,7 +63,7 @@ async fn join<L: Write, R: Recorder<S>, S: Timed>(
     // Each part is pinned here, so that it exists in memory once.
     let aligning = pin!(align(method, aiding, recorder, channels));
     let reporting = pin!(link::run(link, shared));
-    let watch = pin!(health::watch(shared));
+    let watching = pin!(watch(shared));
     // The navigator is polled last, so that it takes only what the aligner has taken.
-    select5(aligning, turning, reporting, watch, kept).await;
+    select5(aligning, turning, reporting, watching, kept).await;
 }

@@ -11,17 +11,17 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Azimuth, Progress, Request};
 use orientation::device::{Device, Trouble};
 use orientation::navigation::Order;
+use orientation::navigation::progress::VerticalGyro;
 use orientation::roll;
-use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
+use orientation::signal::{InertialSample, Sample};
 use orientation::units::{self, Angle};
 
 use crate::event::Event;
 use crate::health::Health;
-use crate::keep::{Motion, RETRY};
-use crate::link::Status;
 use crate::ports::Observer;
-use crate::retry_budget::Symptom;
+use crate::retry_budget::{RETRY, Symptom};
+use crate::status::Status;
 
 /// Capacity of the queues: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
@@ -43,6 +43,22 @@ impl<'a, S> Channels<'a, S> {
     pub fn new(observer: &'a dyn Observer) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
     }
+}
+
+/// Discards samples while another part finishes.
+pub(crate) async fn discard<S>(channels: &Channels<'_, S>) {
+    loop {
+        channels.samples.receive().await;
+    }
+}
+
+/// A message from acquisition to the navigator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// An increment of rotation and velocity of the body.
+    Moved(InertialSample),
+    /// From the next increment on, another gyro measures about the down axis.
+    Exchanged(VerticalGyro),
 }
 
 /// The latest corrected angle of an axis' encoder and the time of its reading.

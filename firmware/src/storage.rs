@@ -12,17 +12,12 @@ use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::attitude::restart::Remembered as Heading;
-use orientation::units::DEGREES_PER_RADIAN as DEGREES;
-use orientation::words;
-use orientation::words::Rounded;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
-use crate::date::Day;
 use crate::event::Event;
 use crate::ports::Store;
-use crate::run::discard;
-use crate::shared::{Channels, Shared};
+use crate::shared::{Channels, Shared, discard};
 
 /// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
 const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
@@ -172,34 +167,4 @@ pub async fn save_calibration<S: Store>(store: &mut S, session: &Session, channe
         }
     };
     select(saved, discard(channels)).await;
-}
-
-/// A stored axis misalignment as it is reported.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Remembered {
-    /// Elevation of the gyro's sensitive axis above the plane of rotation, °.
-    pub angle: f64,
-    /// Rate of the platform during the estimation, °/s.
-    pub rate: f64,
-    /// Date of the estimation.
-    pub day: Day,
-    /// Temperature during the estimation, °C.
-    pub temperature: f32,
-}
-
-impl From<&AxisMisalignment> for Remembered {
-    fn from(misalignment: &AxisMisalignment) -> Self {
-        Self {
-            angle: misalignment.angle() * DEGREES,
-            rate: misalignment.frequency * DEGREES,
-            day: Day::of(misalignment.date),
-            temperature: misalignment.temperature,
-        }
-    }
-}
-
-words! { Remembered:
-    Self { angle, rate, day, temperature } =>
-        "gyro's axis {}° above the platform at {} °/s, found on {} at {} °C",
-        Rounded::<4>(angle), Rounded::<2>(rate), day, Rounded::<1>(f64::from(temperature));
 }

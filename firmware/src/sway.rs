@@ -20,10 +20,9 @@ use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN
 use crate::acquire::{RepeatCounter, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::keep::RETRY;
 use crate::pointing::Decimator;
 use crate::ports::{BaseReading, BaseSensors, NoBase};
-use crate::retry_budget::Symptom;
+use crate::retry_budget::{RETRY, Symptom};
 use crate::shared::Shared;
 
 /// Time without a new reading after which the base unit counts as silent, µs.

@@ -85,6 +85,7 @@ pub mod mt6835;
 pub mod noise;
 pub mod plant;
 mod registers;
+pub mod sensor_fault;
 pub mod spi;
 pub mod spin;
 pub mod stage;

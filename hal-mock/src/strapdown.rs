@@ -6,7 +6,7 @@
 use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
 use crate::gyro::{Gyro, GyroConfiguration};
 use crate::noise::Generator;
-use crate::vehicle::SensorFault;
+use crate::sensor_fault::SensorFault;
 
 /// What is fixed to a body, and what goes wrong with it.
 #[derive(Clone, Copy, Debug)]

@@ -9,9 +9,8 @@ use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 use super::increments;
 use orientation::navigation::progress::VerticalGyro;
 
-use crate::keep::Motion;
 use crate::ports::BaseReading;
-use crate::shared::Shared;
+use crate::shared::{Motion, Shared};
 
 /// Quarter of a turn, in steps of an [`Angle`].
 const QUARTER_TURN: u32 = 1 << 30;

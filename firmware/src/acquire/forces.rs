@@ -8,10 +8,9 @@ use orientation::units::SpecificForce;
 
 use super::Plausibility;
 use crate::guarded::Guarded;
-use crate::keep::RETRY;
 use crate::pointing::Decimator;
 use crate::ports::{Accelerometer, ForceReading};
-use crate::retry_budget::Symptom;
+use crate::retry_budget::{RETRY, Symptom};
 use crate::shared::Shared;
 
 /// Time for which a failing accelerometer is not read while the vehicle moves.

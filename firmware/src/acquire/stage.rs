@@ -16,9 +16,9 @@ use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
 use crate::configuration::{Configuration, FramesConfiguration, period};
-use crate::keep::RETRY;
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
+use crate::retry_budget::RETRY;
 use crate::shared::{Channels, LatestAngle};
 use crate::sway::CompensatesSway;
 

@@ -15,9 +15,8 @@ use super::in_step::{Group, middle};
 use super::outlet::Outlet;
 use super::{Source, increments};
 use crate::configuration::{VehicleConfiguration, period};
-use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
-use crate::shared::Channels;
+use crate::shared::{Channels, Motion};
 
 /// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A> {

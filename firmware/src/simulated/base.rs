@@ -12,15 +12,15 @@ use hal_mock::i2c::{I2cChip, I2cPort};
 use hal_mock::lsm6dsl::Lsm6dsl as SimulatedImu;
 use hal_mock::plant::base::{Base, CoarseConfiguration};
 use hal_mock::plant::journey::JourneyConfiguration;
-use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::violation::Violation;
 use orientation::attitude as keep;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::DEGREE;
 
+use super::coarse::CoarseClass;
 use super::fault::PortWrapper;
-use super::scenario::Scenario;
+use super::scenario::{Scenario, sway};
 use crate::chips::BaseImu;
 
 /// Rate at which the base IMU is read, Hz.
@@ -43,46 +43,8 @@ const LEVER: [f64; 3] = [0.1, 0.0, -0.4];
 /// less with that of the dwell before than the whitening believes (4 % of σ on a circle of 24).
 const STATED: f64 = 1.2;
 
-/// How many seeds have phases of their own: more than this, and a phase of so many turns loses its digits.
-const PHASES: u64 = 1 << 32;
-
-/// A class of coarse sensors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoarseClass {
-    /// Noise density of the gyros, m°/s/√Hz.
-    pub rate_mdps_sqrt_hz: f64,
-    /// Noise density of the accelerometers, µg/√Hz.
-    pub force_ug_sqrt_hz: f64,
-}
-
-impl CoarseClass {
-    /// LSM6DSL (data sheet, Mechanical characteristics): 4 m°/s/√Hz, 90 µg/√Hz.
-    pub const LSM6DSL: Self = Self { rate_mdps_sqrt_hz: 4.0, force_ug_sqrt_hz: 90.0 };
-    /// What the best micromechanical sensors have, in the same place: 0.3 m°/s/√Hz, 25 µg/√Hz.
-    pub const FINE: Self = Self { rate_mdps_sqrt_hz: 0.3, force_ug_sqrt_hz: 25.0 };
-}
-
 /// A base IMU and the base under it.
 pub type Rig<'a> = Single<SimulatedImu, Base<'a>>;
-
-/// The sway of a scenario: roll and pitch of its amplitude, azimuth of half of it, at frequencies
-/// that fall into no step with each other and phases that depend on the seed.
-#[must_use]
-pub fn sway(scenario: &Scenario) -> SwayConfiguration {
-    let Scenario { sway_deg, sway_hz, .. } = *scenario;
-    let seed = scenario.seed % PHASES;
-    let phase = |step: u64| (seed * 7 + step * 3) as f64 * 2.399_963;
-    let still = SwayComponent::default();
-    let roll = SwayComponent { roll_deg: sway_deg, frequency_hz: sway_hz, ..still };
-    let pitch = SwayComponent { pitch_deg: sway_deg, frequency_hz: 0.83 * sway_hz, ..still };
-    let azimuth =
-        SwayComponent { azimuth_deg: 0.5 * sway_deg, frequency_hz: 0.61 * sway_hz, ..still };
-    let mut components = [roll, pitch, azimuth];
-    for (step, component) in (0..).zip(&mut components) {
-        component.phase_rad = phase(step);
-    }
-    SwayConfiguration { components }
-}
 
 /// The base IMU of a scenario, which gets its supply when the clock begins.
 #[must_use]

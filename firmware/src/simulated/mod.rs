@@ -3,8 +3,10 @@
 //! Host and emulator run exactly this, so that their results can be compared bit for bit.
 
 pub mod base;
+pub mod coarse;
 pub mod fault;
 pub mod flash;
+pub mod hold;
 pub mod keep;
 pub mod mount;
 pub mod scenario;

@@ -7,7 +7,7 @@ use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::plant::PlantConfiguration;
-use hal_mock::plant::sway::SwayConfiguration;
+use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::alignment::period::CONVERTER_TOLERANCE;
@@ -23,8 +23,8 @@ use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
-use super::base::{self, CoarseClass};
-use super::keep::Hold;
+use super::coarse::CoarseClass;
+use super::hold::Hold;
 use crate::calibration::Harmonics;
 use crate::configuration::Configuration;
 
@@ -89,6 +89,9 @@ pub const SCALE: Scale = match Scale::new(VOLTS, INTERNAL_REFERENCE_VOLTS, Gain:
     Some(scale) => scale,
     None => unreachable!(),
 };
+
+/// How many seeds have phases of their own: more than this, and a phase of so many turns loses its digits.
+const PHASES: u64 = 1 << 32;
 
 /// A class of precise gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -392,7 +395,7 @@ impl Scenario {
     }
 
     fn sway(&self) -> SwayConfiguration {
-        if self.sway_deg > 0.0 { base::sway(self) } else { SwayConfiguration::default() }
+        if self.sway_deg > 0.0 { sway(self) } else { SwayConfiguration::default() }
     }
 
     /// The converter's configuration: the data rate nearest to the sample rate.
@@ -403,6 +406,25 @@ impl Scenario {
         let rate = RATES.into_iter().fold(DataRate::Sps100, nearer);
         converter::Configuration { rate, ..converter::Configuration::default() }
     }
+}
+
+/// The sway of a scenario: roll and pitch of its amplitude, azimuth of half of it, at frequencies
+/// that fall into no step with each other and phases that depend on the seed.
+#[must_use]
+pub fn sway(scenario: &Scenario) -> SwayConfiguration {
+    let Scenario { sway_deg, sway_hz, .. } = *scenario;
+    let seed = scenario.seed % PHASES;
+    let phase = |step: u64| (seed * 7 + step * 3) as f64 * 2.399_963;
+    let still = SwayComponent::default();
+    let roll = SwayComponent { roll_deg: sway_deg, frequency_hz: sway_hz, ..still };
+    let pitch = SwayComponent { pitch_deg: sway_deg, frequency_hz: 0.83 * sway_hz, ..still };
+    let azimuth =
+        SwayComponent { azimuth_deg: 0.5 * sway_deg, frequency_hz: 0.61 * sway_hz, ..still };
+    let mut components = [roll, pitch, azimuth];
+    for (step, component) in (0..).zip(&mut components) {
+        component.phase_rad = phase(step);
+    }
+    SwayConfiguration { components }
 }
 
 /// The encoder's harmonics as a calibration found them: sine and cosine parts of what is true.

@@ -13,7 +13,7 @@ use crate::earth::{Attitude, Site, cross};
 use crate::environment::{ForceInput, MotionInput};
 use crate::instruments::InstrumentsConfiguration;
 use crate::noise::{Generator, White, source};
-use crate::vehicle::SensorFault;
+use crate::sensor_fault::SensorFault;
 
 /// What sensors show at full scale, beyond any range: of the gyros, rad/s, and of the accelerometers, g.
 const FULL_SCALES: [f64; 2] = [100.0, f64::INFINITY];

@@ -5,9 +5,10 @@
 
 use crate::earth::InertialInput;
 use crate::instruments::InstrumentsConfiguration;
+use crate::sensor_fault::SensorFault;
 use crate::vehicle::averaged::Averaged;
 use crate::vehicle::motion::Motion;
-use crate::vehicle::{Event, Leg, SensorFault};
+use crate::vehicle::{Event, Leg};
 
 /// Where the base goes.
 #[derive(Clone, Copy, Debug, PartialEq)]

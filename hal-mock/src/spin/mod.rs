@@ -27,8 +27,8 @@ use self::trajectory::{Flight, Forces};
 use crate::accelerometer::AccelerometerConfiguration;
 use crate::gyro::GyroConfiguration;
 use crate::plant::STANDARD_GRAVITY_M_S2;
+use crate::sensor_fault::SensorFault;
 use crate::stage::first_sample;
-use crate::vehicle::SensorFault;
 
 /// A spinning body, its flight, its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,6 @@
 
 use embassy_time::Instant;
 
-use super::board::CHIPS;
 use super::body::{Body, Felt};
 use super::sensors::Sensors;
 use super::{SpinConfiguration, SpinTruth};
@@ -26,6 +25,10 @@ use crate::strapdown::gyro_seeds;
 pub const CHANNELS: usize = 5;
 /// How many of them belong to gyros.
 const GYROS: usize = 3;
+/// The converters, in the order in which they act at equal times: of the gyros about x, y (up at roll
+/// zero) and z (right there), of the accelerometers along y and z.
+pub const CHIPS: [Select; CHANNELS] =
+    [Select::Gyro, Select::GyroUp, Select::GyroRight, Select::ForceUp, Select::ForceRight];
 /// Periods after which a reading no longer reaches back to the one before it.
 const LONG_AGO: f64 = 1.5;
 

@@ -18,7 +18,7 @@ pub mod scenario;
 mod sensors;
 mod smooth;
 
-pub use self::event::{Event, SensorFailure, SensorFault};
+pub use self::event::Event;
 pub use self::leg::{Drive, Leg, Stop};
 use self::motion::{Integrals, Motion};
 pub use self::place::Position;
@@ -29,6 +29,7 @@ use crate::earth::Attitude;
 use crate::gyro::GyroConfiguration;
 use crate::instruments::BaseMotion;
 use crate::plant::sway::SwayConfiguration;
+use crate::sensor_fault::SensorFault;
 use crate::stage::first_sample;
 use crate::temperature::TemperatureConfiguration;
 

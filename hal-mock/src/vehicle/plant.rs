@@ -11,7 +11,6 @@
 use embassy_time::Instant;
 
 use super::averaged::Averaged;
-use super::board::CHIPS;
 use super::sensors::Sensors;
 use super::{VehicleConfiguration, VehicleTruth};
 use crate::chip::Select;
@@ -22,6 +21,13 @@ use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
 use crate::strapdown::gyro_seeds;
 use crate::temperature::{TemperatureConfiguration, Thermometer};
+
+/// The select lines of the gyros' converters: forward, right, down.
+pub const GYROS: [Select; 3] = [Select::Gyro, Select::GyroRight, Select::GyroDown];
+
+/// The chips of the board, in the order in which they act at equal times: the converters of [`GYROS`],
+/// then the accelerometer, its axes forward, right, down.
+pub const CHIPS: [Select; 4] = [GYROS[0], GYROS[1], GYROS[2], Select::Accelerometer];
 
 /// Whose reading of the accelerometer is marked, behind the three gyros.
 const ACCELEROMETER: usize = 3;

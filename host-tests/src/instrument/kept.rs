@@ -9,8 +9,9 @@ use firmware::simulated::keep::{Day, journey};
 use firmware::simulated::scenario::Scenario;
 use hal_mock::earth::Attitude;
 use hal_mock::plant::journey::JourneyConfiguration;
+use hal_mock::sensor_fault::SensorFault;
+use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
-use hal_mock::vehicle::{Event, SensorFault};
 use orientation::attitude::Report;
 
 use super::{Run, RunError};

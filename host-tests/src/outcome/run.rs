@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::storage::Remembered;
+use firmware::remembered::Remembered;
 use orientation::attitude::Realigned;
 use orientation::navigation::Progress;
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use firmware::simulated::fault::{Fault, Platform};
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::spin::SpinScenario;

@@ -44,6 +44,11 @@ pub fn stack(bytes: usize) {
     println!("stack bytes={=usize}", bytes);
 }
 
+/// Logs a row of bit patterns, at every log level.
+pub fn row(kind: &'static str, bits: &[u64]) {
+    println!("row {=str} {=[?]}", kind, bits);
+}
+
 /// Whether the image is already ending after a failure.
 static ENDING: AtomicBool = AtomicBool::new(false);
 

@@ -25,8 +25,8 @@ use orientation::alignment::{Progress, rotating, stepwise, stops};
 use orientation::attitude::Report;
 
 use crate::clock;
+use crate::log::row;
 use crate::meter::Meter;
-use crate::setup;
 
 /// A simulated port whose instructions are booked on the simulation's account: on the board, bus
 /// drivers and their interrupts take its place, so the cost of the simulated port says nothing
@@ -134,7 +134,7 @@ impl Observer for Log {
     }
 
     fn kept(&self, report: &Report) {
-        self.0.outside(|| report.trace(&mut setup::row));
+        self.0.outside(|| report.trace(&mut row));
     }
 }
 

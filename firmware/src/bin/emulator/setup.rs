@@ -40,6 +40,7 @@ use orientation::signal::{InertialSample, Sample, SpinSample, Timed};
 use static_cell::StaticCell;
 
 use crate::job::Job;
+use crate::log::row;
 use crate::meter::Meter;
 use crate::outside::{Log, Metering, NoLink};
 
@@ -214,11 +215,6 @@ fn log<S, T: Method<S> + Trace>(method: &T) {
         Some(Err(reason)) => println!("reason {}", reason),
         None => {}
     }
-}
-
-/// Logs a row of bit patterns, at every log level.
-pub fn row(kind: &'static str, bits: &[u64]) {
-    println!("row {=str} {=[?]}", kind, bits);
 }
 
 impl Running {

@@ -8,7 +8,7 @@ use hal_mock::chip::Select;
 use hal_mock::disturbance::Disturbance;
 use hal_mock::fault::{Blackout, BusFault, FaultPlan, FaultyI2c, FaultyReady, FaultySpi, When};
 use hal_mock::plant::StageFault;
-use hal_mock::vehicle::{SensorFailure, SensorFault};
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use heapless::Vec;
 use orientation::device::Device;
 use orientation::units::TURN;

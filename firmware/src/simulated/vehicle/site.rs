@@ -9,7 +9,7 @@ use orientation::alignment::Azimuth;
 
 use super::VehicleScenario;
 use crate::ports::Aiding;
-use crate::simulated::keep::HandoverAiding;
+use crate::simulated::hold::HandoverAiding;
 
 /// A stream of random numbers that no source of noise has.
 const STREAM: u64 = 1001;

@@ -2,7 +2,7 @@
 
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::simulated::base::CoarseClass;
+use firmware::simulated::coarse::CoarseClass;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;

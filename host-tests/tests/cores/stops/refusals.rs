@@ -1,6 +1,7 @@
 //! What is refused, by name, and what is not silently wrong.
 
-use hal_mock::vehicle::{Drive, Leg, SensorFailure, SensorFault, VehicleSample};
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
+use hal_mock::vehicle::{Drive, Leg, VehicleSample};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::earth::Latitude;

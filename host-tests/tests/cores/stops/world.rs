@@ -1,8 +1,9 @@
 //! Drives simulated vehicles past a session.
 
 use hal_mock::noise::Generator;
+use hal_mock::sensor_fault::SensorFault;
 use hal_mock::vehicle::scenario::Scenario;
-use hal_mock::vehicle::{SensorFault, Vehicle, VehicleSample};
+use hal_mock::vehicle::{Vehicle, VehicleSample};
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::{Conclusion, Found};

@@ -4,12 +4,12 @@
 use super::{at, departure, frames, keep, reported, sigmas};
 use embassy_time::{Duration, Instant};
 use firmware::simulated::fault::Injection;
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use firmware::simulated::mount::FramesScenario;
 use hal_mock::chip::Select;
 use hal_mock::fault::{BusFault, FaultPlan, When};
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use hal_mock::vehicle::Event;
-use hal_mock::vehicle::{SensorFailure, SensorFault};
 use host::instrument::FramesRun;
 use host::instrument::kept::KeptPlan;
 

@@ -2,7 +2,7 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle, when};
 use firmware::event::Event;
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use firmware::simulated::scenario::Scenario;
 use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;

@@ -8,7 +8,7 @@ mod restart;
 
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::VehicleScenario;

@@ -2,7 +2,7 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use host::instrument::kept::KeptPlan;
 use orientation::attitude::Realigned;
 use orientation::navigation::Progress;

@@ -5,7 +5,7 @@ use firmware::event::Event;
 use firmware::ports::Store;
 use firmware::simulated::fault::Injection;
 use firmware::simulated::flash::Flash;
-use firmware::simulated::keep::Hold;
+use firmware::simulated::hold::Hold;
 use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};

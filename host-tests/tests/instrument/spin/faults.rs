@@ -2,9 +2,9 @@
 //! comes back by itself within a bounded time.
 
 use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
-use hal_mock::vehicle::{SensorFailure, SensorFault};
 use host::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::samples::Converter;

@@ -4,7 +4,7 @@ use drivers::fault::Fault as BusFault;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{BaseReading, BaseSensors, NoRecorder, Startable};
-use firmware::simulated::base::CoarseClass;
+use firmware::simulated::coarse::CoarseClass;
 use firmware::simulated::fault::{ChipFault, Fault, Injection};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};

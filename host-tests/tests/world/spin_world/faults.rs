@@ -1,8 +1,8 @@
 //! What goes wrong with the sensors of a spinning body shows where it is, for as long as stated.
 
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinSample, SpinWorld};
-use hal_mock::vehicle::{SensorFailure, SensorFault};
 
 use super::{G, at, flown};
 

@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use hal_mock::vehicle::{
-    Event, Leg, SensorFailure, SensorFault, Stop, Vehicle, VehicleConfiguration,
-};
+use hal_mock::sensor_fault::{SensorFailure, SensorFault};
+use hal_mock::vehicle::{Event, Leg, Stop, Vehicle, VehicleConfiguration};
 
 use super::{EARTH, assert_near, assert_vector, run, sway, wave};
 
