@@ -2,18 +2,20 @@
 //!
 //! ```text
 //!  gyro ──────┐
-//!  encoder ───┼─▶ acquire ─sample─▶ runner (filter, dwell, session) ─▶ azimuth ± σ ─▶ link
-//!  force ─────┘      │ angle           │ command                    └▶ observer (log)
-//!                    └────────────▶ stage ─▶ motor
+//!  encoder ───┼─▶ acquire ─sample─▶ aligner (method) ─azimuth─▶ navigator ─▶ link, flash
+//!  force ─────┘   │    │ angle        │ request          ▲ │ order  ▲
+//!  base ──────────┴────┼──────────────┼──────── motion ──┴─┼────────┘ aiding
+//!                      └────────────▶ mechanism ◀──────────┘      all ─▶ observer (log)
 //! ```
 //!
 //! A two-frame mount has two encoders and two motors; [`pointing`] and [`gimbal`] take the place of
 //! encoder and stage then. On a platform in continuous rotation, the [`turntable`] takes the place
-//! of the stage, and the commands are rates. In a vehicle the gyros are fixed to the body: three
-//! gyros and the accelerometer give the samples, and the session asks the driver to stop and to
+//! of the stage, and the requests are rates. In a vehicle the gyros are fixed to the body: three
+//! gyros and the accelerometer give the samples, and the method asks the driver to stop and to
 //! drive on. On a [`spin`]ning body there is no alignment; its roll angle is tracked.
 //!
-//! [`acquire::acquire`] samples, and [`run::navigate`] joins the other parts in fixed order. They
+//! [`acquire::acquire`] samples, and [`run::navigate`] joins the other parts in fixed order: the
+//! aligner ([`align`]), the navigator ([`mod@keep`]), the [`mechanism`], the [`mod@link`]. They
 //! know no pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe
 //! what they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
 //! Whatever happens is reported once, as an [`event::Event`].
@@ -31,6 +33,7 @@ pub mod budget;
 pub mod calibration;
 pub mod guarded;
 pub mod pointing;
+mod repeat_counter;
 pub mod retry_budget;
 pub mod timeline;
 

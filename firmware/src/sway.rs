@@ -17,11 +17,11 @@ use orientation::device::Device;
 use orientation::signal::sway::{Decision, Sway, SwayNoise};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
 
-use crate::acquire::{RepeatCounter, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::pointing::Decimator;
 use crate::ports::{BaseReading, BaseSensors, NoBase};
+use crate::repeat_counter::{RepeatCounter, STUCK};
 use crate::retry_budget::{RETRY, Symptom};
 use crate::shared::Shared;
 

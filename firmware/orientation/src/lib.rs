@@ -1,5 +1,63 @@
 //! True north, heading, pitch and roll from inertial sensors, as pure cores.
 //!
+//! # An alignment
+//! A method takes samples and says what it wants done: here a stage is pointed at eight headings in
+//! turn, and the gyro on it, at 30° from north, feels the Earth's rotation, an accelerometer that it
+//! stands level.
+//!
+//! ```
+//! use orientation::alignment::stepwise::session::procedure::Procedure;
+//! use orientation::alignment::stepwise::session::schedule::Schedule;
+//! use orientation::alignment::stepwise::{Session, setting::Setting};
+//! use orientation::alignment::{Input, Method, Request};
+//! use orientation::earth::Latitude;
+//! use orientation::signal::Sample;
+//! use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
+//!
+//! let latitude = Latitude::from_degrees(48.0).expect("a latitude");
+//! let (azimuth, period) = (30_f64.to_radians(), 0.01);
+//! let procedure = Procedure::new(Schedule::closed_circle(8, 2.0), period);
+//! let mut session = Session::new(Setting::at(latitude), procedure)?;
+//!
+//! let (mut microseconds, mut stage) = (0_u32, 0.0);
+//! let mut request = session.begin(&mut |progress| println!("{progress}"));
+//! while request != Request::Done {
+//!     if let Request::Point(angle) = request {
+//!         stage = angle;
+//!     }
+//!     microseconds += 10_000;
+//!     // A gyro that shows no noise is refused as stuck.
+//!     let noise = 1e-7 * f64::from(microseconds).sin();
+//!     let rate = latitude.horizontal_rate() * (azimuth + stage).cos() + noise;
+//!     let sample = Sample {
+//!         time: Instant(microseconds.into()),
+//!         stage: Angle::from_rad(stage),
+//!         rate: AngularRate::from_rad_per_s(rate),
+//!         force: Some([0.0, 0.0, -latitude.gravity()].map(SpecificForce::from_m_per_s2)),
+//!         ..Sample::default()
+//!     };
+//!     request = session.feed(Input::Sample(&sample));
+//! }
+//! let solution = session.verdict().expect("it is over")?;
+//! assert!((solution.azimuth.angle - azimuth).abs() < 5.0 * solution.azimuth.sigma);
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
+//!
+//! [`navigation::Aligner`] runs any method so, and again where it is ordered; beside it
+//! [`navigation::Navigator`] keeps what was found.
+//!
+//! | you have | use | and read |
+//! |---|---|---|
+//! | one precise gyro on a stage or two frames that stand at positions | [`alignment::stepwise::Session`] | [`alignment::stepwise`] |
+//! | one precise gyro on a platform that rotates all the time | [`alignment::rotating::Session`] | [`alignment::rotating`] |
+//! | three gyros and accelerometers in a vehicle that stops | [`alignment::stops::Session`] | [`alignment::stops`] |
+//! | three gyros and two accelerometers on a spinning body | [`roll::Flight`] | [`roll`] |
+//! | an azimuth, and gyros and accelerometers of any class, to keep it with pitch and roll | [`attitude::Keeper`] | [`attitude`], [`navigation`] |
+//! | a record of a gyro at rest, and the question how good it is | [`noise::allan`] | [`noise`] |
+//! | a gyro's noise, and the question how long to stand where | [`planner`] | [`planner`] |
+//!
+//! # The ways of the data
+//!
 //! ```text
 //!  gyro ─counts─▶ filter ─rate─▶ dwell average ─dwell─▶ matcher ─fit─▶ azimuth ± σ
 //!                                    ▲ one per stage position   ▲

@@ -32,12 +32,10 @@ use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
 use orientation::units::{AngleIncrement, AngularRate};
 
+use crate::repeat_counter::{RepeatCounter, STUCK};
 use crate::retry_budget::Symptom;
 use outlet::Outlet;
 
-/// Number of identical successive readings that is not chance: the last bits of all sensors are
-/// noise.
-pub(crate) const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
 /// Number of periods without a conversion after which a gyro counts as silent.
@@ -113,28 +111,6 @@ fn increments(
         AngleIncrement::of_rate(about_right, microseconds, right),
         AngleIncrement::of_rate(about_down, microseconds, down),
     ]
-}
-
-/// Counter of identical successive values.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RepeatCounter<T> {
-    /// Latest value.
-    last: Option<T>,
-    /// Number of repetitions.
-    count: u32,
-}
-
-impl<T: Copy + PartialEq> RepeatCounter<T> {
-    /// Counter before the first value.
-    pub(crate) const fn new() -> Self {
-        Self { last: None, count: 0 }
-    }
-
-    /// Takes a value; returns how often it was repeated before in succession.
-    pub(crate) fn push(&mut self, value: T) -> u32 {
-        self.count = if self.last.replace(value) == Some(value) { self.count + 1 } else { 0 };
-        self.count
-    }
 }
 
 /// Checks of the successive readings of a sensor.

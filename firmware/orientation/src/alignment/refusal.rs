@@ -326,6 +326,8 @@ pub enum Refusal {
     },
 }
 
+impl core::error::Error for Refusal {}
+
 crate::words! { Refusal:
     Self::LatitudeTooHigh { latitude } =>
         "latitude {}° is beyond ±85°: too little of the Earth rate is horizontal",

@@ -30,6 +30,8 @@ pub enum SetupError {
     TableCorrupt,
 }
 
+impl core::error::Error for SetupError {}
+
 crate::words! { SetupError:
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>

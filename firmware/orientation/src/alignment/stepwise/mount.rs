@@ -132,6 +132,8 @@ crate::words! { Station:
     Self::Storage => "vertical";
 }
 
+impl core::error::Error for MountError {}
+
 crate::words! { MountError:
     Self::NoStation(heading) =>
         "the mount has no station at heading {}°", Rounded::<2>(heading * DEGREES_PER_RADIAN);
