@@ -41,7 +41,11 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             }
             Request::Continue | Request::MayDrive => {
                 if aligner.state() == State::Homing && shared.homed.signaled() {
-                    aligner.home(&shared.sway.get(), listener);
+                    let first = aligner.home(&shared.sway.get(), listener);
+                    if first != Request::Continue {
+                        request = first;
+                        continue;
+                    }
                 } else if channels.samples.is_empty() {
                     shared.catch_up();
                     if aligner.state() != State::Homing {

@@ -45,18 +45,22 @@ pub struct Keeping<'k, T> {
     pub store: T,
 }
 
+impl<T> Keeping<'_, T> {
+    /// Whether an attitude is kept at all.
+    pub(crate) fn is_held(&self) -> bool {
+        self.policy.hold_seconds > 0.0
+    }
+}
+
 /// Keeps the attitude until its duration is over; never returns if nothing is kept.
 pub async fn keep<T: Store>(
     keeping: Option<Keeping<'_, T>>,
     aiding: &dyn Aiding,
     shared: &Shared<'_>,
 ) {
-    let Some(Keeping { keeper, policy, mut store }) =
-        keeping.filter(|keeping| keeping.policy.hold_seconds > 0.0)
-    else {
+    let Some(Keeping { keeper, policy, mut store }) = keeping.filter(Keeping::is_held) else {
         return pending().await;
     };
-    shared.is_kept.set(true);
     let mut has_failed = false;
     let remembered = load(&mut store).await.unwrap_or_else(|fault| {
         fail(fault, &mut has_failed, shared);

@@ -15,7 +15,6 @@ use heapless::String;
 
 use crate::event::Event;
 use crate::shared::Shared;
-use crate::status::Status;
 
 /// Time between two lines.
 const PERIOD: Duration = Duration::from_secs(1);
@@ -43,7 +42,8 @@ pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
 pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
-    let status = if shared.homed.signaled() { shared.status.get() } else { Status::Homing };
+    let status = shared.status.get();
+    let status = if shared.homed.signaled() { status } else { status.before_homing() };
     // The capacity holds the longest line; a longer one would be cut.
     let _ = write!(line, "{status}, faults {faults}\r\n");
     if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {

@@ -212,8 +212,8 @@ impl Store for () {
 /// Aiding from outside: quantities that the instrument cannot measure, from an operator, another
 /// vehicle's instrument, an odometer or a satellite receiver; [`None`] where they are unknown.
 pub trait Aiding {
-    /// A new azimuth of body x at this moment with its 1σ; [`None`] if there is none since the last
-    /// call. Asked once a second.
+    /// A new azimuth of body x with its 1σ, at the time of the latest sample that was taken, a few
+    /// milliseconds ago; [`None`] if there is none since the last call. Asked once a second.
     fn azimuth(&self) -> Option<Azimuth> {
         None
     }

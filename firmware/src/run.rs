@@ -4,7 +4,7 @@
 //! Acquisition is a future of its own beside [`navigate`]. It is woken several times per sample and
 //! must not wait for the computation of a conclusion, so a board may give it a task or an interrupt
 //! of its own. Acquisition never returns; [`navigate`] ends within bounded time, whatever the
-//! devices do.
+//! devices do, unless it is to hold the azimuth, or to track a roll, without end.
 
 use core::future::pending;
 use core::pin::{Pin, pin};
@@ -36,6 +36,8 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, S: Timed
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
+    // Known before any part runs, since a method may refuse at once.
+    shared.is_kept.set(keeping.as_ref().is_some_and(Keeping::is_held));
     {
         let turning = pin!(async {
             let Err(reason) = mechanism.serve().await;

@@ -143,11 +143,13 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// Gives the aligner an order, unless it has one that it has not obeyed yet.
+    /// Gives the aligner an order. One that it has not obeyed yet goes first, unless it is replaced
+    /// by a failure.
     pub fn order(&self, order: Order) {
-        if !self.orders.signaled() {
-            self.orders.signal(order);
-        }
+        let is_failure = |order: &Order| matches!(order, Order::Fail(_));
+        let before = self.orders.try_take();
+        let before = before.filter(|before| is_failure(before) || !is_failure(&order));
+        self.orders.signal(before.unwrap_or(order));
     }
 
     /// Ends the alignment with a reason.

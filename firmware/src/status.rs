@@ -63,6 +63,16 @@ pub enum Status {
 }
 
 impl Status {
+    /// The status as long as the mechanism's angles are not valid: homing, unless the alignment is
+    /// over already or an attitude is kept.
+    #[must_use]
+    pub fn before_homing(self) -> Self {
+        match self {
+            Self::Starting | Self::Surveying | Self::Measuring { .. } => Self::Homing,
+            other => other,
+        }
+    }
+
     /// The status after a progress of the alignment.
     #[must_use]
     pub fn after(self, progress: &Progress) -> Self {

@@ -110,6 +110,8 @@ pub struct Navigator<'k> {
     was_idle: bool,
     /// Begin of the hold, the end of the first alignment.
     since: Option<Instant>,
+    /// Whether an attitude has been shown to users: from then on it is also said that it is lost.
+    is_shown: bool,
 }
 
 impl<'k> Navigator<'k> {
@@ -138,6 +140,7 @@ impl<'k> Navigator<'k> {
             is_idle: false,
             was_idle: false,
             since: None,
+            is_shown: false,
         }
     }
 
@@ -415,10 +418,11 @@ impl<'k> Navigator<'k> {
         }
     }
 
-    /// The attitude for users; [`None`] before the first alignment has ended, as long as there is no
-    /// azimuth.
-    fn attitude(&self, report: &Report) -> Option<Attitude> {
-        if self.since.is_none() && report.azimuth.is_none() {
+    /// The attitude for users; [`None`] before the first alignment has ended, as long as there has
+    /// been no azimuth.
+    fn attitude(&mut self, report: &Report) -> Option<Attitude> {
+        self.is_shown |= self.since.is_some() || report.azimuth.is_some();
+        if !self.is_shown {
             return None;
         }
         let is_silent = self.is_silent();

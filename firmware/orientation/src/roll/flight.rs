@@ -16,6 +16,10 @@ const TRACKED_SAMPLES: u32 = 1024;
 /// A flight whose roll is tracked.
 #[derive(Clone, Debug)]
 pub struct Flight {
+    /// Properties of the gyro, and the method.
+    setting: Setting,
+    /// Course and pitch at the begin, rad.
+    launch: [f64; 2],
     /// Estimator of the roll by phase lock.
     spin: Spin,
     /// Attitude by integration of the gyros, its roll replaced by the estimate.
@@ -40,6 +44,8 @@ impl Flight {
     #[must_use]
     pub fn new(setting: &Setting, [course, pitch]: [f64; 2], seconds: Option<f64>) -> Self {
         Self {
+            setting: *setting,
+            launch: [course, pitch],
             spin: Spin::new(setting),
             attitude: Attitude::begin(course, pitch),
             seconds,
@@ -113,6 +119,7 @@ impl Flight {
 
 impl Method<SpinSample> for Flight {
     fn begin(&mut self, listener: Listener) -> Request {
+        *self = Self::new(&self.setting, self.launch, self.seconds);
         listener(Progress::Begun.into());
         Request::Continue
     }

@@ -218,8 +218,8 @@ pub fn base_keeper() -> keep::Setting {
     keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds: base_period() }
 }
 
-/// Policy after the alignment on a stage or on two frames: the azimuth is held until it is renewed from
-/// outside.
+/// Policy after the alignment on a stage or on two frames: the azimuth is held without end, and its σ
+/// grows; only a restart aligns anew.
 pub fn base_policy() -> Policy {
     let [_, _, beside] = base_keeper().gyros;
     Policy {

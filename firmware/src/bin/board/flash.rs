@@ -7,8 +7,8 @@ use embassy_stm32::peripherals::FLASH;
 use firmware::storage::FlashStore;
 use sequential_storage::map::MapConfig;
 
-/// Store in flash. The program lies in the lower bank and continues to run while the upper one is
-/// erased.
+/// Store in flash. The program lies in the lower bank, so that interrupts are served while the
+/// upper one is erased; the tasks wait meanwhile, and samples are lost.
 pub type Store = FlashStore<BlockingAsync<Flash<'static, Blocking>>>;
 
 /// Range of the store: the last two pages of 1 MiB, which no image reaches (`memory.x`).

@@ -1,6 +1,7 @@
 //! Pins, buses and DMA channels: from the controller's peripherals to the instrument's ports.
 //!
-//! **One clock polarity on each bus.** Between two transfers embassy switches the SPI off, and a
+//! **One clock polarity on each bus.** On the sensors' bus embassy switches the SPI off between two
+//! transfers, and a
 //! pull resistor alone holds the clock at its idle level (RM0351, SPI, clock phase and polarity). A
 //! device of the other polarity would see an additional edge while selected. So the ADS1262 and the
 //! ADXL355, which idle low, share one bus, the MT6835 and the TMC5160, which idle high, the other;

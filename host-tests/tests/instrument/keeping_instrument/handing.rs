@@ -4,7 +4,7 @@ use embassy_time::Duration;
 use orientation::alignment::{Azimuth, Progress};
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::navigation::{self, Navigator, Policy, Realignment};
+use orientation::navigation::{self, Navigator, Output, Policy, Realignment};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
 
@@ -23,22 +23,32 @@ fn sample(index: u64, turn: f64) -> InertialSample {
     }
 }
 
-/// The azimuth, °, after so many samples behind the session's last one, all of which waited in the queue
-/// when the session's azimuth of 100° came.
-fn azimuth_after(later: u64) -> f64 {
-    let latitude = Latitude::from_degrees(45.0).expect("a latitude");
-    let gyro = Gyro { scale_sigma: 1e-4, bias_sigma: 1e-6, ..Gyro::default() };
-    let policy = Policy {
+fn gyro() -> Gyro {
+    Gyro { scale_sigma: 1e-4, bias_sigma: 1e-6, ..Gyro::default() }
+}
+
+fn policy() -> Policy {
+    Policy {
         hold_seconds: f64::INFINITY,
         realignment: Realignment::Never,
         knows_stops: true,
         skips_known: false,
-        beside: gyro,
-        precise: gyro,
-    };
-    let mut keeper = Keeper::new(&Setting::precise(latitude, 0.01, gyro));
+        beside: gyro(),
+        precise: gyro(),
+    }
+}
+
+fn keeper() -> Keeper {
+    let latitude = Latitude::from_degrees(45.0).expect("a latitude");
+    Keeper::new(&Setting::precise(latitude, 0.01, gyro()))
+}
+
+/// The azimuth, °, after so many samples behind the session's last one, all of which waited in the queue
+/// when the session's azimuth of 100° came.
+fn azimuth_after(later: u64) -> f64 {
+    let mut keeper = keeper();
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
-    let mut navigator = Navigator::new(&mut keeper, &policy, None);
+    let mut navigator = Navigator::new(&mut keeper, &policy(), None);
     let azimuth = Azimuth { angle: 100.0 * DEGREE, sigma: 0.01 * DEGREE };
     navigator.find(Instant(505 * 10_000), azimuth);
     for index in 501..=505 + later {
@@ -56,6 +66,29 @@ fn what_turns_between_the_sessions_last_sample_and_the_handing_over_counts() {
         let expected = 100.0 + later as f64 * 0.1;
         assert!((azimuth - expected).abs() < 2e-3, "{later} later: {azimuth}°, not {expected}°");
     }
+}
+
+#[test]
+fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
+    let (mut keeper, mut shown) = (keeper(), Vec::new());
+    let mut navigator = Navigator::new(&mut keeper, &policy(), None);
+    for index in 1..=500 {
+        let mut outlet = |output| {
+            if let Output::Report(_, attitude) = output {
+                shown.push(attitude.map(|attitude| attitude.azimuth.is_some()));
+            }
+        };
+        let outside = match index {
+            150 => Some(100.0),
+            350 => Some(130.0),
+            _ => None,
+        };
+        let azimuth = outside.map(|it| Azimuth { angle: it * DEGREE, sigma: 0.01 * DEGREE });
+        navigator.aid(None, azimuth, &mut outlet);
+        navigator.push(&sample(index, 0.0), &mut outlet);
+        navigator.settle(&mut outlet);
+    }
+    assert_eq!(shown, [None, Some(true), Some(true), Some(false)]);
 }
 
 #[test]
