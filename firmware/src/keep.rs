@@ -45,30 +45,56 @@ pub struct Keeping<'k, T> {
     pub store: T,
 }
 
-impl<T> Keeping<'_, T> {
+/// What an instrument does with its azimuth after the alignment.
+pub trait Keep {
     /// Whether an attitude is kept at all.
-    pub(crate) fn is_held(&self) -> bool {
-        self.policy.hold_seconds > 0.0
+    fn is_held(&self) -> bool;
+
+    /// Keeps the attitude until its duration is over; never returns if nothing is kept.
+    async fn keep(&mut self, aiding: &dyn Aiding, shared: &Shared<'_>);
+}
+
+/// An instrument without inertial sensors beside its precise gyro keeps no attitude, and contains no
+/// code for it.
+#[derive(Clone, Copy, Debug)]
+pub struct NotKept;
+
+impl Keep for NotKept {
+    fn is_held(&self) -> bool {
+        false
+    }
+
+    async fn keep(&mut self, _: &dyn Aiding, _: &Shared<'_>) {
+        pending::<()>().await;
     }
 }
 
-/// Keeps the attitude until its duration is over; never returns if nothing is kept.
-pub async fn keep<T: Store>(
-    keeping: Option<Keeping<'_, T>>,
-    aiding: &dyn Aiding,
-    shared: &Shared<'_>,
-) {
-    let Some(Keeping { keeper, policy, mut store }) = keeping.filter(Keeping::is_held) else {
-        return pending().await;
-    };
+impl<T: Store> Keep for Option<Keeping<'_, T>> {
+    fn is_held(&self) -> bool {
+        self.as_ref().is_some_and(|keeping| keeping.policy.hold_seconds > 0.0)
+    }
+
+    async fn keep(&mut self, aiding: &dyn Aiding, shared: &Shared<'_>) {
+        match self {
+            Some(keeping) if keeping.policy.hold_seconds > 0.0 => {
+                keep(keeping, aiding, shared).await;
+            }
+            _ => pending().await,
+        }
+    }
+}
+
+/// Keeps the attitude until its duration is over.
+async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, shared: &Shared<'_>) {
+    let Keeping { keeper, policy, store } = keeping;
     let mut has_failed = false;
-    let remembered = load(&mut store).await.unwrap_or_else(|fault| {
+    let remembered = load(store).await.unwrap_or_else(|fault| {
         fail(fault, &mut has_failed, shared);
         None
     });
     let to_save = Cell::new(None);
     let outlet = &mut |output| execute(output, &to_save, shared);
-    let mut navigator = Navigator::new(keeper, &policy, remembered);
+    let mut navigator = Navigator::new(keeper, policy, remembered);
     let mut latest = Instant::MIN;
     while !navigator.is_over() {
         select(shared.caught_up.wait(), Timer::after(REST)).await;

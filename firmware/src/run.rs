@@ -16,10 +16,10 @@ use orientation::signal::Timed;
 
 use crate::align::align;
 use crate::health::Health;
-use crate::keep::{self, Keeping};
+use crate::keep::Keep;
 use crate::link;
 use crate::mechanism::Mechanism;
-use crate::ports::{Aiding, Recorder, Store};
+use crate::ports::{Aiding, Recorder};
 use crate::shared::{Channels, discard};
 use crate::watch::watch;
 
@@ -27,24 +27,24 @@ use crate::watch::watch;
 /// over. Whatever the outcome, the mechanism is parked. Returns the counters of faults.
 ///
 /// The method is the largest object in memory; the caller owns it and chooses its place.
-pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, S: Timed>(
+pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, K: Keep, S: Timed>(
     mechanism: &mut M,
     method: &mut dyn Method<S>,
-    keeping: Option<Keeping<'_, T>>,
+    mut keeping: K,
     aiding: &dyn Aiding,
     (link, recorder): (&mut L, &mut R),
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
     // Known before any part runs, since a method may refuse at once.
-    shared.is_kept.set(keeping.as_ref().is_some_and(Keeping::is_held));
+    shared.is_kept.set(keeping.is_held());
     {
         let turning = pin!(async {
             let Err(reason) = mechanism.serve().await;
             shared.fail(reason);
             pending::<()>().await;
         });
-        let kept = pin!(keep::keep(keeping, aiding, shared));
+        let kept = pin!(keeping.keep(aiding, shared));
         join(turning, kept, link, recorder, (method, aiding), channels).await;
     }
     mechanism.park(discard(channels)).await;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::event::Event;
-use firmware::keep::Keeping;
+use firmware::keep::NotKept;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Recorder, Store};
 use firmware::run::navigate;
@@ -85,7 +85,7 @@ impl Carrier for SpinScenario {
             navigate(
                 &mut Strapdown::new(&channels.shared),
                 &mut flight,
-                None::<Keeping<'_, ()>>,
+                NotKept,
                 &(),
                 (&mut harness.wire(), &mut (&mut kept, around.recorder)),
                 &channels,

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use firmware::acquire::{acquire, on_stage};
 use firmware::configuration::TurntableConfiguration;
-use firmware::keep::Keeping;
+use firmware::keep::NotKept;
 use firmware::ports::{Ports, Recorder, Store};
 use firmware::run::navigate;
 use firmware::simulated::Wires;
@@ -78,7 +78,7 @@ impl Carrier for TurntableScenario {
             let health = navigate(
                 &mut Turntable::new(&mut actuator, &platform, &channels.shared),
                 &mut session,
-                None::<Keeping<'_, ()>>,
+                NotKept,
                 &(),
                 (&mut link, &mut recorder),
                 &channels,

@@ -60,7 +60,6 @@ use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Instant, Timer};
 use firmware::health::Health;
-use firmware::keep::Keeping;
 use firmware::link;
 use firmware::shared::Shared;
 use panic_probe as _;
@@ -93,9 +92,6 @@ async fn main(spawner: Spawner) {
         Carrier::Vehicle => spawner.spawn(defmt::unwrap!(stops::align(spawner, wiring))),
     }
 }
-
-/// A carrier without inertial sensors beside its precise gyro keeps no attitude.
-const NOT_KEPT: Option<Keeping<'static, ()>> = None;
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
 /// the motor would lose its current and the link its last bytes.

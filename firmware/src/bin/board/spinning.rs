@@ -2,6 +2,7 @@
 
 use embassy_executor::Spawner;
 use firmware::acquire::{SpinAcquisition, acquire};
+use firmware::keep::NotKept;
 use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
@@ -14,7 +15,7 @@ use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::Wiring;
-use crate::{NOT_KEPT, configuration, ports, report_conclusion};
+use crate::{configuration, ports, report_conclusion};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
@@ -31,7 +32,7 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));
     let mut body = Strapdown::new(&channels.shared);
     let outside = (&mut link, &mut NoRecorder);
-    let health = navigate(&mut body, flight, NOT_KEPT, &(), outside, channels).await;
+    let health = navigate(&mut body, flight, NotKept, &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

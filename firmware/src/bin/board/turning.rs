@@ -3,6 +3,7 @@
 
 use embassy_executor::Spawner;
 use firmware::acquire::{acquire, on_stage};
+use firmware::keep::NotKept;
 use firmware::log::DefmtLog;
 use firmware::ports::{NoBase, NoRecorder};
 use firmware::run::navigate;
@@ -14,7 +15,7 @@ use static_cell::StaticCell;
 use crate::flash::{Store, store};
 use crate::ports::Inputs;
 use crate::wiring::{AxisWires, SensorWires, Wiring};
-use crate::{Channels, NOT_KEPT, configuration, ports, report_conclusion};
+use crate::{Channels, configuration, ports, report_conclusion};
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -34,7 +35,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let mut motor = ports::motor(motor);
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
     let outside = (&mut link, &mut NoRecorder);
-    let health = navigate(&mut platform, session, NOT_KEPT, &(), outside, channels).await;
+    let health = navigate(&mut platform, session, NotKept, &(), outside, channels).await;
     save_calibration(&mut store, session, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
