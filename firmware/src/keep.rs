@@ -71,15 +71,13 @@ impl Keep for NotKept {
 
 impl<T: Store> Keep for Option<Keeping<'_, T>> {
     fn is_held(&self) -> bool {
-        self.as_ref().is_some_and(|keeping| keeping.policy.hold_seconds > 0.0)
+        self.as_ref().is_some_and(|keeping| keeping.policy.holds())
     }
 
     async fn keep(&mut self, aiding: &dyn Aiding, shared: &Shared<'_>) {
-        match self {
-            Some(keeping) if keeping.policy.hold_seconds > 0.0 => {
-                keep(keeping, aiding, shared).await;
-            }
-            _ => pending().await,
+        match self.as_mut().filter(|keeping| keeping.policy.holds()) {
+            Some(keeping) => keep(keeping, aiding, shared).await,
+            None => pending().await,
         }
     }
 }

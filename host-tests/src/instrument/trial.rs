@@ -30,15 +30,15 @@ pub trait Carrier: Sized {
 
 /// What surrounds a board.
 pub struct Around<'t, R, T> {
-    /// Is told what the board reports.
+    /// Observer of the board's events.
     pub watch: &'t dyn Observer,
-    /// Takes the samples of the method.
+    /// Recorder of the method's samples.
     pub recorder: R,
-    /// Outlasts a loss of supply.
+    /// Store that outlasts a loss of supply.
     pub store: T,
 }
 
-/// A run that is to be made: healthy, with nobody watching, unless something else is said.
+/// Setup of a run; without a fault, an observer, a recorder or a store unless they are set.
 #[must_use]
 pub struct Trial<'t, C: Carrier, R = NoRecorder, T = ()> {
     carrier: &'t C,
@@ -65,7 +65,7 @@ impl<'t, C: Carrier, R, T> Trial<'t, C, R, T> {
         Self { plan, ..self }
     }
 
-    /// With somebody who is told what the board reports.
+    /// With an observer of the board's events.
     pub fn watch(self, watch: &'t dyn Observer) -> Self {
         Self { around: Around { watch, ..self.around }, ..self }
     }

@@ -52,8 +52,8 @@ pub enum Request {
     Done,
 }
 
-/// A method whose samples are of the type `S`: of alignment, or of tracking a roll. It is used as a trait object, so that
-/// an image with several methods contains one instrument.
+/// A method of alignment, or of tracking a roll, whose samples are of the type `S`. It is used as a
+/// trait object, so that an image with several methods contains one instrument.
 pub trait Method<S> {
     /// Begins the alignment, also anew after one that is over: all fields are reset in place.
     /// Returns [`Request::Done`] where the alignment is refused before anything moves.
@@ -70,13 +70,8 @@ pub trait Method<S> {
 
     /// Takes an input and computes at once what it requires, without reports.
     fn feed(&mut self, input: Input<'_, S>) -> Request {
-        self.advance(input, &mut |_| ())
-    }
-
-    /// Takes an input and computes at once what it requires.
-    fn advance(&mut self, input: Input<'_, S>, listener: Listener) -> Request {
-        match self.take(input, listener) {
-            Request::Compute => self.compute(listener),
+        match self.take(input, &mut |_| ()) {
+            Request::Compute => self.compute(&mut |_| ()),
             other => other,
         }
     }

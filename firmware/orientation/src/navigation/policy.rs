@@ -34,3 +34,11 @@ pub struct Policy {
     /// turned it to the vertical.
     pub precise: Gyro,
 }
+
+impl Policy {
+    /// Whether an azimuth is held at all.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.hold_seconds > 0.0
+    }
+}
