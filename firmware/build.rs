@@ -1,7 +1,5 @@
-//! Links the bare-metal images by cortex-m-rt's script, which takes the memory map from `memory.x`,
-//! and hands them the budget: as constants, and as limits that the board's image must keep to link.
-//!
-//! Cargo starts the linker in the workspace root, so `memory.x` is found there from any directory.
+//! Hands on what the firmware may cost, as stated in `budget.toml`: as constants, and as limits that the
+//! board's image must keep to link.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -10,34 +8,15 @@ use std::{env, fs, io};
 /// What the images may cost.
 const BUDGET: &str = "budget.toml";
 
-/// A linker script that refuses an image without its etalon table (`memory.x`).
-const ETALON: &str = "ASSERT(SIZEOF(.etalon) > 0, \"the etalon table is not in its section\");\n";
-
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={BUDGET}");
-    println!("cargo::rerun-if-changed=../memory.x");
-    if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "none") {
-        println!("cargo::rustc-link-arg-bins=-Tlink.x");
-        // defmt's own script: strings that stay on the host.
-        for (feature, image) in [("EMULATOR", "emulator"), ("BOARD", "board")] {
-            if env::var_os(format!("CARGO_FEATURE_{feature}")).is_some() {
-                println!("cargo::rustc-link-arg-bin={image}=-Tdefmt.x");
-            }
-        }
-    }
     let directory = PathBuf::from(env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?);
     let budget = fs::read_to_string(BUDGET)?;
     fs::write(directory.join("budget.rs"), constants(&budget)?)?;
     fs::write(directory.join("budget.x"), limits(&budget)?)?;
-    fs::write(directory.join("etalon.x"), ETALON)?;
+    // Cargo hands this on to whatever links this crate.
     println!("cargo::rustc-link-search={}", directory.display());
-    if env::var_os("CARGO_FEATURE_EMULATOR").is_some() {
-        println!("cargo::rustc-link-arg-bin=emulator=-Tetalon.x");
-    }
-    if env::var_os("CARGO_FEATURE_BOARD").is_some() {
-        println!("cargo::rustc-link-arg-bin=board=-Tbudget.x");
-    }
     Ok(())
 }
 

@@ -61,6 +61,3 @@ pub mod storage;
 
 #[cfg(feature = "defmt")]
 pub mod log;
-
-#[cfg(feature = "simulated")]
-pub mod simulated;

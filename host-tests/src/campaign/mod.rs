@@ -14,9 +14,9 @@ pub mod spin;
 pub mod statistics;
 pub mod szymanowski;
 
-use firmware::simulated::fault::Platform;
 use rayon::prelude::*;
 use serde_json::Value;
+use simulated::fault::Platform;
 
 use crate::report::Report;
 

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use firmware::simulated::fault::Platform;
 use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::output::progress::Progress;
+use simulated::fault::Platform;
 
 use super::{Answer, faults as of_run, files, registered, whole};
 

@@ -1,8 +1,8 @@
 //! `meridian run --fault`: the catalogue of faults on the command line.
 
-use firmware::simulated::fault::{Fault, Platform};
 use orientation::device::Device;
 use serde_json::json;
+use simulated::fault::{Fault, Platform};
 
 use super::Answer;
 

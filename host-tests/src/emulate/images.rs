@@ -36,8 +36,7 @@ pub fn build() -> Result<Images, String> {
     }
     require_target()?;
     let mut command = Command::new(cargo());
-    command.current_dir(root()).args(["build", "--package", "firmware", "--profile", "firmware"]);
-    command.args(["--bin", "emulator", "--bin", "cost", "--features", "emulator"]);
+    command.current_dir(root()).args(["build", "--package", "emulator", "--profile", "firmware"]);
     command.args(["--target", TARGET, "--message-format", "json-render-diagnostics"]);
     let output = command.stderr(Stdio::inherit()).output().map_err(|e| format!("cargo: {e}"))?;
     if !output.status.success() {

@@ -2,14 +2,14 @@
 //! run on the host.
 
 use firmware::budget;
-use firmware::simulated::fault::Injection;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::spin::SpinScenario;
-use firmware::simulated::trace::Trace;
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::{BRIEF, Day, VehicleScenario};
 use orientation::signal::{InertialSample, Sample, SpinSample};
+use simulated::fault::Injection;
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
+use simulated::spin::SpinScenario;
+use simulated::trace::Trace;
+use simulated::turntable::TurntableScenario;
+use simulated::vehicle::{BRIEF, Day, VehicleScenario};
 
 use super::outcome::Outcome;
 use crate::instrument::{RunError, Trial, VehiclePlan};

@@ -1,7 +1,7 @@
 //! What a run found, as bits, and where two runs differ.
 
-use firmware::simulated::trace::{ABSENT, AZIMUTH, Trace};
 use orientation::alignment::{Method, Solution};
+use simulated::trace::{ABSENT, AZIMUTH, Trace};
 use thiserror::Error;
 
 /// The numbers of something, as the bits of 64-bit floats or integers.

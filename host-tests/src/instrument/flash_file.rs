@@ -6,10 +6,10 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use firmware::simulated::flash::{BYTES, Flash};
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
+use simulated::flash::{BYTES, Flash};
 
 use crate::unwritten;
 

@@ -7,14 +7,14 @@ use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::ports::{Frames, NoBase, Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::simulated::Wires;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::mount::FramesScenario;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::stepwise::session::Session;
 use orientation::attitude::Keeper;
 use orientation::signal::Sample;
+use simulated::Wires;
+use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::mount::FramesScenario;
 
 use super::harness::{self, Harness};
 use super::kept::KeptPlan;

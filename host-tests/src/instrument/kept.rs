@@ -3,16 +3,16 @@
 use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 
-use firmware::simulated::base::{self, SimulatedBase};
-use firmware::simulated::fault::{Fault, Injection};
-use firmware::simulated::keep::{Day, journey};
-use firmware::simulated::scenario::Scenario;
 use hal_mock::earth::Attitude;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::sensor_fault::SensorFault;
 use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
 use orientation::attitude::Report;
+use simulated::base::{self, SimulatedBase};
+use simulated::fault::{Fault, Injection};
+use simulated::keep::{Day, journey};
+use simulated::scenario::Scenario;
 
 use super::{Run, RunError};
 

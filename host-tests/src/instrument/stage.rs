@@ -7,15 +7,15 @@ use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
 use firmware::ports::{NoBase, Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::scenario::{self, Scenario};
-use firmware::simulated::{self, Wires};
 use firmware::stage::Stage;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::stepwise::session::Session;
 use orientation::attitude::Keeper;
 use orientation::signal::Sample;
+use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::scenario::{self, Scenario};
+use simulated::{self, Wires};
 
 use super::harness::{self, Harness};
 use super::kept::KeptPlan;

@@ -1,7 +1,7 @@
 //! A run of any carrier on simulated chips: what goes wrong in it, and what surrounds the board.
 
 use firmware::ports::{NoRecorder, Observer, Recorder, Store};
-use firmware::simulated::fault::Fault;
+use simulated::fault::Fault;
 
 use super::RunError;
 

@@ -7,13 +7,13 @@ use firmware::configuration::TurntableConfiguration;
 use firmware::keep::NotKept;
 use firmware::ports::{Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::simulated::Wires;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::storage::{Today, load_calibration, save_calibration};
 use firmware::turntable::Turntable;
 use orientation::alignment::rotating::session as rotating;
 use orientation::signal::Sample;
+use simulated::Wires;
+use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::turntable::{self, TurntableScenario};
 
 use super::harness::{self, Harness};
 use super::trial::{Around, Carrier};

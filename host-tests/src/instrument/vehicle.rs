@@ -8,13 +8,13 @@ use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Recorder, Store};
 use firmware::run::navigate;
-use firmware::simulated::Wires;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use orientation::alignment::{Progress, stops};
 use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
+use simulated::Wires;
+use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
 use super::harness::{self, Harness};
 use super::kept::{Kept, Point};

@@ -11,7 +11,7 @@ pub mod stepwise;
 pub mod stops;
 pub mod vertical;
 
-use firmware::simulated::fault::Platform;
+use simulated::fault::Platform;
 
 use self::asked::Asked;
 use self::error::ReplayError;

@@ -2,8 +2,8 @@
 
 use std::iter::once;
 
-use firmware::simulated::trace::DWELL;
 use serde_json::{Value, json};
+use simulated::trace::DWELL;
 
 use crate::emulate::checks::{Check, per_sample};
 use crate::emulate::cost::Row;

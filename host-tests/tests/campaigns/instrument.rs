@@ -4,7 +4,7 @@ use host::campaign::faults::{self, WRONG_SIGMAS};
 use host::campaign::instrument::{self, Runs};
 use host::campaign::statistics::{NORMAL_COVERAGE, Precision};
 
-use firmware::simulated::fault::Platform;
+use simulated::fault::Platform;
 
 use crate::support::campaign::{Extent, campaigns};
 

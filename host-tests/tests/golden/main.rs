@@ -16,7 +16,6 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use firmware::simulated::trace::ABSENT;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
@@ -25,6 +24,7 @@ use host::emulate::outcome::Row;
 use host::methods::METHODS;
 use host::methods::asked::Asked;
 use serde_json::Value;
+use simulated::trace::ABSENT;
 
 use support::files::{Scratch, recording, recordings};
 use support::program::command;

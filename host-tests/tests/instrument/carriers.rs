@@ -2,19 +2,19 @@
 
 use std::fmt::Write as _;
 
-use firmware::simulated::fault::{Fault, Platform};
-use firmware::simulated::hold::Hold;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::spin::SpinScenario;
-use firmware::simulated::trace::{ABSENT, AZIMUTH, FLIGHT, Trace};
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::VehicleScenario;
 use host::emulate::outcome::Outcome;
 use host::instrument::kept::Point;
 use host::instrument::{Run, RunError, Trial};
 use orientation::alignment::Method;
 use orientation::signal::{InertialSample, Sample, SpinSample};
+use simulated::fault::{Fault, Platform};
+use simulated::hold::Hold;
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
+use simulated::spin::SpinScenario;
+use simulated::trace::{ABSENT, AZIMUTH, FLIGHT, Trace};
+use simulated::turntable::TurntableScenario;
+use simulated::vehicle::VehicleScenario;
 
 /// Which run is made.
 #[derive(Clone, Copy)]

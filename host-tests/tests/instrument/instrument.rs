@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::thread;
 
 use firmware::event::Event;
-use firmware::simulated::scenario::Scenario;
 use host::instrument::recorder::{self, Samples};
 use host::instrument::{Run, Trial};
 use host::methods::asked::Asked;
@@ -13,6 +12,7 @@ use host::methods::stepwise::replay;
 use host::output::{azimuth_error, degrees};
 use host::recording::{self, Header};
 use orientation::alignment::stepwise::conclusion::Conclusion;
+use simulated::scenario::Scenario;
 
 use crate::support::files::Scratch;
 

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use firmware::event::Event;
 use firmware::ports::Frames;
-use firmware::simulated::fault::{Fault, Platform};
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::{Aim, Scenario};
-use firmware::simulated::spin::SpinScenario;
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::{Place, VehicleScenario};
+use simulated::fault::{Fault, Platform};
+use simulated::mount::FramesScenario;
+use simulated::scenario::{Aim, Scenario};
+use simulated::spin::SpinScenario;
+use simulated::turntable::TurntableScenario;
+use simulated::vehicle::{Place, VehicleScenario};
 
 use host::instrument::recorder::{self, Recorded, Samples};
 use host::instrument::{Run, SpinRun, Trial};

@@ -2,12 +2,12 @@
 //! lost conversion costs.
 
 use firmware::event::Event;
-use firmware::simulated::fault::Fault;
-use firmware::simulated::vehicle::{Place, VehicleScenario};
 use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Progress, stops};
+use simulated::fault::Fault;
+use simulated::vehicle::{Place, VehicleScenario};
 
 fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
     Trial::of(scenario).fault(fault).run().expect("the scenario is possible")

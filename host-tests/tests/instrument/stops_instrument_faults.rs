@@ -1,12 +1,12 @@
 //! The instrument in a vehicle with something wrong: every fault is survived or refused for its reason,
 //! and no rotation that was lost is hidden.
 
-use firmware::simulated::fault::{ChipFault, Fault, Platform};
-use firmware::simulated::vehicle::VehicleScenario;
 use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::{Device, Trouble};
+use simulated::fault::{ChipFault, Fault, Platform};
+use simulated::vehicle::VehicleScenario;
 
 use crate::support::campaign::{Extent, campaigns};
 

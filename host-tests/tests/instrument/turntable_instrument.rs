@@ -2,9 +2,6 @@
 //! tells what it did, comes to rest at the end, and never reports a wrong north.
 
 use firmware::event::Event;
-use firmware::simulated::fault::{AxisFault, ChipFault, Fault, Platform};
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::turntable::TurntableScenario;
 use host::instrument::{Trial, TurntableRun};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::Azimuth;
@@ -12,6 +9,9 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::device::{Device, Trouble};
 use rayon::prelude::*;
+use simulated::fault::{AxisFault, ChipFault, Fault, Platform};
+use simulated::scenario::Scenario;
+use simulated::turntable::TurntableScenario;
 
 /// A short alignment, for what does not depend on its length.
 fn short(seed: u64) -> TurntableScenario {

@@ -5,9 +5,6 @@ use drivers::fault::Fault;
 use firmware::date::Day;
 use firmware::event::Event;
 use firmware::ports::Store;
-use firmware::simulated::flash::Flash;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{FlashStore, Today, keep, recall};
 use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun};
 use host::output::{azimuth_error, degrees};
@@ -16,6 +13,9 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use proptest::prelude::*;
+use simulated::flash::Flash;
+use simulated::scenario::Scenario;
+use simulated::turntable::TurntableScenario;
 
 fn save(store: &mut FlashStore<Flash>, bytes: &[u8; BYTES]) -> Result<(), Fault> {
     run(store.save(0, bytes)).expect("it ends")

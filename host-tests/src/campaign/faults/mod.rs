@@ -6,9 +6,9 @@ mod runs;
 
 use std::ops::RangeInclusive;
 
-use firmware::simulated::fault::{Fault, Platform};
 use rayon::prelude::*;
 use serde::Serialize;
+use simulated::fault::{Fault, Platform};
 
 use self::runs::Ended;
 

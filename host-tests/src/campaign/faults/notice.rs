@@ -1,13 +1,13 @@
 //! What a board reports that a healthy one does not.
 
 use firmware::event::Event;
-use firmware::simulated::fault::Notice;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Progress, rotating, stepwise};
 use orientation::attitude::Realigned;
 use orientation::device::Device;
 use orientation::navigation;
 use orientation::roll::{self, Condition};
+use simulated::fault::Notice;
 
 /// The first event that reports something wrong.
 pub(super) fn first(events: &[Event]) -> Option<&Event> {

@@ -1,7 +1,7 @@
 //! `campaign faults`: its entry in the registry, and its report.
 
-use firmware::simulated::fault::Platform;
 use serde_json::json;
+use simulated::fault::Platform;
 
 use std::fmt::Display;
 

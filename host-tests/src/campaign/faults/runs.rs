@@ -2,16 +2,16 @@
 
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::simulated::coarse::CoarseClass;
-use firmware::simulated::fault::{Fault, Platform};
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::spin::SpinScenario;
-use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::VehicleScenario;
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
+use simulated::coarse::CoarseClass;
+use simulated::fault::{Fault, Platform};
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
+use simulated::spin::SpinScenario;
+use simulated::turntable::TurntableScenario;
+use simulated::vehicle::VehicleScenario;
 
 use crate::instrument::{Run, RunError, Trial};
 use crate::output::{azimuth_error, degrees};

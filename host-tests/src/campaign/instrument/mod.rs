@@ -2,10 +2,10 @@
 
 pub(super) mod report;
 
-use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
+use simulated::scenario::Scenario;
 
 use super::over;
 use super::statistics::{Answer, Precision};

@@ -1,7 +1,7 @@
 //! How `meridian run` goes on after its alignment.
 
 use clap::Args;
-use firmware::simulated::hold::Hold;
+use simulated::hold::Hold;
 
 use super::options::{Common, seconds};
 use crate::command::stated::{self, Stated};

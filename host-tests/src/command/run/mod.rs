@@ -15,13 +15,13 @@ use clap::{Args, Subcommand};
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
-use firmware::simulated::fault::{Fault, Platform};
 use host::instrument::RunError;
 use host::outcome::Finished;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
 use host::recording::{Body, Truth};
 use orientation::alignment::{self, rotating, stepwise, stops};
+use simulated::fault::{Fault, Platform};
 
 use self::options::Common;
 use super::faults::{self, FaultChoice};

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
-use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 use host::instrument::recorder::{self, Recorded, Samples};
 use host::unwritten;
+use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
 use crate::command::seed;

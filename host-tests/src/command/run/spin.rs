@@ -1,14 +1,14 @@
 //! `meridian run spin`: the board on a body in fast rotation.
 
 use clap::Args;
-use firmware::simulated::fault::Fault;
-use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use host::instrument::{SpinRun, Trial};
 use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Known, Replay, follow};
 use host::outcome::run::RunDetails;
 use host::recording::{GIVEN, Truth};
 use orientation::roll::Progress;
+use simulated::fault::Fault;
+use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
 use super::options::{Common, number};
 use super::{Ran, Simulated, Terminal};

@@ -2,15 +2,15 @@
 
 use clap::Args;
 use firmware::event::Event;
-use firmware::simulated::fault::Fault;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::{Aim, Scenario};
 use host::instrument::{FramesRun, Run, Trial};
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::RunDetails;
 use host::output::degrees;
 use host::recording::Truth;
+use simulated::fault::Fault;
+use simulated::mount::FramesScenario;
+use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};

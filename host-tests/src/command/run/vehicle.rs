@@ -2,9 +2,6 @@
 
 use clap::Args;
 use firmware::ports::Recorder;
-use firmware::simulated::fault::Fault;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::vehicle::{self, VehicleScenario};
 use host::instrument::Trial;
 use host::instrument::recorder::Samples;
 use host::methods::stops::{Method, Replay, Watched};
@@ -15,6 +12,9 @@ use host::output::degrees;
 use host::recording::{GIVEN, Truth};
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
+use simulated::fault::Fault;
+use simulated::scenario::Scenario;
+use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Place, seconds};

@@ -14,11 +14,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use firmware::ports::Recorder;
-use firmware::simulated::scenario::Scenario;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use orientation::alignment::site::Site;
 use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
+use simulated::scenario::Scenario;
 
 pub use turntable::turning_rows;
 

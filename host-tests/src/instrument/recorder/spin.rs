@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use orientation::signal::SpinSample;
 use orientation::units::SpinForce;
+use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
 use super::{Recorded, mean_rate, row, seconds};
 use crate::instrument::SpinRun;

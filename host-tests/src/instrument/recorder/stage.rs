@@ -6,12 +6,12 @@ use std::ops::Range;
 
 use embassy_time::Instant;
 use firmware::ports::BaseReading;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::signal::Sample;
 use orientation::units::Angle;
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
 
 use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::{FramesRun, Run};

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use firmware::simulated::turntable::TurntableScenario;
 use orientation::signal::Sample;
 use orientation::units::Angle;
+use simulated::turntable::TurntableScenario;
 
 use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::TurntableRun;

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use firmware::simulated::vehicle::VehicleScenario;
 use orientation::signal::InertialSample;
+use simulated::vehicle::VehicleScenario;
 
 use super::{Recorded, forces, header, mean_rate, row, seconds};
 use crate::instrument::VehicleRun;

@@ -3,15 +3,15 @@
 
 use super::{at, departure, frames, keep, reported, sigmas};
 use embassy_time::{Duration, Instant};
-use firmware::simulated::fault::Injection;
-use firmware::simulated::hold::Hold;
-use firmware::simulated::mount::FramesScenario;
 use hal_mock::chip::Select;
 use hal_mock::fault::{BusFault, FaultPlan, When};
 use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use hal_mock::vehicle::Event;
 use host::instrument::FramesRun;
 use host::instrument::kept::KeptPlan;
+use simulated::fault::Injection;
+use simulated::hold::Hold;
+use simulated::mount::FramesScenario;
 
 /// How long after its departure something goes wrong with a base, s.
 const AFTER: f64 = 60.0;

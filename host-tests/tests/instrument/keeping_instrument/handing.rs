@@ -10,7 +10,7 @@ use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
 
 use super::{drive, vehicle};
 use firmware::event::Event;
-use firmware::simulated::hold::Hold;
+use simulated::hold::Hold;
 
 /// Turn of a sample about down, rad: 10 °/s at 100 Hz.
 const TURN: f64 = 0.1 * DEGREE;

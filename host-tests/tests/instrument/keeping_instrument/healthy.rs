@@ -2,11 +2,11 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle, when};
 use firmware::event::Event;
-use firmware::simulated::hold::Hold;
-use firmware::simulated::scenario::Scenario;
 use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;
 use orientation::navigation::Progress;
+use simulated::hold::Hold;
+use simulated::scenario::Scenario;
 
 #[test]
 fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {

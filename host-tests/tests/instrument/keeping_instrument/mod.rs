@@ -8,12 +8,12 @@ mod restart;
 
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::simulated::hold::Hold;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::vehicle::VehicleScenario;
 use host::instrument::kept::{Kept, KeptPlan};
 use host::instrument::{FramesRun, Run, Trial, VehicleRun};
+use simulated::hold::Hold;
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
+use simulated::vehicle::VehicleScenario;
 
 /// A vehicle that goes on like this.
 fn vehicle(seed: u64, hold: Hold) -> VehicleScenario {

@@ -2,10 +2,10 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
-use firmware::simulated::hold::Hold;
 use host::instrument::kept::KeptPlan;
 use orientation::attitude::Realigned;
 use orientation::navigation::Progress;
+use simulated::hold::Hold;
 
 #[test]
 fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {

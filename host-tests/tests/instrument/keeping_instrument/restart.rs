@@ -3,16 +3,16 @@
 use super::{reported, vehicle};
 use firmware::event::Event;
 use firmware::ports::Store;
-use firmware::simulated::fault::Injection;
-use firmware::simulated::flash::Flash;
-use firmware::simulated::hold::Hold;
-use firmware::simulated::scenario::{GyroClass, Scenario};
-use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
 use host::instrument::{Trial, VehiclePlan, VehicleRun};
 use orientation::attitude::restart::{RecallRefusal, Remembered};
 use orientation::navigation::Progress;
+use simulated::fault::Injection;
+use simulated::flash::Flash;
+use simulated::hold::Hold;
+use simulated::scenario::{GyroClass, Scenario};
+use simulated::vehicle::{Day, VehicleScenario};
 
 /// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
 const STEADY: GyroClass =

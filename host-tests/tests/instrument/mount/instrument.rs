@@ -3,9 +3,6 @@
 use embassy_time::{Duration, Instant};
 use firmware::event::Event;
 use firmware::ports::Frames;
-use firmware::simulated::fault::Injection;
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use hal_mock::plant::StageFault;
 use host::campaign::statistics::rms;
@@ -17,6 +14,9 @@ use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
 use orientation::units::DEGREE;
 use rayon::prelude::*;
+use simulated::fault::Injection;
+use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
 
 use crate::support::campaign::{Extent, campaigns};
 

@@ -2,14 +2,14 @@
 //! and every fault in the catalogue.
 
 use firmware::event::Event;
-use firmware::simulated::fault::{Fault, Platform};
-use firmware::simulated::spin::SpinScenario;
 use host::instrument::{SpinRun, Trial};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::{Known, follow};
 use orientation::alignment;
 use orientation::roll::Progress::{Begun, Changed, Ended, Flown, LiftBack};
 use orientation::roll::{Condition, State};
+use simulated::fault::{Fault, Platform};
+use simulated::spin::SpinScenario;
 
 /// The event, or the pattern of one, of a progress of the roll.
 macro_rules! rolled {

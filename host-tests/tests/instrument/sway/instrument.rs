@@ -4,10 +4,6 @@ use drivers::fault::Fault as BusFault;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{BaseReading, BaseSensors, NoRecorder, Startable};
-use firmware::simulated::coarse::CoarseClass;
-use firmware::simulated::fault::{ChipFault, Fault, Injection};
-use firmware::simulated::mount::FramesScenario;
-use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::sway::SwayCompensation;
 use host::instrument::{Around, Run, RunError, Trial, align_on};
 use host::output::{azimuth_error, degrees};
@@ -16,6 +12,10 @@ use orientation::device::Device;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, SpecificForce};
 use rayon::prelude::*;
+use simulated::coarse::CoarseClass;
+use simulated::fault::{ChipFault, Fault, Injection};
+use simulated::mount::FramesScenario;
+use simulated::scenario::{GyroClass, Scenario};
 
 use crate::support::campaign::{Extent, campaigns};
 

@@ -1,9 +1,9 @@
 //! What the image's log says to the host.
 
-use firmware::simulated::trace::{ABSENT, AZIMUTH};
 use host::emulate::collect::{Collected, Figures, Task};
 use host::emulate::decode::Line;
 use host::emulate::outcome::{Outcome, Row};
+use simulated::trace::{ABSENT, AZIMUTH};
 
 fn printed(words: &str) -> Line {
     Line { time: "1.5".to_owned(), level: None, words: words.to_owned() }

@@ -1,8 +1,8 @@
 //! Two runs are compared bit for bit, and where they differ is named.
 
-use firmware::simulated::trace::{ABSENT, AZIMUTH, DWELL, FLIGHT, KEPT, STOP, TURN};
 use host::emulate::jobs::{BRIEF_STAGE, JOBS, Job, SPIN, TURNTABLE, TWO_FRAME, VEHICLE};
 use host::emulate::outcome::{Outcome, Row, compare};
+use simulated::trace::{ABSENT, AZIMUTH, DWELL, FLIGHT, KEPT, STOP, TURN};
 
 fn row(head: &str, number: f64) -> Row {
     Row::new(head, &vec![number.to_bits(); head.split(' ').count() - 1])

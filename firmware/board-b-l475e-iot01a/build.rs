@@ -1,0 +1,10 @@
+//! Links the image by the scripts of cortex-m-rt, which takes the memory map from `memory.x`, of defmt, whose
+//! strings stay on the host, and of the budget, which an image must keep to.
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=../../memory.x");
+    for script in ["link.x", "defmt.x", "budget.x"] {
+        println!("cargo::rustc-link-arg-bins=-T{script}");
+    }
+}

@@ -1,0 +1,161 @@
+//! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
+
+use drivers::lsm6dsl;
+use embassy_embedded_hal::adapter::BlockingAsync;
+use embassy_stm32::exti::{self, ExtiInput};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
+use embassy_stm32::i2c::{self, I2c};
+use embassy_stm32::interrupt::typelevel;
+use embassy_stm32::peripherals::{
+    DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4,
+    PB0, PB1, PB2, PB4, PB10, PB11, PC3, PC4,
+};
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::Hertz;
+use embassy_stm32::usart::{self, ConfigError, UartTx};
+use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma};
+use embassy_sync::mutex::Mutex;
+use embassy_time::Duration;
+use firmware::ports::Frames;
+use static_cell::StaticCell;
+use stm32::wiring::{
+    AxisWires, BaseBus, Bus, Buses, ConverterWires, Device, FramesWires, Outlets, PlatformWires,
+    SpinWires, StageBus, StageWires, TurntableWires, VehicleWires, sensor_settings, stage_settings,
+};
+
+use crate::clock;
+
+bind_interrupts!(struct Interrupts {
+    EXTI0 => exti::InterruptHandler<typelevel::EXTI0>;
+    EXTI1 => exti::InterruptHandler<typelevel::EXTI1>;
+    EXTI3 => exti::InterruptHandler<typelevel::EXTI3>;
+    EXTI4 => exti::InterruptHandler<typelevel::EXTI4>;
+    EXTI15_10 => exti::InterruptHandler<typelevel::EXTI15_10>;
+    I2C2_EV => i2c::EventInterruptHandler<I2C2>;
+    I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
+    DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
+    DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
+    DMA1_CHANNEL4 => dma::InterruptHandler<DMA1_CH4>;
+    DMA1_CHANNEL5 => dma::InterruptHandler<DMA1_CH5>;
+    DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
+});
+
+/// Longest transfer of the IMU on the base before the bus counts as broken; the usual ones take 0.4 ms.
+const BASE_TIMEOUT: Duration = Duration::from_millis(5);
+
+/// The connections that several carriers have, and the pins of the others, which stay unconnected until
+/// they are needed: a pin takes no memory.
+pub struct Board {
+    buses: Buses,
+    converter: ConverterWires,
+    accelerometer: Device,
+    axis: AxisWires,
+    motor_enable: Output<'static>,
+    outlets: Outlets,
+    base: BasePins,
+    selects: (Peri<'static, PB2>, Peri<'static, PA4>, Peri<'static, PA3>, Peri<'static, PB4>),
+    ready: (Peri<'static, PB0>, Peri<'static, PB1>, Peri<'static, PC4>, Peri<'static, PC3>),
+    lines: (Peri<'static, EXTI0>, Peri<'static, EXTI1>, Peri<'static, EXTI4>, Peri<'static, EXTI3>),
+}
+
+impl Board {
+    /// Connects all that several carriers have.
+    ///
+    /// # Errors
+    /// An invalid configuration of the serial port.
+    pub fn new(p: Peripherals) -> Result<Self, ConfigError> {
+        static SENSORS: StaticCell<Bus> = StaticCell::new();
+        static STAGE: StaticCell<StageBus> = StaticCell::new();
+        let clock = clock::SYSTEM;
+        let (low, high) = (sensor_settings(clock), stage_settings(clock));
+        let sensors =
+            Spi::new(p.SPI1, p.PA5, p.PA7, p.PA6, p.DMA1_CH3, p.DMA1_CH2, Interrupts, low);
+        let stage = BlockingAsync::new(Spi::new_blocking(p.SPI2, p.PD1, p.PD4, p.PD3, high));
+        let sensors = SENSORS.init(Mutex::new(sensors));
+        let stage = STAGE.init(Mutex::new(stage));
+        let buses = Buses { sensors, stage, clock };
+        let ready = ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts);
+        let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
+        Ok(Self {
+            buses,
+            converter: buses.converter(p.PA2, ready),
+            accelerometer: buses.accelerometer(p.PA15),
+            axis: buses.axis(p.PD0, p.PD5),
+            motor_enable: Output::new(p.PD2, Level::Low, Speed::Low),
+            outlets: Outlets { link, flash: p.FLASH },
+            base: BasePins {
+                bus: p.I2C2,
+                pins: (p.PB10, p.PB11),
+                channels: (p.DMA1_CH4, p.DMA1_CH5),
+            },
+            selects: (p.PB2, p.PA4, p.PA3, p.PB4),
+            ready: (p.PB0, p.PB1, p.PC4, p.PC3),
+            lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
+        })
+    }
+
+    /// Connections of a stage.
+    pub fn stage(self) -> StageWires {
+        let Self { converter, accelerometer, axis: axes, base, motor_enable, outlets, .. } = self;
+        let base = base.connect();
+        PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
+    }
+
+    /// Connections of two frames; the inner one has the select pins of a vehicle's further gyros.
+    pub fn two_frames(self) -> FramesWires {
+        let (encoder, motor, ..) = self.selects;
+        let axes = Frames { outer: self.axis, inner: self.buses.axis(encoder, motor) };
+        let Self { converter, accelerometer, base, motor_enable, outlets, .. } = self;
+        let base = base.connect();
+        PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
+    }
+
+    /// Connections of a turntable.
+    pub fn turntable(self) -> TurntableWires {
+        let Self { converter, accelerometer, axis: axes, motor_enable, outlets, .. } = self;
+        PlatformWires { converter, accelerometer, axes, base: (), motor_enable, outlets }
+    }
+
+    /// Connections in a vehicle.
+    pub fn vehicle(self) -> VehicleWires {
+        let Self { buses, converter, accelerometer, outlets, selects, ready, lines, .. } = self;
+        let line = ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts);
+        let right = buses.converter(selects.0, line);
+        let line = ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts);
+        let down = buses.converter(selects.1, line);
+        VehicleWires { converters: [converter, right, down], accelerometer, outlets }
+    }
+
+    /// Connections on a spinning body.
+    pub fn spinning_body(self) -> SpinWires {
+        let Self { buses, converter, outlets, selects, ready, lines, .. } = self;
+        let line = ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts);
+        let right = buses.converter(selects.0, line);
+        let line = ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts);
+        let up = buses.converter(selects.1, line);
+        let line = ExtiInput::new(ready.2, lines.2, Pull::Up, Interrupts);
+        let force_up = buses.converter(selects.2, line);
+        let line = ExtiInput::new(ready.3, lines.3, Pull::Up, Interrupts);
+        let force_right = buses.converter(selects.3, line);
+        let converters = [converter, up, right, force_up, force_right];
+        SpinWires { converters, outlets }
+    }
+}
+
+/// Pins of the IMU on the base.
+struct BasePins {
+    bus: Peri<'static, I2C2>,
+    pins: (Peri<'static, PB10>, Peri<'static, PB11>),
+    channels: (Peri<'static, DMA1_CH4>, Peri<'static, DMA1_CH5>),
+}
+
+impl BasePins {
+    /// Connects the IMU.
+    fn connect(self) -> BaseBus {
+        let Self { bus, pins: (clock, data), channels: (sending, receiving) } = self;
+        let mut settings = i2c::Config::default();
+        settings.frequency = Hertz(lsm6dsl::BUS_HERTZ);
+        settings.timeout = BASE_TIMEOUT;
+        I2c::new(bus, clock, data, sending, receiving, Interrupts, settings)
+    }
+}

@@ -1,0 +1,82 @@
+//! How a simulated run goes on after its alignment: what the vehicle does, what it is given.
+
+use core::cell::Cell;
+
+use embassy_time::Instant;
+use orientation::alignment::Azimuth;
+use orientation::attitude as keep;
+use orientation::navigation::{Policy, Realignment};
+use orientation::units::DEGREE;
+
+use firmware::ports::Aiding;
+
+/// How a run goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// For how long, s; zero for not at all.
+    pub seconds: f64,
+    /// Whether it is aligned anew at stops.
+    pub realigns: bool,
+    /// Duration of a drive after the alignment, s.
+    pub drive_s: f64,
+    /// Duration of a stop after the alignment, s.
+    pub stop_s: f64,
+    /// An azimuth that is handed over from outside, with its 1σ, °, and when, s.
+    pub handover: Option<([f64; 2], f64)>,
+}
+
+impl Default for Hold {
+    /// Not at all; else drives of four minutes and stops of one.
+    fn default() -> Self {
+        Self { seconds: 0.0, realigns: false, drive_s: 240.0, stop_s: 60.0, handover: None }
+    }
+}
+
+impl Hold {
+    /// The default for so many seconds.
+    #[must_use]
+    pub fn of(seconds: f64) -> Self {
+        Self { seconds, ..Self::default() }
+    }
+
+    /// What the instrument is given, with what realigns it where it may, and the gyros about down: beside
+    /// the two others, and the precise one.
+    pub(super) fn policy(
+        &self,
+        realignment: Realignment,
+        beside: keep::Gyro,
+        precise: keep::Gyro,
+    ) -> Policy {
+        Policy {
+            hold_seconds: self.seconds,
+            knows_stops: realignment == Realignment::BetweenStops,
+            realignment: if self.realigns { realignment } else { Realignment::Never },
+            skips_known: self.handover.is_some(),
+            beside,
+            precise,
+        }
+    }
+
+    /// Aiding that hands over the azimuth of the scenario.
+    #[must_use]
+    pub fn aiding(&self) -> HandoverAiding {
+        HandoverAiding { pending: Cell::new(self.handover) }
+    }
+}
+
+/// Hands over one azimuth at its time.
+#[derive(Debug)]
+pub struct HandoverAiding {
+    pending: Cell<Option<([f64; 2], f64)>>,
+}
+
+impl Aiding for HandoverAiding {
+    fn azimuth(&self) -> Option<Azimuth> {
+        let ([azimuth, sigma], at_s) = self.pending.get()?;
+        if Instant::now().as_micros() as f64 * 1e-6 < at_s {
+            return None;
+        }
+        self.pending.set(None);
+        Some(Azimuth { angle: azimuth * DEGREE, sigma: sigma * DEGREE })
+    }
+}

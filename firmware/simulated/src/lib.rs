@@ -1,0 +1,183 @@
+//! The board as it is simulated: chips, stage and Earth of `hal-mock` behind the instrument's ports.
+//!
+//! Host and emulator run exactly this, so that their results can be compared bit for bit.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod base;
+pub mod coarse;
+pub mod fault;
+pub mod flash;
+pub mod hold;
+pub mod keep;
+pub mod mount;
+pub mod scenario;
+pub mod spin;
+pub mod trace;
+pub mod turntable;
+pub mod vehicle;
+
+use core::cell::RefCell;
+
+use drivers::ads1262::Ads1262;
+use drivers::ads1262::configuration::Configuration as Converter;
+use drivers::adxl355::{self, Adxl355};
+use drivers::mt6835::{self, Mt6835};
+use drivers::tmc5160::configuration::Configuration as Motor;
+use drivers::tmc5160::{self, Tmc5160};
+use embassy_time::{Delay, Instant};
+use hal_mock::ads1262::Ads1262 as SimulatedConverter;
+use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
+use hal_mock::board::{StageBoard, StageChips};
+use hal_mock::chip::{Rig, Select};
+use hal_mock::mt6835::Mt6835 as SimulatedEncoder;
+use hal_mock::plant::journey::JourneyConfiguration;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::plant::{Plant, PlantConfiguration};
+use hal_mock::spi::{ReadyPin, SpiPort};
+use hal_mock::tmc5160::{Oscillator, Tmc5160 as SimulatedMotorDriver};
+
+use self::fault::{Injection, PortWrapper};
+use self::scenario::Scenario;
+use firmware::chips;
+use firmware::ports::{NoBase, Ports, Sensors};
+
+/// Bus clock of the gyro's converter, Hz; it allows 8 MHz.
+const CONVERTER_HERTZ: u32 = 5_000_000;
+
+/// The motor driver's oscillator, 2 % fast: positions do not depend on it, velocities do.
+const OSCILLATOR: Oscillator = Oscillator::Internal { hertz: 12_240_000 };
+
+/// The simulated chips around their plant.
+pub type Chips<'a> = StageBoard<
+    'a,
+    SimulatedConverter,
+    SimulatedAccelerometer,
+    SimulatedEncoder,
+    SimulatedMotorDriver,
+>;
+
+/// The simulated board of a scenario with what goes wrong with it, on a base that goes along a journey where
+/// there is one.
+pub fn board<'a>(
+    scenario: &Scenario,
+    journey: Option<JourneyConfiguration<'a>>,
+    injection: &'a Injection,
+) -> Chips<'a> {
+    let plant = PlantConfiguration { journey, ..scenario.plant() };
+    board_around(&plant, scenario.seed, injection)
+}
+
+/// The chips of a board around a plant.
+fn board_around<'a>(
+    plant: &PlantConfiguration<'a>,
+    seed: u64,
+    injection: &'a Injection,
+) -> Chips<'a> {
+    let [low, high] = plant.stage.travel_rad;
+    let travel_rad = [low, injection.caught.outer.unwrap_or(high)];
+    let configuration = PlantConfiguration {
+        stage: StageConfiguration { travel_rad, ..plant.stage },
+        disturbances: &injection.disturbances,
+        faults: &injection.axes.outer,
+        ..*plant
+    };
+    StageBoard {
+        plant: Plant::new(&configuration, seed),
+        chips: StageChips {
+            gyro: SimulatedConverter::default(),
+            accelerometer: SimulatedAccelerometer::new(Instant::MIN),
+            encoder: SimulatedEncoder::new(Instant::MIN),
+            actuator: SimulatedMotorDriver::new(OSCILLATOR, Instant::MIN),
+        },
+        blackouts: &injection.blackouts,
+    }
+}
+
+/// A simulated serial bus with a wrapper around it.
+type Bus<'a, A> = <A as PortWrapper>::Spi<SpiPort<'a>>;
+
+/// A simulated data-ready line with a wrapper around it.
+type Line<'a, A> = <A as PortWrapper>::Line<ReadyPin<'a>>;
+
+/// A gyro behind simulated ports.
+type SimulatedGyro<'a, A> = chips::AnalogueGyro<Bus<'a, A>, Line<'a, A>, Delay>;
+
+/// The sensors of a simulated board.
+pub type SimulatedSensors<'a, A> = Sensors<
+    SimulatedGyro<'a, A>,
+    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
+    chips::StageEncoder<Bus<'a, A>, Delay>,
+>;
+
+/// The other ports of a simulated board.
+pub type SimulatedPorts<'a, A, L, R> = Ports<chips::StageMotor<Bus<'a, A>, Delay>, L, R>;
+
+/// The wires of a simulated board: its chips as the drivers reach them, with a wrapper around every port.
+#[expect(missing_debug_implementations, reason = "a rig of any chips is none")]
+pub struct Wires<'a, 'w, A>(pub &'a RefCell<dyn Rig + 'a>, pub &'w A);
+
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
+    /// The sensors of a stage or a turntable, whose accelerometer is given this.
+    #[must_use]
+    pub fn sensors(
+        &self,
+        scenario: &Scenario,
+        force: adxl355::Configuration,
+    ) -> SimulatedSensors<'a, A> {
+        Sensors {
+            gyro: self.gyro(Select::Gyro, scenario),
+            accelerometer: self.accelerometer(force),
+            encoder: self.encoder(Select::Encoder),
+            base: NoBase,
+        }
+    }
+
+    /// The other ports of a stage or a turntable, whose motor driver is given this.
+    pub fn ports<L, R>(&self, motor: Motor, link: L, recorder: R) -> SimulatedPorts<'a, A, L, R> {
+        Ports { actuator: self.motor(Select::Actuator, motor), link, recorder }
+    }
+
+    /// The bus of one chip, with a clock of `hertz`.
+    fn bus(&self, select: Select, hertz: u32) -> Bus<'a, A> {
+        self.1.spi(select, SpiPort::new(self.0, select, hertz))
+    }
+
+    /// A converter with its data-ready line, on a bus with a clock of `hertz`.
+    fn converter(
+        &self,
+        select: Select,
+        hertz: u32,
+        configuration: Converter,
+    ) -> Ads1262<Bus<'a, A>, Line<'a, A>, Delay> {
+        let ready = self.1.line(select, ReadyPin::new(self.0, select));
+        Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
+    }
+
+    /// A gyro with its converter.
+    fn gyro(&self, select: Select, scenario: &Scenario) -> SimulatedGyro<'a, A> {
+        let converter = self.converter(select, CONVERTER_HERTZ, scenario.converter());
+        chips::AnalogueGyro { converter, scale: scenario::SCALE, limit: scenario::LIMIT }
+    }
+
+    /// The accelerometer.
+    fn accelerometer(
+        &self,
+        configuration: adxl355::Configuration,
+    ) -> chips::PlatformAccelerometer<Bus<'a, A>, Delay> {
+        let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
+        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, configuration))
+    }
+
+    /// The encoder of a stage or of one of its frames.
+    fn encoder(&self, select: Select) -> chips::StageEncoder<Bus<'a, A>, Delay> {
+        let bus = self.bus(select, mt6835::BUS_HERTZ);
+        chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
+    }
+
+    /// The motor of a stage or of one of its frames.
+    fn motor(&self, select: Select, configuration: Motor) -> chips::StageMotor<Bus<'a, A>, Delay> {
+        let bus = self.bus(select, tmc5160::BUS_HERTZ);
+        chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
+    }
+}

@@ -1,0 +1,253 @@
+//! One simulated alignment on a two-frame mount: what is true, what the board is given, the wiring.
+//!
+//! Site, attitude, gyro and dwells are those of a [`Scenario`]; the mechanism, its calibration and the
+//! accelerometer on the base are its own. What a calibration leaves is drawn from the seed.
+
+use drivers::tmc5160::configuration::Configuration as Motor;
+use embassy_time::Delay;
+use hal_mock::chip::Select;
+use hal_mock::gimbal::board::GimbalBoard;
+use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
+use hal_mock::noise::Generator;
+use hal_mock::plant::journey::JourneyConfiguration;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::plant::{PlantConfiguration, StageFault};
+use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::mount::{
+    ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
+};
+use orientation::alignment::stepwise::session::Prepared;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::attitude as keep;
+use orientation::planner::POSITIONS;
+use orientation::planner::Rotation;
+use orientation::planner::order::Order;
+use orientation::units::DEGREE;
+
+use super::fault::{Injection, PortWrapper};
+use super::keep::Day;
+use super::scenario::{self, Scenario, Turning};
+use super::{Bus, OSCILLATOR, SimulatedGyro, Wires};
+use firmware::chips;
+use firmware::configuration::FramesConfiguration;
+use firmware::ports::{Frames, Ports, Sensors};
+
+/// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
+/// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
+const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+
+/// How long the frames take: the stage's ramp, each on its own way; they stand 1.5 s before they are
+/// believed.
+const ROTATION: Rotation =
+    Rotation { rest: scenario::ROTATION.rest + 1.5, speed: 0.35, wraps: true };
+
+/// What a movement of the frames takes, s, more than a usual one of a stage: half a turn is the longest.
+const FRAMES_SECONDS: f64 = 7.0;
+
+/// The headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
+const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
+
+/// A stream of random numbers that no source of noise has.
+const STREAM: u64 = 1000;
+
+/// A simulated alignment on a two-frame mount.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramesScenario {
+    /// Site, attitude, gyro, sample rate and dwell; its positions and start angle are not looked at.
+    pub base: Scenario,
+    /// How often the four headings are visited, 1…16.
+    pub passes: usize,
+    /// What the calibration found.
+    pub calibrated: TwoFrame,
+    /// 1σ of each non-orthogonality that it leaves, rad.
+    pub orthogonality_sigma: f64,
+    /// Whether the board is given it; else it takes the mount for perfect.
+    pub is_calibrated: bool,
+    /// Frame angles at power-on, °.
+    pub start_deg: Frames<f64>,
+}
+
+impl Default for FramesScenario {
+    /// Six passes of four dwells of 10 s on a mount with non-orthogonalities of some tenths of a degree,
+    /// calibrated to 5″.
+    fn default() -> Self {
+        Self {
+            base: Scenario::default(),
+            passes: 6,
+            calibrated: TwoFrame {
+                azimuth: 0.05 * DEGREE,
+                pitch: -0.08 * DEGREE,
+                frames: 0.15 * DEGREE,
+                gyro: -0.12 * DEGREE,
+                outer_zero: 0.1 * DEGREE,
+                inner_zero: -0.2 * DEGREE,
+            },
+            orthogonality_sigma: 5.0 / 3600.0 * DEGREE,
+            is_calibrated: true,
+            start_deg: Frames { outer: 12.0, inner: -35.0 },
+        }
+    }
+}
+
+impl FramesScenario {
+    /// A pass of short dwells at 2400 Hz: what a sample costs at the highest rate.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        Self { base: Scenario::brief(seed), passes: 1, ..Self::default() }
+    }
+
+    /// What its session needs; none where the latitude is none or the schedule impossible.
+    #[must_use]
+    pub fn prepared(&self) -> Option<Prepared> {
+        Prepared::new(self.setting()?, self.procedure()).ok()
+    }
+
+    /// What the board is given about place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn setting(&self) -> Option<Setting> {
+        let site = self.base.site()?;
+        let encoder_sigma =
+            azimuth_sigma(self.orthogonality_sigma, site.encoder_sigma, site.latitude);
+        let site = Site { accelerometer_bias_sigma: FORCE_BIAS_SIGMA, encoder_sigma, ..site };
+        Some(Setting { mount: TWO_FRAMES, half: self.base.half, ..Setting::new(site) })
+    }
+
+    /// How the board goes about it.
+    pub fn procedure(&self) -> Procedure {
+        let pass =
+            PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
+        let positions = core::iter::repeat_n(pass, self.passes).flatten().take(POSITIONS).collect();
+        let turning = Turning {
+            rotation: ROTATION,
+            orders: &Order::QUARTERS,
+            usual: Schedule::Listed(positions),
+        };
+        Procedure { arrival: ARRIVAL, ..self.base.procedure_on(&turning) }
+    }
+
+    /// What the board is given about the frames.
+    ///
+    /// # Errors
+    /// A calibration that lets the axis not stand where it must.
+    pub fn frames(&self) -> Result<FramesConfiguration, MountError> {
+        let stated = if self.is_calibrated { self.calibrated } else { self.zeros() };
+        let harmonics = self.base.configuration().encoder;
+        FramesConfiguration::new(stated, Frames { outer: harmonics, inner: harmonics })
+    }
+
+    /// A perfect mount with the same zeros of its encoders, without which nothing homes.
+    fn zeros(&self) -> TwoFrame {
+        let TwoFrame { outer_zero, inner_zero, .. } = self.calibrated;
+        TwoFrame { outer_zero, inner_zero, ..TwoFrame::default() }
+    }
+
+    /// What is true of everything that the chips feel and move, on a base that goes along a journey where
+    /// there is one.
+    #[must_use]
+    pub fn gimbal<'a>(
+        &self,
+        journey: Option<JourneyConfiguration<'a>>,
+        injection: &'a Injection,
+    ) -> GimbalConfiguration<'a> {
+        let mut chance = Generator::stream(self.base.seed, STREAM);
+        let mut left = |sigma: f64| sigma * chance.gaussian();
+        let stated = &self.calibrated;
+        let misalignment = Misalignment {
+            azimuth_rad: stated.azimuth,
+            pitch_rad: stated.pitch,
+            frames_rad: stated.frames + left(self.orthogonality_sigma),
+            gyro_rad: stated.gyro + left(self.orthogonality_sigma),
+        };
+        let disturbances = &injection.disturbances;
+        let mut plant = PlantConfiguration { journey, disturbances, ..self.base.plant() };
+        plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA;
+        let sigma = scenario::G_SENSITIVITY_SIGMA;
+        for part in &mut plant.instruments.gyro.g_sensitivity_deg_h_g {
+            *part += left(sigma);
+        }
+        let third_g_sensitivity_deg_h_g = left(sigma);
+        let Injection { axes, caught, .. } = injection;
+        let start = self.start_deg;
+        GimbalConfiguration {
+            outer: frame(&plant, &axes.outer, caught.outer, stated.outer_zero, start.outer),
+            inner: frame(&plant, &axes.inner, caught.inner, stated.inner_zero, start.inner),
+            plant,
+            misalignment,
+            third_g_sensitivity_deg_h_g,
+        }
+    }
+
+    /// The simulated board on such a base.
+    pub fn board<'a>(
+        &self,
+        journey: Option<JourneyConfiguration<'a>>,
+        injection: &'a Injection,
+    ) -> GimbalBoard<'a> {
+        let gimbal = Gimbal::new(&self.gimbal(journey, injection), self.base.seed);
+        let mut board = GimbalBoard::new(gimbal, OSCILLATOR);
+        board.blackouts = &injection.blackouts;
+        board
+    }
+
+    /// What the keeper is given about place and gyros; none where the latitude is none.
+    #[must_use]
+    pub fn keeper(&self) -> Option<keep::Setting> {
+        let keeper = self.base.keeper()?;
+        Some(keep::Setting { force_bias_sigma: FORCE_BIAS_SIGMA, ..keeper })
+    }
+
+    /// Where the base goes after the alignment.
+    pub fn day(&self) -> Day {
+        self.base.day_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
+    }
+}
+
+/// A frame with the gear and the encoder of the single-axis stage, whose cable may be caught at an angle, rad.
+fn frame<'a>(
+    plant: &PlantConfiguration<'_>,
+    faults: &'a [StageFault],
+    caught: Option<f64>,
+    zero_rad: f64,
+    start_deg: f64,
+) -> FrameConfiguration<'a> {
+    let perfect = FrameConfiguration::default();
+    let [low, high] = perfect.stage.travel_rad;
+    let stage = StageConfiguration {
+        start_rad: start_deg * DEGREE,
+        travel_rad: [low, caught.unwrap_or(high)],
+        switches_rad: perfect.stage.switches_rad,
+        ..plant.stage
+    };
+    FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
+}
+
+/// The sensors of a two-frame mount on simulated chips.
+pub type FrameSensors<'a, A> = Sensors<
+    SimulatedGyro<'a, A>,
+    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
+    Frames<chips::StageEncoder<Bus<'a, A>, Delay>>,
+>;
+
+/// The other ports of a two-frame mount on simulated chips.
+pub type FramePorts<'a, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'a, A>, Delay>>, L, R>;
+
+impl<'a, A: PortWrapper> Wires<'a, '_, A> {
+    /// The sensors of a two-frame mount.
+    #[must_use]
+    pub fn frame_sensors(&self, scenario: &FramesScenario) -> FrameSensors<'a, A> {
+        let Sensors { gyro, accelerometer, encoder: outer, base } =
+            self.sensors(&scenario.base, scenario::FORCE);
+        let inner = self.encoder(Select::InnerEncoder);
+        Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
+    }
+
+    /// The other ports of a two-frame mount.
+    pub fn frame_ports<L, R>(&self, link: L, recorder: R) -> FramePorts<'a, A, L, R> {
+        let motor = |select| self.motor(select, Motor::default());
+        let actuator =
+            Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
+        Ports { actuator, link, recorder }
+    }
+}

@@ -1,0 +1,447 @@
+//! Configuration of the instrument, to be set before it is flashed: **edit this file**, the link takes
+//! no commands. The carrier is chosen by a feature.
+//!
+//! | what | where to get it |
+//! |---|---|
+//! | [`LATITUDE`] | a map; 0.01° is near enough |
+//! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
+//! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
+//! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
+//! | [`HOLDS`] | on a stage or on two frames, once the azimuth is known: a choice |
+//! | [`GEOMETRY`], [`ORTHOGONALITY_SIGMA`], [`PASSES`] | of two frames: their calibration, and how often each heading is taken |
+//! | [`SPEEDS`], [`SENSOR`], [`MODULATED_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
+//! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
+//! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
+//! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`], [`SPIN_BIAS_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
+//! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
+//!
+//! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
+
+use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
+use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
+use firmware::calibration::Harmonics;
+use firmware::configuration::{
+    Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
+};
+use firmware::ports::Frames;
+use firmware::spin::configuration::{Channel, SpinConfiguration};
+use orientation::alignment::period::CONVERTER_TOLERANCE;
+use orientation::alignment::rotating;
+use orientation::alignment::rotating::Sensor;
+use orientation::alignment::rotating::session::Procedure as Turning;
+use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::mount::{
+    ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma,
+};
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::procedure::Survey;
+use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::stops;
+use orientation::alignment::stops::session::Procedure as Driving;
+use orientation::earth::Latitude;
+use orientation::navigation::{Policy, Realignment};
+use orientation::noise::model::{GyroNoise, StatedNoise};
+use orientation::planner::Rotation;
+use orientation::planner::order::Order;
+use orientation::signal::sway::CoarseSensors;
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
+use orientation::{attitude as keep, roll as spin};
+
+/// Platform that carries the gyro.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Carrier {
+    /// A stage that stands at positions.
+    Stage,
+    /// A mount with two frames about horizontal axes, on which the gyro stands at four headings.
+    TwoFrames,
+    /// A platform on a slip ring that rotates continuously.
+    Turntable,
+    /// A vehicle that drives from stop to stop, with three gyros.
+    Vehicle,
+    /// A body in fast rotation about its longitudinal axis, with three gyros and two
+    /// accelerometers.
+    SpinningBody,
+}
+
+/// The carriers, and which of them a feature of this crate has chosen.
+const CARRIERS: [(Carrier, bool); 5] = [
+    (Carrier::Stage, cfg!(feature = "stage")),
+    (Carrier::TwoFrames, cfg!(feature = "two-frames")),
+    (Carrier::Turntable, cfg!(feature = "turntable")),
+    (Carrier::Vehicle, cfg!(feature = "vehicle")),
+    (Carrier::SpinningBody, cfg!(feature = "spinning-body")),
+];
+
+/// Platform of this instrument. Code for the others is not in the image.
+pub const CARRIER: Carrier = {
+    let (mut chosen, mut place) = (None, 0);
+    while place < CARRIERS.len() {
+        match (CARRIERS[place], chosen) {
+            ((carrier, true), None) => chosen = Some(carrier),
+            ((_, true), Some(_)) => panic!("more than one carrier is chosen"),
+            ((_, false), _) => {}
+        }
+        place += 1;
+    }
+    match chosen {
+        Some(carrier) => carrier,
+        None => panic!("choose a carrier, as in `cargo board --features stage`"),
+    }
+};
+
+/// Geodetic latitude, °, north positive; up to ±85°, beyond which no azimuth is determined.
+const LATITUDE: f64 = 47.58;
+const _: () = assert!(-85.0 <= LATITUDE && LATITUDE <= 85.0);
+
+/// Rate beyond which the gyro's own output may saturate, °/s: 97 % of its range.
+const GYRO_LIMIT: f64 = 0.97 * 40.0;
+/// Scale factor of the gyro at the converter's input, V per °/s, negative where it is mounted
+/// upside down. The converter's range is ±2.5 V.
+const GYRO_SCALE: f64 = 0.05;
+
+/// Angle random walk N of the gyro, °/√h (OIUS-1000 class).
+const GYRO_N: f64 = 0.001;
+/// Bias instability B of the gyro, °/h.
+const GYRO_B: f64 = 0.007;
+/// Rate random walk K of the gyro, °/h/√h.
+const GYRO_K: f64 = 0.0;
+/// Standard deviation of the gyro's scale factor, 1σ, relative.
+const GYRO_SCALE_SIGMA: f64 = 5e-4;
+/// g-sensitivity along the gyro's axis and 90° clockwise of it, °/h/g.
+const G_SENSITIVITY: [f64; 2] = [0.0, 0.0];
+/// Standard deviation of each g-sensitivity, 1σ, °/h/g.
+const G_SENSITIVITY_SIGMA: f64 = 0.1;
+
+/// Standard deviation of the accelerometer's biases, 1σ, m/s²: the ADXL355's offset is at most 25
+/// mg (data sheet rev. C, table 1).
+const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+
+/// Harmonics of the encoder's error, rad.
+const ENCODER: Harmonics = Harmonics { first: [0.0; 2], second: [0.0; 2] };
+/// Standard deviation of the remaining encoder error as it enters the azimuth, 1σ, rad.
+const ENCODER_SIGMA: f64 = 0.05 * DEGREE;
+
+/// Configuration of the converter: sample rate, filter and gain.
+pub const CONVERTER: Converter =
+    Converter { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 };
+/// Scale of the converter's codes; a scale factor of zero does not compile.
+pub const SCALE: Scale =
+    match Scale::new(GYRO_SCALE / DEGREE, INTERNAL_REFERENCE_VOLTS, CONVERTER.gain) {
+        Some(scale) => scale,
+        None => unreachable!(),
+    };
+/// Rate beyond which the gyro may saturate.
+pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
+
+/// Length of a survey at rest before the alignment, s, in which the gyro's noise is measured; the
+/// plan then follows from it, with the total time of the dwells below. `None`: the noise configured
+/// above is used. An hour shows B and K, ten minutes N.
+const SURVEY: Option<f64> = None;
+/// Required 1σ of the azimuth, °, and the time allowed, s, from the end of the survey or else from
+/// the beginning. `None`: the session ends with its schedule.
+const ACCURACY: Option<(f64, f64)> = None;
+/// Positions on the full circle; the first is repeated at the end.
+const POSITIONS: usize = 24;
+/// Time at each position, s.
+const DWELL: f64 = 10.0;
+/// Rotation time of the stage: 1.20 s for 15° and 18.41 s for 360°, plus the settling check.
+const ROTATION: Rotation = Rotation { rest: 0.75, speed: 0.35, wraps: false };
+/// Time for which the stage rings after an arrival, s.
+const RINGING: f64 = 0.25;
+
+/// Site and instrument.
+fn site() -> Site {
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    Site {
+        noise: StatedNoise::Whole(GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0)),
+        scale_sigma: GYRO_SCALE_SIGMA,
+        g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
+        g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
+        accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
+        encoder_sigma: ENCODER_SIGMA,
+        required_sigma: ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE,
+        ..Site::at(latitude)
+    }
+}
+
+/// Site and instrument on a stage.
+pub fn setting() -> Setting {
+    Setting::new(site())
+}
+
+/// Procedure of the session on a stage.
+pub fn procedure() -> Procedure {
+    let schedule = Schedule::closed_circle(POSITIONS, DWELL);
+    let plan_seconds = schedule.seconds();
+    let procedure = Procedure::new(schedule, 1.0 / CONVERTER.rate.hertz());
+    let mut procedure =
+        Procedure { settle_seconds: RINGING, period_tolerance: CONVERTER_TOLERANCE, ..procedure };
+    if let Some(seconds) = SURVEY {
+        let orders = &Order::COMPARED;
+        procedure = procedure.after(Survey {
+            seconds,
+            rotation: ROTATION,
+            orders,
+            shortest: 2.0,
+            plan_seconds,
+        });
+    }
+    match ACCURACY {
+        Some((_, seconds)) => procedure.until_accurate(seconds),
+        None => procedure,
+    }
+}
+
+/// Whether a stage or a mount holds azimuth, pitch and roll without end after the alignment, by the
+/// LSM6DSL of the board itself. It compensates the sway of the base too: the board is fixed to the
+/// base, the chip's x axis forward, y to the right, z down.
+pub const HOLDS: bool = true;
+/// Decimation of the LSM6DSL: read once in this many samples of the gyro, 200 times a second.
+pub const BASE_DIVIDER: u32 = 2;
+/// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
+/// its oscillator and the outputs that are not read.
+const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];
+/// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases
+/// after calibration, m/s².
+const BASE_SIGMAS: (f64, f64, f64) = (3.0, 0.005, 2e-3 * 9.80665);
+/// Distance of the board from the point about which the base sways, m.
+const BASE_LEVER: f64 = 0.4;
+
+/// Time between two readings of the LSM6DSL, s.
+fn base_period() -> f64 {
+    f64::from(BASE_DIVIDER) / CONVERTER.rate.hertz()
+}
+
+/// Properties of the LSM6DSL, for the compensation of sway. An output is half a period old on average
+/// when it is read, and is held until the next reading.
+pub fn base_sensors() -> CoarseSensors {
+    let [rate, force] = BASE_NOISE;
+    let output = 1.0 / 208.0;
+    let held = 0.5 * (base_period() - 1.0 / CONVERTER.rate.hertz());
+    CoarseSensors {
+        mismatch: BASE_SIGMAS.1 as f32,
+        delay: (0.5 * output + held) as f32,
+        delay_sigma: (0.29 * output) as f32,
+        lever: BASE_LEVER as f32,
+        ..CoarseSensors::of_densities(rate, force)
+    }
+}
+
+/// Site and gyros for attitude and heading on a stage or on two frames.
+pub fn base_keeper() -> keep::Setting {
+    let (bias_deg_s, scale_sigma, force_bias_sigma) = BASE_SIGMAS;
+    let usual = keep::Gyro::coarse();
+    let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
+    let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
+    let gyro = keep::Gyro { noise, bias_sigma: bias_deg_s * DEGREE, scale_sigma };
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds: base_period() }
+}
+
+/// Policy after the alignment on a stage or on two frames: the azimuth is held without end, and its σ
+/// grows; only a restart aligns anew.
+pub fn base_policy() -> Policy {
+    let [_, _, beside] = base_keeper().gyros;
+    Policy {
+        hold_seconds: f64::INFINITY,
+        realignment: Realignment::Never,
+        knows_stops: false,
+        skips_known: false,
+        beside,
+        precise: kept_gyro(),
+    }
+}
+
+/// Calibration of the two frames; until it is known a perfect mount, and a greater
+/// [`ORTHOGONALITY_SIGMA`].
+const GEOMETRY: TwoFrame =
+    TwoFrame { azimuth: 0.0, pitch: 0.0, frames: 0.0, gyro: 0.0, outer_zero: 0.0, inner_zero: 0.0 };
+/// Standard deviation of each non-orthogonality that the calibration leaves, 1σ, rad.
+const ORTHOGONALITY_SIGMA: f64 = 0.05 * DEGREE;
+/// Number of times that the four headings are taken, each for a dwell.
+const PASSES: usize = 6;
+/// Headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
+const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
+
+/// Site and instrument on two frames.
+pub fn mount_setting() -> Setting {
+    let site = site();
+    let encoder_sigma = azimuth_sigma(ORTHOGONALITY_SIGMA, ENCODER_SIGMA, site.latitude);
+    let accelerometer_bias_sigma = FORCE_CALIBRATED_SIGMA;
+    let site = Site { accelerometer_bias_sigma, encoder_sigma, ..site };
+    Setting { mount: TWO_FRAMES, ..Setting::new(site) }
+}
+
+/// Procedure of the session on two frames.
+pub fn mount_procedure() -> Procedure {
+    let pass = PASS.map(|heading| Position { angle: heading * DEGREE, seconds: DWELL });
+    let positions = core::iter::repeat_n(pass, PASSES).flatten().collect();
+    let procedure = Procedure::new(Schedule::Listed(positions), 1.0 / CONVERTER.rate.hertz());
+    Procedure {
+        arrival: ARRIVAL,
+        settle_seconds: RINGING,
+        period_tolerance: CONVERTER_TOLERANCE,
+        ..procedure
+    }
+}
+
+/// Geometry, encoders and drives of the two frames.
+///
+/// # Errors
+/// A geometry with which an orientation is out of reach.
+pub fn frames() -> Result<FramesConfiguration, MountError> {
+    FramesConfiguration::new(GEOMETRY, Frames { outer: ENCODER, inner: ENCODER })
+}
+
+/// Configuration of the stage's devices.
+pub fn instrument() -> Configuration {
+    let rate = CONVERTER.rate.hertz();
+    Configuration { encoder: ENCODER, ..Configuration::at(rate) }
+}
+
+/// Speeds of a rotating platform, turns per second: one for a gyro, two for a molecular-electronic
+/// sensor.
+const SPEEDS: &[f64] = &[0.137];
+/// Kind of sensor on the platform: [`Sensor::GYRO`] or [`Sensor::MOLECULAR`].
+const SENSOR: Sensor = Sensor::GYRO;
+/// Rate-modulated turns before those at constant rate, to measure the axis misalignment; zero to
+/// use the misalignment stored in flash. `None`: the default number.
+const MODULATED_TURNS: Option<u32> = None;
+
+/// Standard deviation of the encoder's zero on a rotating platform, as it enters the azimuth, 1σ,
+/// rad: without an index no rotation shows it.
+const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
+
+/// Site and instrument on a rotating platform.
+pub fn turning_setting() -> rotating::Setting {
+    let encoder_zero_sigma = ENCODER_ZERO_SIGMA;
+    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(site(), SENSOR) }
+}
+
+/// Procedure of the session on a rotating platform.
+pub fn turning_procedure() -> Turning {
+    let mut speeds = [0.0; SPEEDS.len()];
+    speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| *speed = hertz * TURN);
+    let usual = Turning::new(&speeds, 1.0 / CONVERTER.rate.hertz());
+    Turning { modulated_turns: MODULATED_TURNS.unwrap_or(usual.modulated_turns), ..usual }
+}
+
+/// Configuration of the platform's devices.
+pub fn platform() -> TurntableConfiguration {
+    TurntableConfiguration::default()
+}
+
+/// Number of stops of a vehicle after which the session concludes, at least two; three with
+/// different headings make the gyros' biases observable.
+const STOPS: usize = 3;
+/// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, °/h.
+const BIAS_SIGMA: f64 = 0.5;
+/// Standard deviation of the accelerometers' biases after calibration, 1σ, m/s²: in a vehicle they
+/// act as tilt.
+const FORCE_CALIBRATED_SIGMA: f64 = 1e-4 * 9.80665;
+/// Noise of the accelerometers, m/s²/√Hz: 25 µg/√Hz (ADXL355 data sheet, table 1), raised for the
+/// outputs that are not read.
+const FORCE_NOISE: f64 = 1.2 * 25e-6 * 9.80665;
+
+/// Site and instrument in a vehicle.
+pub fn driving_setting() -> stops::Setting {
+    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site() };
+    stops::Setting {
+        bias_sigma: Some(BIAS_SIGMA * DEGREE_PER_HOUR),
+        force_noise: FORCE_NOISE,
+        ..stops::Setting::new(site)
+    }
+}
+
+/// Procedure of the session in a vehicle.
+pub fn driving_procedure() -> Driving {
+    Driving::new(STOPS, 1.0 / CONVERTER.rate.hertz())
+}
+
+/// Configuration of the vehicle's devices.
+pub fn vehicle() -> VehicleConfiguration {
+    VehicleConfiguration::at(CONVERTER.rate.hertz())
+}
+
+/// Whether a vehicle realigns once the azimuth is known; the last stop of an alignment is the first
+/// of the next.
+const REALIGNS: bool = true;
+/// Whether an alignment runs although the azimuth is known from before a restart, since when the
+/// vehicle has not moved.
+const ALIGNS_ALWAYS: bool = true;
+
+/// Site and gyros for attitude and heading.
+pub fn keeper() -> keep::Setting {
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    let period = 1.0 / CONVERTER.rate.hertz();
+    keep::Setting {
+        force_bias_sigma: FORCE_CALIBRATED_SIGMA,
+        ..keep::Setting::precise(latitude, period, kept_gyro())
+    }
+}
+
+/// Properties of a gyro for attitude and heading.
+fn kept_gyro() -> keep::Gyro {
+    keep::Gyro {
+        noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
+        bias_sigma: BIAS_SIGMA * DEGREE_PER_HOUR,
+        scale_sigma: GYRO_SCALE_SIGMA,
+    }
+}
+
+/// Policy after the alignment: the azimuth is held without end.
+pub fn policy() -> Policy {
+    Policy {
+        hold_seconds: f64::INFINITY,
+        realignment: if REALIGNS { Realignment::BetweenStops } else { Realignment::Never },
+        knows_stops: true,
+        skips_known: !ALIGNS_ALWAYS,
+        beside: kept_gyro(),
+        precise: kept_gyro(),
+    }
+}
+
+/// Scale factors of a spinning body's gyros about x, y and z, V per rad/s, and rates beyond which
+/// they may saturate, rad/s.
+const SPIN_GYROS: [(f64, f64); 3] = [(2.0 / 700.0, 680.0), (0.1, 19.0), (0.1, 19.0)];
+/// Scale factors of the accelerometers along y and z, V per m/s², and forces beyond which they may
+/// saturate, m/s².
+const SPIN_FORCES: [(f64, f64); 2] = [(2e-4, 9700.0); 2];
+/// Angle random walk N of the gyro about x, °/√h.
+const SPIN_WALK: f64 = 0.5;
+/// Standard deviation of its scale factor, 1σ, relative.
+const SPIN_SCALE_SIGMA: f64 = 1e-3;
+/// Standard deviation of its bias, 1σ, °/h.
+const SPIN_BIAS_SIGMA: f64 = 200.0;
+/// Course and pitch at the start of the flight, °: no sensor on the body measures them.
+const LAUNCH: [f64; 2] = [0.0, 0.0];
+
+/// Configuration of the converters of a spinning body: the next rate above the 10 kHz of Nekrasova
+/// 2017.
+pub const SPIN_CONVERTER: Converter =
+    Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
+
+/// Properties of the gyro about x, for the roll.
+pub fn spin_setting() -> spin::Setting {
+    spin::Setting {
+        sample_seconds: 1.0 / SPIN_CONVERTER.rate.hertz(),
+        angle_random_walk: SPIN_WALK * DEGREE_PER_SQRT_HOUR,
+        scale_sigma: SPIN_SCALE_SIGMA,
+        bias_sigma: SPIN_BIAS_SIGMA * DEGREE_PER_HOUR,
+        method: spin::Method::PhaseLocked,
+    }
+}
+
+/// Course and pitch at the start, rad.
+pub fn launch() -> [f64; 2] {
+    LAUNCH.map(|angle| angle * DEGREE)
+}
+
+/// Configuration of the sensors; `None` where a scale factor is zero.
+pub fn spinning() -> Option<SpinConfiguration> {
+    let sample_rate = SPIN_CONVERTER.rate.hertz();
+    let [x, y, z] = SPIN_GYROS.map(|(volts, limit)| Channel::gyro(volts, limit, sample_rate));
+    let [up, right] = SPIN_FORCES.map(|(volts, limit)| Channel::accelerometer(volts, limit));
+    Some(SpinConfiguration { sample_rate, gyros: [x?, y?, z?], accelerometers: [up?, right?] })
+}

@@ -1,0 +1,122 @@
+//! The chips on their wires, as the instrument's ports.
+
+use drivers::ads1262::Ads1262;
+use drivers::adxl355::registers::OutputRate;
+use drivers::adxl355::{self, Adxl355};
+use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate as BaseRate};
+use drivers::lsm6dsl::{self, Lsm6dsl};
+use drivers::mt6835::{self, Mt6835};
+use drivers::tmc5160::Tmc5160;
+use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
+use embassy_time::Delay;
+use firmware::chips::{
+    AnalogueGyro, AnalogueSensor, BaseImu, PlatformAccelerometer, StageEncoder, StageMotor,
+};
+use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
+
+use crate::configuration;
+use crate::configuration::{CARRIER, Carrier};
+use crate::wiring::{BaseBus, ConverterWires, Device, Ready, StageDevice};
+
+/// Gyro behind its converter.
+type Gyro = AnalogueGyro<Device, Ready, Delay>;
+/// Accelerometer on the platform, or in the vehicle.
+type Accelerometer = PlatformAccelerometer<Device, Delay>;
+/// Encoder of an axis.
+type AxisEncoder = StageEncoder<StageDevice, Delay>;
+/// Motor of an axis.
+pub type AxisMotor = StageMotor<StageDevice, Delay>;
+/// IMU of the board on the base.
+pub type Base = BaseImu<BaseBus, Delay>;
+/// Sensors of a stage or a turntable, and of their base.
+pub type Inputs<B> = Sensors<Gyro, Accelerometer, AxisEncoder, B>;
+/// Sensors of a two-frame mount and of its base.
+pub type MountInputs<B> = Sensors<Gyro, Accelerometer, Frames<AxisEncoder>, B>;
+/// Sensors of a vehicle.
+pub type Triad = VehicleSensors<Gyro, Accelerometer>;
+/// Sensors of a spinning body.
+pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
+
+/// Connects the sensors on a stage, a turntable or two frames to their wires.
+pub fn inputs<E, B>(
+    converter: ConverterWires,
+    force: Device,
+    encoder: E,
+    base: B,
+) -> Sensors<Gyro, Accelerometer, E, B> {
+    let gyro = gyro(self::converter(converter));
+    Sensors { gyro, accelerometer: accelerometer(force), encoder, base }
+}
+
+/// Encoder of an axis.
+pub fn encoder(wires: StageDevice) -> AxisEncoder {
+    StageEncoder(Mt6835::new(wires, Delay, mt6835::Configuration::default()))
+}
+
+/// Connects the IMU of the board.
+pub fn base(bus: BaseBus) -> Base {
+    let configuration =
+        lsm6dsl::Configuration { output: BaseRate::Hz208, ..lsm6dsl::Configuration::default() };
+    BaseImu {
+        chip: Lsm6dsl::new(bus, Delay, ADDRESS_LOW, configuration),
+        sensors: configuration::base_sensors(),
+        divider: configuration::BASE_DIVIDER,
+    }
+}
+
+/// Connects the sensors of a vehicle to their wires.
+pub fn triad(converters: [ConverterWires; 3], accelerometer: Device) -> Triad {
+    VehicleSensors {
+        gyros: converters.map(|wires| gyro(converter(wires).clocked())),
+        accelerometer: self::accelerometer(accelerometer),
+    }
+}
+
+/// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
+/// along y and z.
+pub fn spinning(converters: [ConverterWires; 5]) -> Spinning {
+    SpinSensors(converters.map(|wires| {
+        let rate = configuration::SPIN_CONVERTER;
+        AnalogueSensor(Ads1262::new(wires.bus, wires.ready, Delay, rate).clocked())
+    }))
+}
+
+/// Converter with its data-ready line.
+fn converter(wires: ConverterWires) -> Ads1262<Device, Ready, Delay> {
+    Ads1262::new(wires.bus, wires.ready, Delay, configuration::CONVERTER)
+}
+
+/// Gyro with its scale and saturation limit.
+fn gyro(converter: Ads1262<Device, Ready, Delay>) -> Gyro {
+    AnalogueGyro { converter, scale: configuration::SCALE, limit: configuration::LIMIT }
+}
+
+/// Accelerometer with the output rate of this carrier.
+fn accelerometer(bus: Device) -> Accelerometer {
+    PlatformAccelerometer(Adxl355::new(bus, Delay, force()))
+}
+
+/// Connects the motor to its wires.
+pub fn motor(wires: StageDevice) -> AxisMotor {
+    StageMotor(Tmc5160::new(wires, Delay, drive()))
+}
+
+/// Configuration of the accelerometer. Its filter delays a force by two and a half outputs, during
+/// which a platform must not turn far, nor a vehicle sway; a vehicle's is read 400 times a second.
+fn force() -> adxl355::Configuration {
+    let rate = match CARRIER {
+        Carrier::Stage | Carrier::TwoFrames | Carrier::SpinningBody => {
+            adxl355::Configuration::default().rate
+        }
+        Carrier::Turntable => OutputRate::Hz1000,
+        Carrier::Vehicle => OutputRate::Hz500,
+    };
+    adxl355::Configuration { rate }
+}
+
+/// Configuration of the motor driver. A platform that rotates without limit has no switches.
+fn drive() -> Motor {
+    let usual = Motor::default();
+    let none = Switches { left: None, right: None };
+    Motor { switches: if CARRIER == Carrier::Turntable { none } else { usual.switches }, ..usual }
+}

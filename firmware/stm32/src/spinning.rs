@@ -1,0 +1,47 @@
+//! Program of the board on a body in fast rotation.
+
+use embassy_executor::Spawner;
+use firmware::acquire::{SpinAcquisition, acquire};
+use firmware::keep::NotKept;
+use firmware::log::DefmtLog;
+use firmware::mechanism::Strapdown;
+use firmware::ports::NoRecorder;
+use firmware::run::navigate;
+use firmware::shared::Channels;
+use firmware::spin::configuration::SpinConfiguration;
+use orientation::roll::Flight;
+use orientation::signal::SpinSample;
+use static_cell::StaticCell;
+
+use crate::ports::Spinning;
+use crate::wiring::{Outlets, SpinWires};
+use crate::{configuration, ports, report_conclusion};
+
+/// Estimates the roll for as long as the sensors give data, then reports how it ended.
+#[embassy_executor::task]
+pub async fn follow(spawner: Spawner, wires: SpinWires) {
+    static CHANNELS: StaticCell<Channels<'static, SpinSample>> = StaticCell::new();
+    static FLIGHT: StaticCell<Flight> = StaticCell::new();
+    let Some(sensors) = configuration::spinning() else {
+        return defmt::error!("board: a sensor's scale factor is none");
+    };
+    let SpinWires { converters, outlets: Outlets { mut link, flash: _ } } = wires;
+    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let (setting, launch) = (configuration::spin_setting(), configuration::launch());
+    let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(converters), sensors, channels)));
+    let mut body = Strapdown::new(&channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut body, flight, NotKept, &(), outside, channels).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Task that acquires samples for ever.
+#[embassy_executor::task]
+async fn acquisition(
+    mut sensors: Spinning,
+    configuration: SpinConfiguration,
+    channels: &'static Channels<'static, SpinSample>,
+) {
+    acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, channels)).await;
+}

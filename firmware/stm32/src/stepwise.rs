@@ -1,0 +1,125 @@
+//! Programs of the board on a stage or on two frames that stand at positions. They hold azimuth, pitch
+//! and roll afterwards, by the IMU of the board on the base.
+
+use embassy_executor::Spawner;
+use firmware::acquire::{acquire, on_mount, on_stage};
+use firmware::configuration::FramesConfiguration;
+use firmware::gimbal::Gimbal;
+use firmware::keep::Keeping;
+use firmware::log::DefmtLog;
+use firmware::ports::{Frames, NoRecorder};
+use firmware::run::navigate;
+use firmware::shared::LatestAngle;
+use firmware::stage::Stage;
+use firmware::sway::SwayCompensation;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::session::procedure::Procedure;
+use orientation::alignment::stepwise::session::{Prepared, Session};
+use orientation::alignment::stepwise::setting::Setting;
+use orientation::attitude::Keeper;
+use static_cell::StaticCell;
+
+use crate::flash::{Store, store};
+use crate::ports::{Base, Inputs, MountInputs};
+use crate::wiring::{BaseBus, FramesWires, Outlets, StageWires};
+use crate::{Channels, configuration, ports, report_conclusion};
+
+/// The IMU on the base, which measures its sway.
+type OnBase = SwayCompensation<'static, Base>;
+
+/// The two frames, and the latest angles of their encoders.
+type Mount = (FramesConfiguration, Frames<LatestAngle>);
+
+/// Runs the instrument on a stage: it aligns, then holds the result without end.
+#[embassy_executor::task]
+pub async fn on_a_stage(spawner: Spawner, wires: StageWires) {
+    let session = match session(configuration::setting(), configuration::procedure()) {
+        Ok(session) => session,
+        Err(error) => return defmt::error!("board: no session: {}", error),
+    };
+    let StageWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
+        wires;
+    let Outlets { mut link, flash } = outlets;
+    let encoder = ports::encoder(axes.encoder);
+    let inputs = ports::inputs(converter, accelerometer, encoder, on_base(base));
+    let channels = channels();
+    spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
+    let mut motor = ports::motor(axes.motor);
+    let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut stage, session, keeping(store(flash)), &(), outside, channels).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
+/// axis vertical.
+#[embassy_executor::task]
+pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
+    static MOUNT: StaticCell<Mount> = StaticCell::new();
+    let frames = match configuration::frames() {
+        Ok(frames) => frames,
+        Err(error) => return defmt::error!("board: no mount: {}", error),
+    };
+    let session = match session(configuration::mount_setting(), configuration::mount_procedure()) {
+        Ok(session) => session,
+        Err(error) => return defmt::error!("board: no session: {}", error),
+    };
+    let FramesWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
+        wires;
+    let (Outlets { mut link, flash }, Frames { outer, inner }) = (outlets, axes);
+    let (mount, channels) = (&*MOUNT.init((frames, Frames::unread())), channels());
+    let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
+    let inputs = ports::inputs(converter, accelerometer, encoders, on_base(base));
+    spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, mount, channels)));
+    let mut motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
+    let mut gimbal = Gimbal::new(&mut motors, &mount.0, &mount.1, &channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health =
+        navigate(&mut gimbal, session, keeping(store(flash)), &(), outside, channels).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Task that acquires samples on a stage for ever.
+#[embassy_executor::task]
+async fn stage_acquisition(mut inputs: Inputs<OnBase>, channels: &'static Channels) {
+    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
+}
+
+/// Task that acquires samples on two frames for ever.
+#[embassy_executor::task]
+async fn mount_acquisition(
+    mut inputs: MountInputs<OnBase>,
+    mount: &'static Mount,
+    channels: &'static Channels,
+) {
+    let ((frames, latest), configuration) = (mount, configuration::instrument());
+    acquire(&mut on_mount(&mut inputs, &configuration, frames, latest, channels)).await;
+}
+
+/// Channels of the instrument at their final place in memory.
+fn channels() -> &'static Channels {
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    CHANNELS.init_with(|| Channels::new(&DefmtLog))
+}
+
+/// Connects the IMU on the base.
+fn on_base(bus: BaseBus) -> OnBase {
+    static BASE: StaticCell<Base> = StaticCell::new();
+    SwayCompensation::new(BASE.init(ports::base(bus)))
+}
+
+/// Attitude and heading after the alignment, where they are held.
+fn keeping(store: Store) -> Option<Keeping<'static, Store>> {
+    static KEEPER: StaticCell<Keeper> = StaticCell::new();
+    configuration::HOLDS.then(|| {
+        let keeper = KEEPER.init_with(|| Keeper::new(&configuration::base_keeper()));
+        Keeping { keeper, policy: configuration::base_policy(), store }
+    })
+}
+
+/// Creates the session at its final place in memory.
+fn session(setting: Setting, procedure: Procedure) -> Result<&'static mut Session, SetupError> {
+    static SESSION: StaticCell<Session> = StaticCell::new();
+    let prepared = Prepared::new(setting, procedure)?;
+    Ok(SESSION.init_with(|| Session::from(prepared)))
+}

@@ -1,0 +1,63 @@
+//! Program of the board in a vehicle that drives from stop to stop, and holds azimuth, pitch and
+//! roll afterwards.
+
+use embassy_executor::Spawner;
+use firmware::acquire::{TriadAcquisition, acquire};
+use firmware::keep::Keeping;
+use firmware::log::DefmtLog;
+use firmware::mechanism::Strapdown;
+use firmware::ports::NoRecorder;
+use firmware::run::navigate;
+use firmware::shared::Channels;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stops::session::Session;
+use orientation::attitude::Keeper;
+use orientation::signal::InertialSample;
+use static_cell::StaticCell;
+
+use crate::flash::store;
+use crate::ports::Triad;
+use crate::wiring::{Outlets, VehicleWires};
+use crate::{configuration, ports, report_conclusion};
+
+/// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
+#[embassy_executor::task]
+pub async fn align(spawner: Spawner, wires: VehicleWires) {
+    static CHANNELS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
+    let session = match session() {
+        Ok(session) => session,
+        Err(error) => return defmt::error!("board: no session: {}", error),
+    };
+    let VehicleWires { converters, accelerometer, outlets } = wires;
+    let Outlets { mut link, flash } = outlets;
+    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let triad = ports::triad(converters, accelerometer);
+    spawner.spawn(defmt::unwrap!(acquisition(triad, channels)));
+    let policy = configuration::policy();
+    let keeping = Some(Keeping { keeper: keeper(), policy, store: store(flash) });
+    let mut body = Strapdown::new(&channels.shared);
+    let outside = (&mut link, &mut NoRecorder);
+    let health = navigate(&mut body, session, keeping, &(), outside, channels).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
+}
+
+/// Task that acquires samples for ever.
+#[embassy_executor::task]
+async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, InertialSample>) {
+    let configuration = configuration::vehicle();
+    acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
+}
+
+/// Creates the attitude and heading keeper at its final place in memory.
+fn keeper() -> &'static mut Keeper {
+    static KEEPER: StaticCell<Keeper> = StaticCell::new();
+    KEEPER.init_with(|| Keeper::new(&configuration::keeper()))
+}
+
+/// Creates the session at its final place in memory.
+fn session() -> Result<&'static mut Session, SetupError> {
+    static SESSION: StaticCell<Session> = StaticCell::new();
+    let procedure = configuration::driving_procedure();
+    procedure.check()?;
+    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(), procedure)))
+}
