@@ -36,6 +36,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 None => Request::Continue,
             },
             Request::Done => {
+                recorder.conclude(aligner.method()).await;
                 shared.conclude(aligner.hand_over());
                 Request::Continue
             }

@@ -6,7 +6,7 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::alignment::Azimuth;
+use orientation::alignment::{Azimuth, Method};
 use orientation::attitude::Report;
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
@@ -233,18 +233,35 @@ pub trait Aiding {
 /// No aiding from outside.
 impl Aiding for () {}
 
-/// A recorder of raw samples. A slow recorder delays the session; samples queue meanwhile.
+/// A recorder of raw samples, and of what an alignment has come to. A slow recorder delays the
+/// session; samples queue meanwhile.
 pub trait Recorder<S = Sample> {
     /// Records one sample.
-    async fn record(&mut self, sample: &S);
+    async fn record(&mut self, _sample: &S) {}
+
+    /// Records an alignment that is over.
+    async fn conclude(&mut self, _method: &dyn Method<S>) {}
 }
 
 /// A recorder that discards every sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoRecorder;
 
-impl<S> Recorder<S> for NoRecorder {
-    async fn record(&mut self, _: &S) {}
+impl<S> Recorder<S> for NoRecorder {}
+
+/// A recorder that may be absent.
+impl<S, R: Recorder<S>> Recorder<S> for Option<R> {
+    async fn record(&mut self, sample: &S) {
+        if let Some(recorder) = self {
+            recorder.record(sample).await;
+        }
+    }
+
+    async fn conclude(&mut self, method: &dyn Method<S>) {
+        if let Some(recorder) = self {
+            recorder.conclude(method).await;
+        }
+    }
 }
 
 /// Two recorders of the same samples.
@@ -252,6 +269,11 @@ impl<S, A: Recorder<S>, B: Recorder<S>> Recorder<S> for (A, B) {
     async fn record(&mut self, sample: &S) {
         self.0.record(sample).await;
         self.1.record(sample).await;
+    }
+
+    async fn conclude(&mut self, method: &dyn Method<S>) {
+        self.0.conclude(method).await;
+        self.1.conclude(method).await;
     }
 }
 

@@ -6,17 +6,21 @@
 
 use drivers::fault::Fault;
 use embassy_futures::select::select;
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::mutex::Mutex;
 use embedded_storage_async::nor_flash::NorFlash;
+use orientation::alignment::Method;
 use orientation::alignment::rotating::Setting;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
-use orientation::alignment::rotating::session::{Procedure, Session};
+use orientation::alignment::rotating::session::Procedure;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::attitude::restart::Remembered as Heading;
+use orientation::signal::Sample;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::event::Event;
-use crate::ports::Store;
+use crate::ports::{Recorder, Store};
 use crate::shared::{Channels, Shared, discard};
 
 /// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
@@ -55,6 +59,19 @@ impl<F: NorFlash> Store for FlashStore<F> {
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
         let kept = self.map.store_item(&mut self.buffer, &slot, item).await;
         kept.map_err(|_| Fault::Bus)
+    }
+}
+
+/// A store that several parts of an instrument use, one after the other.
+pub type SharedStore<T> = Mutex<NoopRawMutex, T>;
+
+impl<T: Store> Store for &SharedStore<T> {
+    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
+        self.lock().await.load(slot).await
+    }
+
+    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
+        self.lock().await.save(slot, item).await
     }
 }
 
@@ -151,20 +168,30 @@ pub async fn load_calibration<S: Store>(
     }
 }
 
-/// Stores the axis misalignments of a session that has found an azimuth with them, and reports it.
-/// A session without an azimuth stores none. Samples are discarded meanwhile.
-pub async fn save_calibration<S: Store>(store: &mut S, session: &Session, channels: &Channels<'_>) {
-    if session.conclusion().is_none_or(|conclusion| conclusion.verdict.is_err()) {
-        return;
-    }
-    let saved = async {
-        let saved = |found: AxisMisalignment| Event::CalibrationSaved((&found).into());
-        match keep(store, session.misalignments()).await {
-            Ok(()) => {
-                session.misalignments().for_each(|found| channels.shared.report(saved(found)));
-            }
-            Err(fault) => channels.shared.report(Event::CalibrationNotSaved(fault)),
+/// Stores the axis misalignments of every alignment that has found an azimuth with them, and reports
+/// it. An alignment without an azimuth stores none. Samples are discarded meanwhile.
+pub struct CalibrationStore<'c, T> {
+    /// Store that outlasts a loss of supply.
+    pub store: T,
+    /// Channels of the instrument.
+    pub channels: &'c Channels<'c>,
+}
+
+impl<T: Store> Recorder for CalibrationStore<'_, T> {
+    async fn conclude(&mut self, method: &dyn Method<Sample>) {
+        if !matches!(method.verdict(), Some(Ok(_))) {
+            return;
         }
-    };
-    select(saved, discard(channels)).await;
+        let Self { store, channels } = self;
+        let found = || (0..SPEEDS).map_while(|speed| method.misalignment(speed));
+        let saved = async {
+            match keep(store, found()).await {
+                Ok(()) => found().for_each(|found| {
+                    channels.shared.report(Event::CalibrationSaved((&found).into()));
+                }),
+                Err(fault) => channels.shared.report(Event::CalibrationNotSaved(fault)),
+            }
+        };
+        select(saved, discard(channels)).await;
+    }
 }

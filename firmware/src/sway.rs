@@ -49,11 +49,21 @@ pub trait CompensatesSway {
         true
     }
 
-    /// Reads the sensors; called with every sample.
+    /// Reads the sensors where their readings are subtracted; called with every sample, before its
+    /// angle is read.
     ///
     /// # Errors
     /// The sensors are given up while their readings are being subtracted.
     async fn follow(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    /// Reads the sensors where their readings are only kept; called with every sample, after its
+    /// angle is read, which on a platform that turns must not be late.
+    ///
+    /// # Errors
+    /// None that ends an alignment.
+    async fn observe(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
         Ok(())
     }
 
@@ -100,6 +110,8 @@ pub struct SwayCompensation<'a, B> {
     stage: Angle,
     /// Cosine and sine of that angle.
     axis: [f32; 2],
+    /// Whether the sway is observed and subtracted at all.
+    compensates: bool,
     /// Whether the base unit has been given up.
     is_lost: bool,
     /// Time at which it was given up.
@@ -121,9 +133,34 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             held: None,
             stage: Angle(0),
             axis: [1.0, 0.0],
+            compensates: true,
             is_lost: false,
             lost: Instant::MIN,
         }
+    }
+
+    /// Takes a base unit whose readings are for the attitude keeper alone: the alignment begins at
+    /// once, and nothing is subtracted.
+    pub fn for_keeping(device: &'a mut B) -> Self {
+        Self { compensates: false, ..Self::new(device) }
+    }
+
+    /// Reads the sensors where a reading is due, and starts them again where they fail.
+    ///
+    /// # Errors
+    /// The sensors are given up while their readings are being subtracted.
+    async fn take(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
+        if self.is_absent(shared) || !self.due.is_due() {
+            return Ok(());
+        }
+        let was_decided = self.is_decided();
+        if let Err(symptom) = self.read(shared).await {
+            self.mend(symptom, shared).await?;
+        }
+        if !was_decided {
+            self.report(shared);
+        }
+        Ok(())
     }
 
     /// Takes a reading if there is a new one.
@@ -185,7 +222,8 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         if self.base.restarts() != restarts {
             self.silent = Instant::now();
         }
-        let is_subtracted = matches!(self.sway.decision(), Decision::Swaying(..));
+        let is_subtracted =
+            self.compensates && matches!(self.sway.decision(), Decision::Swaying(..));
         match outcome {
             Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
             Err(_) => self.lose(shared),
@@ -251,21 +289,15 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     }
 
     fn is_decided(&self) -> bool {
-        self.is_lost || self.sway.decision() != Decision::Watching
+        !self.compensates || self.is_lost || self.sway.decision() != Decision::Watching
     }
 
     async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if self.is_absent(shared) || !self.due.is_due() {
-            return Ok(());
-        }
-        let was_decided = self.is_decided();
-        if let Err(symptom) = self.read(shared).await {
-            self.mend(symptom, shared).await?;
-        }
-        if !was_decided {
-            self.report(shared);
-        }
-        Ok(())
+        if self.compensates { self.take(shared).await } else { Ok(()) }
+    }
+
+    async fn observe(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
+        if self.compensates { Ok(()) } else { self.take(shared).await }
     }
 
     fn reading(&mut self) -> Option<(Instant, BaseReading)> {
@@ -282,7 +314,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     }
 
     fn compensated(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
-        if rate.is_saturated() {
+        if rate.is_saturated() || !self.compensates {
             return rate;
         }
         AngularRate(rate.0.saturating_sub(self.swaying(heading)))

@@ -28,7 +28,7 @@
 //! | | 8 | PD0 | MT6835 CSN |
 //! | | 7 | PD2 | TMC5160 `DRV_ENN`, with a pull-up at the driver |
 //! | | 5, 6 | | ground, 3.3 V |
-//! | on the board | | PB10, PB11 | I2C2: LSM6DSL, on a stage or with two frames |
+//! | on the board | | PB10, PB11 | I2C2: LSM6DSL, on a platform that turns the gyro |
 //! | ST-LINK CN7 | USB | PB6 | status lines (USART1) |
 //!
 //! Connectors after UM2153 rev. 5: Table 4 (Arduino), Table 10 (PMOD, solder bridges as delivered:
@@ -40,7 +40,7 @@
 //! of a vehicle for the gyros forward, right and up (in the place of down), and two for accelerometers, each
 //! sensor between AIN0 and AIN1 of its own; up and right are those of the body at roll zero. With two
 //! frames the PMOD side is that of the outer one; the inner one shares clock, data and `DRV_ENN` with it.
-//! On a stage or with two frames the board is fixed to the base, the LSM6DSL's x axis forward, y to
+//! On a stage, two frames or a turntable the board is fixed to the base, the LSM6DSL's x axis forward, y to
 //! the right, z down.
 #![no_std]
 #![no_main]
@@ -70,13 +70,13 @@ async fn main(spawner: Spawner) {
     // Tasks that are never spawned are not in the image.
     match CARRIER {
         Carrier::Stage => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(spawner, board.stage())));
+            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(spawner, board.axis())));
         }
         Carrier::TwoFrames => {
             spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(spawner, board.two_frames())));
         }
         Carrier::Turntable => {
-            spawner.spawn(defmt::unwrap!(turning::align(spawner, board.turntable())));
+            spawner.spawn(defmt::unwrap!(turning::align(spawner, board.axis())));
         }
         Carrier::Vehicle => {
             spawner.spawn(defmt::unwrap!(stops::align(spawner, board.vehicle())));

@@ -19,8 +19,8 @@ use embassy_time::Duration;
 use firmware::ports::Frames;
 use static_cell::StaticCell;
 use stm32::wiring::{
-    AxisWires, BaseBus, Bus, Buses, ConverterWires, Device, FramesWires, Outlets, PlatformWires,
-    SpinWires, StageBus, StageWires, TurntableWires, VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, AxisWires, BaseBus, Bus, Buses, ConverterWires, Device, FramesWires,
+    Outlets, PlatformWires, SpinWires, StageBus, VehicleWires, sensor_settings, stage_settings,
 };
 
 use crate::clock;
@@ -94,8 +94,8 @@ impl Board {
         })
     }
 
-    /// Connections of a stage.
-    pub fn stage(self) -> StageWires {
+    /// Connections of a stage or a turntable.
+    pub fn axis(self) -> AxisPlatformWires {
         let Self { converter, accelerometer, axis: axes, base, motor_enable, outlets, .. } = self;
         let base = base.connect();
         PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
@@ -108,12 +108,6 @@ impl Board {
         let Self { converter, accelerometer, base, motor_enable, outlets, .. } = self;
         let base = base.connect();
         PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
-    }
-
-    /// Connections of a turntable.
-    pub fn turntable(self) -> TurntableWires {
-        let Self { converter, accelerometer, axis: axes, motor_enable, outlets, .. } = self;
-        PlatformWires { converter, accelerometer, axes, base: (), motor_enable, outlets }
     }
 
     /// Connections in a vehicle.

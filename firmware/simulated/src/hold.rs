@@ -10,6 +10,14 @@ use orientation::units::DEGREE;
 
 use firmware::ports::Aiding;
 
+/// Duration of a stop at which nothing is done, s.
+pub const STOP_SECONDS: f64 = 60.0;
+/// How long a vehicle stands before it is aligned anew by a mechanism, s.
+pub(super) const STAND_SECONDS: f64 = 30.0;
+/// From the begin of a stop until another alignment begins, and from its end until the vehicle sets
+/// off, s.
+const BEFORE_ANOTHER_SECONDS: f64 = STAND_SECONDS + 20.0;
+
 /// How a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
@@ -19,16 +27,16 @@ pub struct Hold {
     pub realigns: bool,
     /// Duration of a drive after the alignment, s.
     pub drive_s: f64,
-    /// Duration of a stop after the alignment, s.
-    pub stop_s: f64,
+    /// Duration of a stop after the alignment, s; as long as it needs where nothing is stated.
+    pub stop_s: Option<f64>,
     /// An azimuth that is handed over from outside, with its 1σ, °, and when, s.
     pub handover: Option<([f64; 2], f64)>,
 }
 
 impl Default for Hold {
-    /// Not at all; else drives of four minutes and stops of one.
+    /// Not at all; else drives of four minutes, and stops of one or as long as another alignment takes.
     fn default() -> Self {
-        Self { seconds: 0.0, realigns: false, drive_s: 240.0, stop_s: 60.0, handover: None }
+        Self { seconds: 0.0, realigns: false, drive_s: 240.0, stop_s: None, handover: None }
     }
 }
 
@@ -37,6 +45,14 @@ impl Hold {
     #[must_use]
     pub fn of(seconds: f64) -> Self {
         Self { seconds, ..Self::default() }
+    }
+
+    /// Duration of a stop after an alignment of so many seconds, s: long enough for another one where
+    /// the instrument aligns anew at stops by a mechanism.
+    #[must_use]
+    pub fn stop_seconds(&self, alignment_s: f64) -> f64 {
+        let another = BEFORE_ANOTHER_SECONDS + alignment_s;
+        self.stop_s.unwrap_or(if self.realigns { another } else { STOP_SECONDS })
     }
 
     /// What the instrument is given, with what realigns it where it may, and the gyros about down: beside

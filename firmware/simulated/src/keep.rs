@@ -11,11 +11,9 @@ use orientation::navigation::{Policy, Realignment};
 use orientation::units::DEGREE_PER_HOUR;
 
 use super::base;
-use super::hold::Hold;
-use super::scenario::{self, Scenario};
+use super::hold::{Hold, STAND_SECONDS};
+use super::scenario::{self, Aim, Scenario};
 
-/// How long a vehicle stands before it is aligned anew on a stage, s.
-const STAND_SECONDS: f64 = 30.0;
 /// What a movement of a stage takes at most on a usual schedule, s; the way back from the last position is one.
 const MOVEMENT_SECONDS: f64 = 1.7;
 /// From power-on to the first position, and from the last one until the vehicle sets off, s.
@@ -48,21 +46,34 @@ impl Scenario {
         Some(self.hold.policy(Realignment::AtStops(STAND_SECONDS), down, self.precise()))
     }
 
-    /// Where the base goes after the alignment on a stage.
-    pub fn day(&self) -> Day {
-        self.day_of(&self.procedure(), scenario::ROTATION.rest + scenario::RINGS_SECONDS)
+    /// How long an alignment on a stage takes, s.
+    #[must_use]
+    pub fn alignment_seconds(&self) -> f64 {
+        let rest_s = scenario::ROTATION.rest + scenario::RINGS_SECONDS;
+        self.seconds_of(&self.procedure(), rest_s)
     }
 
-    /// The day of an alignment by a procedure, where each movement takes about `rest_s` beside the ramp, s.
-    pub(super) fn day_of(&self, procedure: &Procedure, rest_s: f64) -> Day {
+    /// How long an alignment by a procedure takes, where each movement takes about `rest_s` beside the
+    /// ramp, s.
+    pub(super) fn seconds_of(&self, procedure: &Procedure, rest_s: f64) -> f64 {
         let schedule = &procedure.schedule;
         let movements = schedule.len() as f64 * (rest_s + MOVEMENT_SECONDS);
-        let seconds = SETTING_OUT_SECONDS + self.survey_s + schedule.seconds() + movements;
+        let usual = schedule.seconds() + movements;
+        self.survey_s
+            + match self.aim {
+                Aim::Circle => usual,
+                Aim::Time(seconds) | Aim::Accuracy { seconds, .. } => seconds.max(usual),
+            }
+    }
+
+    /// Where the base goes after an alignment that takes so many seconds.
+    pub fn day(&self, alignment_s: f64) -> Day {
+        let seconds = SETTING_OUT_SECONDS + alignment_s;
         let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
         let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
         let mut day = Day::standing(latitude_deg, azimuth_deg, stop);
-        let Hold { seconds, drive_s, stop_s, .. } = self.hold;
-        day.go_on(self.seed, seconds, drive_s, stop_s);
+        let Hold { seconds, drive_s, .. } = self.hold;
+        day.go_on(self.seed, seconds, drive_s, self.hold.stop_seconds(alignment_s));
         day
     }
 }

@@ -27,7 +27,6 @@ use orientation::planner::order::Order;
 use orientation::units::DEGREE;
 
 use super::fault::{Injection, PortWrapper};
-use super::keep::Day;
 use super::scenario::{self, Scenario, Turning};
 use super::{Bus, OSCILLATOR, SimulatedGyro, Wires};
 use firmware::chips;
@@ -198,9 +197,10 @@ impl FramesScenario {
         Some(keep::Setting { force_bias_sigma: FORCE_BIAS_SIGMA, ..keeper })
     }
 
-    /// Where the base goes after the alignment.
-    pub fn day(&self) -> Day {
-        self.base.day_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
+    /// How long an alignment takes, s.
+    #[must_use]
+    pub fn alignment_seconds(&self) -> f64 {
+        self.base.seconds_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
     }
 }
 

@@ -9,6 +9,7 @@ use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::{Duration, Instant};
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
+use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
@@ -145,9 +146,23 @@ impl TurntableScenario {
         Some((self.setting()?, procedure))
     }
 
-    /// What is true of everything that the chips feel and move.
-    pub fn plant(&self) -> PlantConfiguration<'static> {
-        let mut plant = self.base.plant();
+    /// How long an alignment takes, s.
+    #[must_use]
+    pub fn alignment_seconds(&self) -> f64 {
+        let procedure = self.procedure();
+        let settled = procedure.ramp_seconds + self.sensor().settle_seconds;
+        let at = |(index, speed): (usize, &f64)| {
+            let modulated = f64::from(1 + procedure.modulated_turns);
+            let each_way = f64::from(1 + procedure.turns_at(index));
+            (modulated + 2.0 * each_way) * TURN / speed + 3.0 * settled
+        };
+        procedure.level_seconds + procedure.speeds.iter().enumerate().map(at).sum::<f64>()
+    }
+
+    /// What is true of everything that the chips feel and move, on a base that goes along a journey where
+    /// there is one.
+    pub fn plant<'a>(&self, journey: Option<JourneyConfiguration<'a>>) -> PlantConfiguration<'a> {
+        let mut plant = PlantConfiguration { journey, ..self.base.plant() };
         plant.accelerometer_hz = FORCE_HERTZ;
         plant.instruments.gyro.axis_elevation_rad = self.elevation_deg * DEGREE;
         plant.instruments.gyro.molecular = self.molecular;
@@ -175,9 +190,14 @@ impl TurntableScenario {
         Injection::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
     }
 
-    /// The simulated board with what goes wrong with it.
-    pub fn board<'a>(&self, injection: &'a Injection) -> Chips<'a> {
-        board_around(&self.plant(), self.base.seed, injection)
+    /// The simulated board with what goes wrong with it, on a base that goes along a journey where there is
+    /// one.
+    pub fn board<'a>(
+        &self,
+        journey: Option<JourneyConfiguration<'a>>,
+        injection: &'a Injection,
+    ) -> Chips<'a> {
+        board_around(&self.plant(journey), self.base.seed, injection)
     }
 }
 

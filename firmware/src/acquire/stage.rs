@@ -142,6 +142,8 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         }
         let shown = self.pointing.read().await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
+        self.compensation.observe(shared).await?;
+        self.pass_on();
         if P::FORCE_ON_BASE {
             self.coarse.feel(force.map(|reading| reading.force));
         }
@@ -172,6 +174,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
             self.compensation.follow(shared).await?;
+            self.compensation.observe(shared).await?;
             self.pass_on();
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.is_idle() {

@@ -20,13 +20,47 @@ pub use configuration::{CARRIER, Carrier};
 
 use embassy_time::Timer;
 use firmware::health::Health;
+use firmware::keep::Keeping;
 use firmware::link;
+use firmware::log::DefmtLog;
 use firmware::shared::Shared;
+use firmware::sway::SwayCompensation;
+use orientation::attitude::{Keeper, Setting};
+use static_cell::StaticCell;
 
-use wiring::Link;
+use wiring::{BaseBus, Link};
 
 /// The channels between the instrument's parts on a platform.
 type Channels = firmware::shared::Channels<'static>;
+
+/// The IMU on the base, which measures its motion.
+type OnBase = SwayCompensation<'static, ports::Base>;
+
+/// Channels of the instrument on a platform, at their final place in memory.
+fn channels() -> &'static Channels {
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    CHANNELS.init_with(|| Channels::new(&DefmtLog))
+}
+
+/// Connects the IMU on the base.
+fn on_base(bus: BaseBus) -> &'static mut ports::Base {
+    static BASE: StaticCell<ports::Base> = StaticCell::new();
+    BASE.init(ports::base(bus))
+}
+
+/// Attitude and heading of a platform's base after the alignment, where they are held.
+fn keeping<T>(store: T) -> Option<Keeping<'static, T>> {
+    configuration::HOLDS.then(|| {
+        let keeper = keeper(&configuration::base_keeper());
+        Keeping { keeper, policy: configuration::base_policy(), store }
+    })
+}
+
+/// The estimator of attitude and heading at its final place in memory.
+fn keeper(setting: &Setting) -> &'static mut Keeper {
+    static KEEPER: StaticCell<Keeper> = StaticCell::new();
+    KEEPER.init_with(|| Keeper::new(setting))
+}
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
 /// the motor would lose its current and the link its last bytes.

@@ -5,8 +5,6 @@ use embassy_executor::Spawner;
 use firmware::acquire::{acquire, on_mount, on_stage};
 use firmware::configuration::FramesConfiguration;
 use firmware::gimbal::Gimbal;
-use firmware::keep::Keeping;
-use firmware::log::DefmtLog;
 use firmware::ports::{Frames, NoRecorder};
 use firmware::run::navigate;
 use firmware::shared::LatestAngle;
@@ -16,32 +14,31 @@ use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::{Prepared, Session};
 use orientation::alignment::stepwise::setting::Setting;
-use orientation::attitude::Keeper;
 use static_cell::StaticCell;
 
-use crate::flash::{Store, store};
-use crate::ports::{Base, Inputs, MountInputs};
-use crate::wiring::{BaseBus, FramesWires, Outlets, StageWires};
-use crate::{Channels, configuration, ports, report_conclusion};
-
-/// The IMU on the base, which measures its sway.
-type OnBase = SwayCompensation<'static, Base>;
+use crate::flash::store;
+use crate::ports::{Inputs, MountInputs};
+use crate::wiring::{AxisPlatformWires, FramesWires, Outlets};
+use crate::{
+    Channels, OnBase, channels, configuration, keeping, on_base, ports, report_conclusion,
+};
 
 /// The two frames, and the latest angles of their encoders.
 type Mount = (FramesConfiguration, Frames<LatestAngle>);
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn on_a_stage(spawner: Spawner, wires: StageWires) {
+pub async fn on_a_stage(spawner: Spawner, wires: AxisPlatformWires) {
     let session = match session(configuration::setting(), configuration::procedure()) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let StageWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
+    let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
     let Outlets { mut link, flash } = outlets;
     let encoder = ports::encoder(axes.encoder);
-    let inputs = ports::inputs(converter, accelerometer, encoder, on_base(base));
+    let base = SwayCompensation::new(on_base(base));
+    let inputs = ports::inputs(converter, accelerometer, encoder, base);
     let channels = channels();
     spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let mut motor = ports::motor(axes.motor);
@@ -69,7 +66,8 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
     let (Outlets { mut link, flash }, Frames { outer, inner }) = (outlets, axes);
     let (mount, channels) = (&*MOUNT.init((frames, Frames::unread())), channels());
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
-    let inputs = ports::inputs(converter, accelerometer, encoders, on_base(base));
+    let base = SwayCompensation::new(on_base(base));
+    let inputs = ports::inputs(converter, accelerometer, encoders, base);
     spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, mount, channels)));
     let mut motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
     let mut gimbal = Gimbal::new(&mut motors, &mount.0, &mount.1, &channels.shared);
@@ -94,27 +92,6 @@ async fn mount_acquisition(
 ) {
     let ((frames, latest), configuration) = (mount, configuration::instrument());
     acquire(&mut on_mount(&mut inputs, &configuration, frames, latest, channels)).await;
-}
-
-/// Channels of the instrument at their final place in memory.
-fn channels() -> &'static Channels {
-    static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    CHANNELS.init_with(|| Channels::new(&DefmtLog))
-}
-
-/// Connects the IMU on the base.
-fn on_base(bus: BaseBus) -> OnBase {
-    static BASE: StaticCell<Base> = StaticCell::new();
-    SwayCompensation::new(BASE.init(ports::base(bus)))
-}
-
-/// Attitude and heading after the alignment, where they are held.
-fn keeping(store: Store) -> Option<Keeping<'static, Store>> {
-    static KEEPER: StaticCell<Keeper> = StaticCell::new();
-    configuration::HOLDS.then(|| {
-        let keeper = KEEPER.init_with(|| Keeper::new(&configuration::base_keeper()));
-        Keeping { keeper, policy: configuration::base_policy(), store }
-    })
 }
 
 /// Creates the session at its final place in memory.

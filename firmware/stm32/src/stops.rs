@@ -11,14 +11,13 @@ use firmware::run::navigate;
 use firmware::shared::Channels;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
-use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
 use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::{Outlets, VehicleWires};
-use crate::{configuration, ports, report_conclusion};
+use crate::{configuration, keeper, ports, report_conclusion};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
@@ -34,7 +33,8 @@ pub async fn align(spawner: Spawner, wires: VehicleWires) {
     let triad = ports::triad(converters, accelerometer);
     spawner.spawn(defmt::unwrap!(acquisition(triad, channels)));
     let policy = configuration::policy();
-    let keeping = Some(Keeping { keeper: keeper(), policy, store: store(flash) });
+    let keeping =
+        Some(Keeping { keeper: keeper(&configuration::keeper()), policy, store: store(flash) });
     let mut body = Strapdown::new(&channels.shared);
     let outside = (&mut link, &mut NoRecorder);
     let health = navigate(&mut body, session, keeping, &(), outside, channels).await;
@@ -46,12 +46,6 @@ pub async fn align(spawner: Spawner, wires: VehicleWires) {
 async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, InertialSample>) {
     let configuration = configuration::vehicle();
     acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
-}
-
-/// Creates the attitude and heading keeper at its final place in memory.
-fn keeper() -> &'static mut Keeper {
-    static KEEPER: StaticCell<Keeper> = StaticCell::new();
-    KEEPER.init_with(|| Keeper::new(&configuration::keeper()))
 }
 
 /// Creates the session at its final place in memory.

@@ -46,17 +46,16 @@ pub type Ready = ExtiInput<'static, Async>;
 /// The serial port for status lines.
 pub type Link = UartTx<'static, Async>;
 
-/// Connections of a platform that turns the gyro: a stage, two frames or a turntable, with the axes
-/// `A` and the bus of the IMU on the base `B`.
-pub struct PlatformWires<A, B> {
+/// Connections of a platform that turns the gyro, with the axes `A`.
+pub struct PlatformWires<A> {
     /// Converter ADS1262 of the gyro.
     pub converter: ConverterWires,
     /// Accelerometer ADXL355.
     pub accelerometer: Device,
     /// Encoders and motor drivers.
     pub axes: A,
-    /// IMU LSM6DSL of the board itself, where it is used.
-    pub base: B,
+    /// IMU LSM6DSL of the board itself, on the base.
+    pub base: BaseBus,
     /// Enable pin of the motor drivers, active low: without it, or during a reset, the motors have no
     /// current.
     pub motor_enable: Output<'static>,
@@ -64,12 +63,10 @@ pub struct PlatformWires<A, B> {
     pub outlets: Outlets,
 }
 
-/// Connections of a stage.
-pub type StageWires = PlatformWires<AxisWires, BaseBus>;
+/// Connections of a stage or a turntable.
+pub type AxisPlatformWires = PlatformWires<AxisWires>;
 /// Connections of two frames.
-pub type FramesWires = PlatformWires<Frames<AxisWires>, BaseBus>;
-/// Connections of a turntable, whose base is not measured.
-pub type TurntableWires = PlatformWires<AxisWires, ()>;
+pub type FramesWires = PlatformWires<Frames<AxisWires>>;
 
 /// Connections in a vehicle.
 pub struct VehicleWires {

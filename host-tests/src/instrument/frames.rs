@@ -54,7 +54,7 @@ impl Carrier for FramesScenario {
         if !self.base.has_base_imu {
             return align_on(NoBase, self, None, &plan.chips, around);
         }
-        plan.on_base(&self.base, self.day(), |imu, journey| {
+        plan.on_base(&self.base, self.alignment_seconds(), |imu, journey| {
             align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around)
         })
     }

@@ -34,21 +34,21 @@ impl KeptPlan {
         Self { chips: Injection::of(fault), base: Vec::new(), events: Vec::new() }
     }
 
-    /// Runs a board on a base with coarse sensors, which goes along the day after the alignment where
-    /// the scenario goes on; then looks at what was kept.
+    /// Runs a board on a base with coarse sensors, which goes along a day after the alignment, of so many
+    /// seconds, where the scenario goes on; then looks at what was kept.
     ///
     /// # Errors
     /// Those of the run.
-    pub(super) fn on_base<O: AsMut<Run>>(
+    pub(super) fn on_base<R, O: AsMut<Run<R>>>(
         &self,
         scenario: &Scenario,
-        day: Day,
+        alignment_s: f64,
         run: impl FnOnce(
             &mut SimulatedBase<'_, '_, Injection>,
             Option<JourneyConfiguration<'_>>,
         ) -> Result<O, RunError>,
     ) -> Result<O, RunError> {
-        let day = self.day(day);
+        let day = self.day(scenario.day(alignment_s));
         let journey = journey(&day, &self.base);
         let journey = (scenario.hold.seconds > 0.0).then_some(journey);
         let rig = RefCell::new(base::rig(scenario, journey.as_ref()));

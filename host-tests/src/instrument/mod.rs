@@ -22,6 +22,7 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::BaseReading;
+use orientation::alignment::Progress;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::mount::MountError;
@@ -31,6 +32,7 @@ use thiserror::Error;
 
 use self::kept::Kept;
 use crate::methods::stepwise::Replay;
+use crate::output::degrees;
 
 /// A finished run of one kind of session.
 #[derive(Clone, Debug)]
@@ -60,6 +62,30 @@ impl Run {
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.replay.session.conclusion()
+    }
+}
+
+impl<R> Run<R> {
+    /// When the alignments that found an azimuth concluded, from power-on.
+    fn conclusions(&self) -> impl DoubleEndedIterator<Item = Instant> {
+        self.events.iter().filter_map(|(at, event)| {
+            matches!(event, Event::Alignment(Progress::Concluded(_))).then_some(*at)
+        })
+    }
+
+    /// The true azimuth when the latest alignment concluded, rad; none where nothing was kept after it.
+    fn kept_azimuth_rad(&self) -> Option<f64> {
+        let at = self.conclusions().next_back()?.as_micros() as f64;
+        let point = self.kept.points.iter().find(|point| point.seconds() * 1e6 >= at)?;
+        Some(point.truth.azimuth_rad)
+    }
+
+    /// The true azimuth when the latest alignment concluded, °, of a base that stood at an azimuth, °,
+    /// until the first one did.
+    #[must_use]
+    pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
+        let again = self.kept_azimuth_rad().filter(|_| self.conclusions().count() > 1);
+        again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
     }
 }
 

@@ -40,7 +40,7 @@ impl Carrier for Scenario {
         if !self.has_base_imu {
             return align_on(NoBase, self, None, &plan.chips, around);
         }
-        plan.on_base(self, self.day(), |imu, journey| {
+        plan.on_base(self, self.alignment_seconds(), |imu, journey| {
             align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around)
         })
     }

@@ -1,21 +1,25 @@
-//! Wires one simulated board with a turning platform to the instrument and runs it.
+//! Wires one simulated board on a turning platform to the instrument and runs it.
 
 use std::cell::RefCell;
 
 use firmware::acquire::{acquire, on_stage};
 use firmware::configuration::TurntableConfiguration;
-use firmware::keep::NotKept;
-use firmware::ports::{Ports, Recorder, Store};
+use firmware::keep::Keeping;
+use firmware::ports::{NoBase, Ports, Recorder, Store};
 use firmware::run::navigate;
-use firmware::storage::{Today, load_calibration, save_calibration};
+use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
+use firmware::sway::{CompensatesSway, SwayCompensation};
 use firmware::turntable::Turntable;
+use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::rotating::session as rotating;
+use orientation::attitude::Keeper;
 use orientation::signal::Sample;
 use simulated::Wires;
-use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::fault::{Fault, FaultyRecorder};
 use simulated::turntable::{self, TurntableScenario};
 
 use super::harness::{self, Harness};
+use super::kept::KeptPlan;
 use super::trial::{Around, Carrier};
 use super::{Run, RunError};
 use crate::virtual_time;
@@ -23,9 +27,9 @@ use crate::virtual_time;
 /// What goes wrong on a turning platform, and the day, where it keeps misalignments.
 #[derive(Clone, Debug)]
 pub struct TurntablePlan {
-    /// Faults of its chips and of its axis.
-    pub chips: Injection,
-    /// The day; without one nothing is taken from the store, and nothing kept in it.
+    /// What goes wrong with its chips, its axis and its base.
+    pub kept: KeptPlan,
+    /// The day; without one no misalignment is taken from the store, and none kept in it.
     pub today: Option<Today>,
 }
 
@@ -38,13 +42,20 @@ pub struct TurntableRun {
     pub rate: f64,
 }
 
+impl AsMut<Run<rotating::Session>> for TurntableRun {
+    fn as_mut(&mut self) -> &mut Run<rotating::Session> {
+        &mut self.run
+    }
+}
+
 impl Carrier for TurntableScenario {
     type Sample = Sample;
     type Plan = TurntablePlan;
     type Run = TurntableRun;
 
     fn plan(&self, fault: Option<Fault>) -> TurntablePlan {
-        TurntablePlan { chips: self.injection(fault), today: None }
+        let chips = self.injection(fault);
+        TurntablePlan { kept: KeptPlan { chips, ..KeptPlan::of(None) }, today: None }
     }
 
     fn run<R: Recorder, T: Store>(
@@ -52,48 +63,60 @@ impl Carrier for TurntableScenario {
         plan: &TurntablePlan,
         around: Around<'_, R, T>,
     ) -> Result<TurntableRun, RunError> {
-        let mut setting = self.setting().ok_or(RunError::Latitude(self.base.latitude_deg))?;
-        let mut procedure = self.procedure();
-        let Around { watch, recorder, mut store } = around;
-        let injection = &plan.chips;
-        let board = RefCell::new(self.board(injection));
-        let harness = Harness::new(watch);
-        let channels = harness.channels();
-        if let Some(today) = plan.today {
-            let given = (&mut setting, &mut procedure);
-            let load = load_calibration(&mut store, today, given, &channels.shared);
-            let prepared = virtual_time::run(load);
-            prepared.map_err(|_| RunError::Deadlock)?;
+        if !self.base.has_base_imu {
+            return align_on(NoBase, self, None, plan, around);
         }
-        let mut session =
-            rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
-        let configuration = self.base.configuration();
-        let platform = TurntableConfiguration::default();
-        let wires = Wires(&board, injection);
-        let mut sensors = wires.sensors(&self.base, turntable::FORCE);
-        let recorder = FaultyRecorder::new(recorder, injection.hang);
-        let Ports { mut actuator, mut link, mut recorder } =
-            wires.ports(turntable::motor(), harness.wire(), recorder);
-        let instrument = async {
-            let health = navigate(
-                &mut Turntable::new(&mut actuator, &platform, &channels.shared),
-                &mut session,
-                NotKept,
-                &(),
-                (&mut link, &mut recorder),
-                &channels,
-            )
-            .await;
-            if plan.today.is_some() {
-                save_calibration(&mut store, &session, &channels).await;
-            }
-            health
-        };
-        let ended = harness::run(
-            acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
-            instrument,
-        )?;
-        let rate = board.borrow().plant.truth().stage.rate_rad_s;
-        Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
+        plan.kept.on_base(&self.base, self.alignment_seconds(), |imu, journey| {
+            align_on(SwayCompensation::for_keeping(imu), self, journey, plan, around)
+        })
     }
+}
+
+/// Runs a scenario with these sensors on a base that goes along a journey where there is one.
+fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
+    base: B,
+    scenario: &TurntableScenario,
+    journey: Option<JourneyConfiguration<'_>>,
+    plan: &TurntablePlan,
+    around: Around<'_, R, T>,
+) -> Result<TurntableRun, RunError> {
+    let outside = || RunError::Latitude(scenario.base.latitude_deg);
+    let mut setting = scenario.setting().ok_or_else(outside)?;
+    let mut procedure = scenario.procedure();
+    let Around { watch, recorder, store } = around;
+    let injection = &plan.kept.chips;
+    let board = RefCell::new(scenario.board(journey, injection));
+    let harness = Harness::new(watch);
+    let channels = &harness.channels();
+    let store = &SharedStore::new(store);
+    if let Some(today) = plan.today {
+        let given = (&mut setting, &mut procedure);
+        let mut opened = store;
+        let load = load_calibration(&mut opened, today, given, &channels.shared);
+        virtual_time::run(load).map_err(|_| RunError::Deadlock)?;
+    }
+    let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
+    let configuration = scenario.base.configuration();
+    let platform = TurntableConfiguration::default();
+    let wires = Wires(&board, injection);
+    let mut sensors = wires.sensors(&scenario.base, turntable::FORCE).with_base(base);
+    let recorder = FaultyRecorder::new(recorder, injection.hang);
+    let Ports { mut actuator, mut link, recorder } =
+        wires.ports(turntable::motor(), harness.wire(), recorder);
+    let mut keeper = Keeper::new(&scenario.base.keeper().ok_or_else(outside)?);
+    let policy = scenario.base.policy().ok_or_else(outside)?;
+    let calibrations = plan.today.map(|_| CalibrationStore { store, channels });
+    let ended = harness::run(
+        acquire(&mut on_stage(&mut sensors, &configuration, channels)),
+        navigate(
+            &mut Turntable::new(&mut actuator, &platform, &channels.shared),
+            &mut session,
+            Some(Keeping { keeper: &mut keeper, policy, store }),
+            &scenario.base.hold.aiding(),
+            (&mut link, &mut (recorder, calibrations)),
+            channels,
+        ),
+    )?;
+    let rate = board.borrow().plant.truth().stage.rate_rad_s;
+    Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
 }

@@ -3,13 +3,12 @@
 use std::cell::RefCell;
 
 use firmware::acquire::{TriadAcquisition, acquire};
-use firmware::event::Event;
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Recorder, Store};
 use firmware::run::navigate;
 use hal_mock::vehicle::VehicleTruth;
-use orientation::alignment::{Progress, stops};
+use orientation::alignment::stops;
 use orientation::attitude::Keeper;
 use orientation::signal::InertialSample;
 use simulated::Wires;
@@ -17,7 +16,7 @@ use simulated::fault::{Fault, FaultyRecorder, Injection};
 use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
 use super::harness::{self, Harness};
-use super::kept::{Kept, Point};
+use super::kept::Kept;
 use super::trial::{Around, Carrier};
 use super::{Run, RunError};
 
@@ -40,17 +39,10 @@ pub struct VehicleRun {
 }
 
 impl VehicleRun {
-    /// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.
+    /// The true azimuth when the latest alignment concluded, rad: at the end, unless the vehicle went on.
     #[must_use]
     pub fn azimuth_rad(&self) -> f64 {
-        let is_conclusion =
-            |event: &Event| matches!(event, Event::Alignment(Progress::Concluded(_)));
-        let mut events = self.run.events.iter();
-        let at =
-            events.find(|(_, event)| is_conclusion(event)).map(|(at, _)| at.as_micros() as f64);
-        let later = |point: &&Point| at.is_some_and(|at| point.seconds() * 1e6 >= at);
-        let point = self.run.kept.points.iter().find(later);
-        point.map_or(self.truth.attitude.azimuth_rad, |point| point.truth.azimuth_rad)
+        self.run.kept_azimuth_rad().unwrap_or(self.truth.attitude.azimuth_rad)
     }
 }
 

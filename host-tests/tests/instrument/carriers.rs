@@ -75,7 +75,7 @@ const CARRIERS: [Carrier; 5] = [
         gyro: ["gyro", "gyro"],
         finds: AZIMUTH,
         has_latitude: true,
-        keeps: false,
+        keeps: true,
     },
     Carrier {
         platform: Platform::Vehicle,

@@ -14,6 +14,7 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use proptest::prelude::*;
 use simulated::flash::Flash;
+use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 use simulated::turntable::TurntableScenario;
 
@@ -181,6 +182,19 @@ fn what_a_modulated_turn_found_gives_the_same_north_the_next_time() {
     let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
     // Both have noise of their own.
     assert!(apart < 3.0 * degrees(first.sigma.hypot(second.sigma)), "{apart}° apart");
+}
+
+#[test]
+fn a_misalignment_is_saved_as_its_alignment_ends_while_the_azimuth_is_held_on() {
+    let usual = scenario(5, 6);
+    let base = Scenario { hold: Hold::of(30.0), has_base_imu: true, ..usual.base };
+    let run = aligned(&TurntableScenario { base, ..usual }, &mut keeping(Flash::default(), THEN));
+    let at = |part: &str| {
+        let found = run.run.events.iter().find(|(_, event)| event.to_string().contains(part));
+        found.unwrap_or_else(|| panic!("nothing of {part}")).0.as_micros() as f64 * 1e-6
+    };
+    let saved = at("axis misalignment saved");
+    assert!(saved <= at("handed over") && saved + 29.0 < run.run.seconds, "{saved} s");
 }
 
 #[test]

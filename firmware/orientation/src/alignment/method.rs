@@ -12,6 +12,7 @@
 
 use super::progress::Listener;
 use super::refusal::Refusal;
+use super::rotating::misalignment::AxisMisalignment;
 use super::verdict::Verdict;
 use crate::signal::sway::SwayNoise;
 
@@ -67,6 +68,12 @@ pub trait Method<S> {
 
     /// The verdict; [`None`] until the alignment is over.
     fn verdict(&self) -> Option<Verdict>;
+
+    /// The axis misalignment that the alignment has found at the speed of this index, to be saved
+    /// against a loss of supply; [`None`] from any method without rate-modulated turns.
+    fn misalignment(&self, _speed: usize) -> Option<AxisMisalignment> {
+        None
+    }
 
     /// Takes an input and computes at once what it requires, without reports.
     fn feed(&mut self, input: Input<'_, S>) -> Request {

@@ -48,6 +48,12 @@ impl<'m, S: Timed> Aligner<'m, S> {
         self.state
     }
 
+    /// The method, with its verdict where the alignment is over.
+    #[must_use]
+    pub fn method(&self) -> &dyn Method<S> {
+        self.method
+    }
+
     /// The azimuth that was found and the time of the sample to which it belongs, once.
     pub fn hand_over(&mut self) -> Option<(Instant, Azimuth)> {
         self.found.take()

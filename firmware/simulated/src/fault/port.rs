@@ -5,6 +5,7 @@ use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{ErrorKind, I2c};
 use embedded_hal_async::spi::SpiDevice;
 use hal_mock::chip::Select;
+use orientation::alignment::Method;
 
 use firmware::ports::Recorder;
 
@@ -50,5 +51,9 @@ impl<S, R: Recorder<S>> Recorder<S> for FaultyRecorder<R> {
             Timer::after(HANG).await;
         }
         self.recorder.record(sample).await;
+    }
+
+    async fn conclude(&mut self, method: &dyn Method<S>) {
+        self.recorder.conclude(method).await;
     }
 }

@@ -24,7 +24,7 @@ use orientation::navigation::{Policy, Realignment};
 use orientation::units::DEGREE_PER_HOUR;
 
 use super::fault::{Fault, Injection, PortWrapper};
-use super::hold::Hold;
+use super::hold::{Hold, STOP_SECONDS};
 use super::scenario::{self, Scenario};
 use super::{Bus, SimulatedGyro, Wires};
 use firmware::chips;
@@ -209,7 +209,7 @@ impl VehicleScenario {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
         let Hold { seconds, drive_s, stop_s, .. } = self.base.hold;
-        day.go_on(self.base.seed, seconds, drive_s, stop_s);
+        day.go_on(self.base.seed, seconds, drive_s, stop_s.unwrap_or(STOP_SECONDS));
         match fault {
             Some(Fault::NeverDrives) => day.legs.truncate(1),
             Some(Fault::NeverStops) => never_stop(&mut day),

@@ -50,7 +50,7 @@ impl KeepingOptions {
         }
     }
 
-    /// What keeping needs; and what an azimuth from outside takes the place of, unless the vehicle aligns itself anew
+    /// What keeping with stops of so many seconds needs; and what an azimuth from outside takes the place of, unless the vehicle aligns itself anew
     /// later: the options that plan an alignment.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl KeepingOptions {
     pub fn check(
         &self,
         stated: &Stated,
-        hold: &Hold,
+        (hold, stop_s): (&Hold, f64),
         common: &Common,
         aligning: &[&'static str],
     ) -> Result<(), String> {
@@ -71,10 +71,10 @@ impl KeepingOptions {
             let option = stated::long(option);
             return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));
         }
-        let first = Hold::default().drive_s + Hold::default().stop_s;
+        let first = hold.drive_s + stop_s;
         if self.realign && hold.seconds < first {
             return Err(format!(
-                "--realign: the first stop after the alignment ends after {first} s; add --hold of more"
+                "--realign: the first stop after the alignment ends after {first:.0} s; add --hold of more"
             ));
         }
         let is_alone = self.handover.is_some() && !self.realign;

@@ -140,7 +140,7 @@ impl BaseOptions {
     fn check(
         &self,
         stated: &Stated,
-        scenario: &Scenario,
+        (scenario, alignment_s): (&Scenario, f64),
         aligning: &[&'static str],
     ) -> Result<(), String> {
         if self.no_base_imu && self.common.fault.is_some_and(FaultChoice::is_of_base_imu) {
@@ -151,7 +151,8 @@ impl BaseOptions {
         if keeps && self.no_base_imu {
             return Err("--no-base-imu: without coarse sensors nothing is kept".to_owned());
         }
-        self.keeping.check(stated, &scenario.hold, &self.common, aligning)
+        let keeping = (&scenario.hold, scenario.hold.stop_seconds(alignment_s));
+        self.keeping.check(stated, keeping, &self.common, aligning)
     }
 }
 
@@ -174,7 +175,7 @@ impl Simulated for StageOptions {
         let scenario = self.scenario();
         // A stage keeps its azimuth by the coarse gyros alone.
         let aligning = [&["gyro"][..], &ALIGNING].concat();
-        self.base.check(stated, &scenario, &aligning)
+        self.base.check(stated, (&scenario, scenario.alignment_seconds()), &aligning)
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
@@ -206,7 +207,8 @@ impl Simulated for FramesOptions {
     }
 
     fn check(&self, stated: &Stated) -> Result<(), String> {
-        self.base.check(stated, &self.scenario().base, &ALIGNING)
+        let scenario = self.scenario();
+        self.base.check(stated, (&scenario.base, scenario.alignment_seconds()), &ALIGNING)
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
@@ -229,8 +231,9 @@ impl Simulated for FramesOptions {
 /// What came of a run at standstills; what it kept, where no alignment of it stands.
 fn ran(name: &'static str, run: Run, details: RunDetails, scenario: &Scenario) -> Ran {
     let is_aligned = run.conclusion().is_some();
+    let azimuth_deg = run.azimuth_deg(scenario.azimuth_deg);
     let finished: Box<dyn Finished> =
         if is_aligned { Box::new(run.replay) } else { Box::new(KeptAzimuth) };
-    let truth = Truth { azimuth_deg: Some(scenario.azimuth_deg), ..Truth::default() };
+    let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
     Ran { name, finished, truth, details, body: None, written: Ok(()) }
 }

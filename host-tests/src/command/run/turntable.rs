@@ -10,6 +10,8 @@ use firmware::storage::{FlashStore, Today};
 use host::instrument::recorder::{Samples, turning_rows};
 use host::instrument::{Carrier as _, Run, Trial, TurntablePlan, TurntableRun, flash_file};
 use host::methods::rotating::Replay;
+use host::outcome::Finished;
+use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::RunDetails;
 use host::recording::{Body, GIVEN, Truth};
 use simulated::fault::Fault;
@@ -17,6 +19,7 @@ use simulated::flash::Flash;
 use simulated::scenario::Scenario;
 use simulated::turntable::TurntableScenario;
 
+use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
 use super::{Ran, Simulated, Terminal};
 use crate::command::files::{self, Written};
@@ -32,6 +35,8 @@ pub struct TurntableOptions {
     place: Place,
     #[command(flatten)]
     inclination: Inclination,
+    #[command(flatten)]
+    keeping: KeepingOptions,
     /// The sensor (gyro).
     #[arg(long, value_enum)]
     sensor: Option<Sensor>,
@@ -94,6 +99,9 @@ fn speeds(text: &str) -> Result<[f64; 2], String> {
     if alike { Err("two speeds must be apart by a fifth at least".to_owned()) } else { Ok(both) }
 }
 
+/// Options that plan an alignment, of which there is none where an azimuth is handed over.
+const ALIGNING: [&str; 4] = ["sensor", "speeds", "turns", "modulated_turns"];
+
 /// Speeds closer than this distinguish nothing.
 const LEAST_RATIO: f64 = 1.2;
 
@@ -105,7 +113,11 @@ impl TurntableOptions {
             _ => TurntableScenario { base: Scenario::usual(seed), ..TurntableScenario::default() },
         };
         let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
-        let base = Scenario { pitch_deg, roll_deg, ..self.place.scenario(seed) };
+        // A fault shows in the alignment; and a run by a flash begins where the one before began, not where it ended.
+        let hold = self.keeping.hold(self.common.fault.is_some() || self.flash.is_some());
+        let has_base_imu = hold.seconds > 0.0;
+        let given = self.place.scenario(seed);
+        let base = Scenario { pitch_deg, roll_deg, hold, has_base_imu, ..given };
         let gyro = if self.place.gyro.is_some() { base.gyro } else { usual.base.gyro };
         TurntableScenario {
             base: Scenario { gyro, ..base },
@@ -140,7 +152,16 @@ impl Simulated for TurntableOptions {
         files.map(|path| files::written("--flash", "the flash", path)).into()
     }
 
-    fn check(&self, _: &Stated) -> Result<(), String> {
+    fn check(&self, stated: &Stated) -> Result<(), String> {
+        let scenario = self.scenario();
+        let hold = scenario.base.hold;
+        if self.flash.is_some() && hold.seconds > 0.0 {
+            return Err("--flash: the next run begins where this one began, so no heading is kept in it; leave \
+                        --hold out"
+                .to_owned());
+        }
+        let hold = (&hold, hold.stop_seconds(scenario.alignment_seconds()));
+        self.keeping.check(stated, hold, &self.common, &ALIGNING)?;
         if self.sensor == Some(Sensor::Met) && self.place.gyro.is_some() {
             return Err(
                 "--gyro: a molecular-electronic sensor takes its place; leave out --sensor met"
@@ -164,11 +185,15 @@ impl Simulated for TurntableOptions {
         let TurntableRun { run, .. } = run;
         let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
         details.recalled = Some(recalled(&run).map(Into::into).collect());
-        let finished = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
+        let azimuth_deg = run.azimuth_deg(scenario.base.azimuth_deg);
+        let is_aligned = run.replay.conclusion().is_some();
+        let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
+        let finished: Box<dyn Finished> =
+            if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
         Ok(Ran {
             name: "the simulated run",
-            finished: Box::new(finished),
-            truth: Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() },
+            finished,
+            truth: Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() },
             details,
             body: Some(Body::Rotating(turning_rows(&recorder.taken))),
             written,

@@ -13,6 +13,7 @@ use host::recording::{GIVEN, Truth};
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 use simulated::fault::Fault;
+use simulated::hold::STOP_SECONDS;
 use simulated::scenario::Scenario;
 use simulated::vehicle::{self, VehicleScenario};
 
@@ -81,7 +82,12 @@ impl Simulated for VehicleOptions {
 
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let hold = self.scenario().base.hold;
-        self.keeping.check(stated, &hold, &self.common, &["stops", "no_displacement"])
+        self.keeping.check(
+            stated,
+            (&hold, STOP_SECONDS),
+            &self.common,
+            &["stops", "no_displacement"],
+        )
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {

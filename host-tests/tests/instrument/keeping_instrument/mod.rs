@@ -38,7 +38,12 @@ fn keep(scenario: &FramesScenario, plan: &KeptPlan) -> FramesRun {
 
 /// When the base sets off, s.
 fn departure(scenario: &FramesScenario) -> f64 {
-    scenario.day().legs.first().map_or(0.0, hal_mock::vehicle::Leg::seconds)
+    scenario
+        .base
+        .day(scenario.alignment_seconds())
+        .legs
+        .first()
+        .map_or(0.0, hal_mock::vehicle::Leg::seconds)
 }
 
 /// What was reported.

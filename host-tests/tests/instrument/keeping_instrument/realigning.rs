@@ -2,15 +2,19 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
+use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;
+use host::output::azimuth_error;
 use orientation::attitude::Realigned;
 use orientation::navigation::Progress;
 use simulated::hold::Hold;
+use simulated::scenario::{Aim, Scenario};
+use simulated::turntable::TurntableScenario;
 
 #[test]
 fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
     for seed in [2, 3] {
-        let hold = Hold { realigns: true, drive_s: 480.0, stop_s: 100.0, ..Hold::of(1500.0) };
+        let hold = Hold { realigns: true, drive_s: 480.0, stop_s: Some(100.0), ..Hold::of(1500.0) };
         let found = drive(&vehicle(seed, hold));
         let handed = |(_, event): &(_, Event)| match event {
             Event::Navigation(Progress::HandedOver(_, outcome)) => Some(*outcome),
@@ -26,7 +30,7 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
 
 #[test]
 fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_vertical() {
-    let hold = Hold { realigns: true, drive_s: 100.0, stop_s: 320.0, ..Hold::of(500.0) };
+    let hold = Hold { realigns: true, drive_s: 100.0, stop_s: Some(320.0), ..Hold::of(500.0) };
     let found = keep(&frames(1, hold), &KeptPlan::of(None));
     let lines = reported(&found.run);
     let fused = lines.iter().position(|line| line.starts_with("realigned: "));
@@ -37,9 +41,56 @@ fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_ve
     assert!(worst < 4.0, "{worst} σ");
 }
 
+/// A stage whose vehicle stops for as long as another alignment takes.
+fn stage(hold: Hold) -> Scenario {
+    Scenario { hold, has_base_imu: true, sample_rate_hz: 100.0, ..Scenario::usual(4) }
+}
+
+#[test]
+fn a_stage_and_a_turntable_align_anew_where_the_vehicle_stands_for_as_long_as_that_takes() {
+    let hold = Hold { realigns: true, drive_s: 100.0, ..Hold::of(1000.0) };
+    let on_stage = Trial::of(&stage(hold)).run().expect("the scenario is possible");
+    let usual = TurntableScenario::default();
+    let turntable = TurntableScenario { base: stage(hold), turns: 4, ..usual };
+    let turning = Trial::of(&turntable).run().expect("the scenario is possible").run;
+    for (name, lines, kept) in [
+        ("stage", reported(&on_stage), &on_stage.kept),
+        ("turntable", reported(&turning), &turning.kept),
+    ] {
+        let realigned = lines.iter().filter(|line| line.starts_with("realigned: ")).count();
+        assert!(realigned >= 2, "{name}: {lines:#?}");
+        let [worst, _] = sigmas(kept);
+        assert!(worst < 4.0, "{name}: {worst} σ");
+    }
+}
+
+#[test]
+fn the_truth_of_an_alignment_at_a_later_stop_is_that_of_the_stop() {
+    let hold = Hold { realigns: true, drive_s: 100.0, ..Hold::of(400.0) };
+    let scenario = frames(1, hold);
+    let run = keep(&scenario, &KeptPlan::of(None)).run;
+    let found = run.conclusion().and_then(|conclusion| conclusion.verdict.ok());
+    let azimuth = found.expect("it is aligned anew");
+    let first_deg = scenario.base.azimuth_deg;
+    let error = |truth_deg: f64| azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
+    let sigma_deg = azimuth.sigma.to_degrees();
+    assert!(error(first_deg) > 100.0 * sigma_deg, "the vehicle did not turn");
+    assert!(error(run.azimuth_deg(first_deg)) < 4.0 * sigma_deg);
+}
+
+#[test]
+fn a_base_stays_until_an_alignment_in_a_stated_time_has_ended() {
+    for seconds in [300.0, 1200.0] {
+        let usual = stage(Hold::of(5.0));
+        let run = Trial::of(&Scenario { aim: Aim::Time(seconds), ..usual }).run();
+        let lines = reported(&run.expect("the scenario is possible"));
+        assert!(lines.iter().any(|line| line.contains("it is kept")), "{seconds} s: {lines:#?}");
+    }
+}
+
 #[test]
 fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
-    let hold = Hold { realigns: true, drive_s: 100.0, stop_s: 80.0, ..Hold::of(400.0) };
+    let hold = Hold { realigns: true, drive_s: 100.0, stop_s: Some(80.0), ..Hold::of(400.0) };
     let found = keep(&frames(2, hold), &KeptPlan::of(None));
     let lines = reported(&found.run);
     assert!(

@@ -344,7 +344,7 @@ fn on_turntable(
     let session = built!(METHOD, AnyMethod::Rotating(session) => session,
         AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
     let rig = built!(RIG, Rig::Stage(rig) => &*rig,
-        Rig::Stage(RefCell::new(scenario.board(&HEALTHY))));
+        Rig::Stage(RefCell::new(scenario.board(None, &HEALTHY))));
     let wires = Wires(rig, around);
     let (inputs, outputs, channels) = built!(PARTS, Parts::Stage(i, o, c) => (i, o, &*c), Parts::Stage(
             wires.sensors(&scenario.base, turntable::FORCE),

@@ -470,6 +470,10 @@ impl Method<Sample> for Session {
         }
     }
 
+    fn misalignment(&self, speed: usize) -> Option<AxisMisalignment> {
+        self.misalignments().nth(speed)
+    }
+
     fn compute(&mut self, listener: Listener) -> Request {
         let Some(conclusion) = self.conclusion.as_mut().filter(|_| self.phase == Phase::Conclude)
         else {
