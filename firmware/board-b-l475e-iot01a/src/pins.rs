@@ -8,7 +8,7 @@ use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::interrupt::typelevel;
 use embassy_stm32::peripherals::{
     DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4,
-    PB0, PB1, PB2, PB4, PB10, PB11, PC3, PC4,
+    PA15, PB0, PB1, PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
@@ -19,8 +19,8 @@ use embassy_time::Duration;
 use firmware::ports::Frames;
 use static_cell::StaticCell;
 use stm32::wiring::{
-    AxisPlatformWires, AxisWires, BaseBus, Bus, Buses, ConverterWires, Device, FramesWires,
-    Outlets, PlatformWires, SpinWires, StageBus, VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, BaseBus, Bus, Buses, ConverterWires, FramesWires, Outlets, PlatformWires,
+    SpinWires, StageBus, VehicleWires, sensor_settings, stage_settings,
 };
 
 use crate::clock;
@@ -48,10 +48,10 @@ const BASE_TIMEOUT: Duration = Duration::from_millis(5);
 pub struct Board {
     buses: Buses,
     converter: ConverterWires,
-    accelerometer: Device,
-    axis: AxisWires,
-    motor_enable: Output<'static>,
     outlets: Outlets,
+    accelerometer: Peri<'static, PA15>,
+    axis: (Peri<'static, PD0>, Peri<'static, PD5>),
+    motor_enable: Peri<'static, PD2>,
     base: BasePins,
     selects: (Peri<'static, PB2>, Peri<'static, PA4>, Peri<'static, PA3>, Peri<'static, PB4>),
     ready: (Peri<'static, PB0>, Peri<'static, PB1>, Peri<'static, PC4>, Peri<'static, PC3>),
@@ -79,10 +79,10 @@ impl Board {
         Ok(Self {
             buses,
             converter: buses.converter(p.PA2, ready),
-            accelerometer: buses.accelerometer(p.PA15),
-            axis: buses.axis(p.PD0, p.PD5),
-            motor_enable: Output::new(p.PD2, Level::Low, Speed::Low),
             outlets: Outlets { link, flash: p.FLASH },
+            accelerometer: p.PA15,
+            axis: (p.PD0, p.PD5),
+            motor_enable: p.PD2,
             base: BasePins {
                 bus: p.I2C2,
                 pins: (p.PB10, p.PB11),
@@ -96,18 +96,31 @@ impl Board {
 
     /// Connections of a stage or a turntable.
     pub fn axis(self) -> AxisPlatformWires {
-        let Self { converter, accelerometer, axis: axes, base, motor_enable, outlets, .. } = self;
-        let base = base.connect();
-        PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
+        let (encoder, motor) = self.axis;
+        let axes = self.buses.axis(encoder, motor);
+        PlatformWires {
+            converter: self.converter,
+            accelerometer: self.buses.accelerometer(self.accelerometer),
+            axes,
+            base: self.base.connect(),
+            motor_enable: Output::new(self.motor_enable, Level::Low, Speed::Low),
+            outlets: self.outlets,
+        }
     }
 
     /// Connections of two frames; the inner one has the select pins of a vehicle's further gyros.
     pub fn two_frames(self) -> FramesWires {
-        let (encoder, motor, ..) = self.selects;
-        let axes = Frames { outer: self.axis, inner: self.buses.axis(encoder, motor) };
-        let Self { converter, accelerometer, base, motor_enable, outlets, .. } = self;
-        let base = base.connect();
-        PlatformWires { converter, accelerometer, axes, base, motor_enable, outlets }
+        let Self { axis: (encoder, motor), selects: (inner_encoder, inner_motor, ..), .. } = self;
+        let outer = self.buses.axis(encoder, motor);
+        let inner = self.buses.axis(inner_encoder, inner_motor);
+        PlatformWires {
+            converter: self.converter,
+            accelerometer: self.buses.accelerometer(self.accelerometer),
+            axes: Frames { outer, inner },
+            base: self.base.connect(),
+            motor_enable: Output::new(self.motor_enable, Level::Low, Speed::Low),
+            outlets: self.outlets,
+        }
     }
 
     /// Connections in a vehicle.
@@ -117,6 +130,7 @@ impl Board {
         let right = buses.converter(selects.0, line);
         let line = ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts);
         let down = buses.converter(selects.1, line);
+        let accelerometer = buses.accelerometer(accelerometer);
         VehicleWires { converters: [converter, right, down], accelerometer, outlets }
     }
 
