@@ -6,7 +6,7 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Timer};
 use orientation::alignment::{Method, Request};
 use orientation::navigation::Aligner;
-use orientation::navigation::aligner::State;
+use orientation::navigation::aligner::{Input, State};
 use orientation::signal::Timed;
 
 use crate::ports::{Aiding, Recorder};
@@ -27,12 +27,16 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     let shared = &channels.shared;
     let listener = &mut |progress| shared.progress(progress);
     let mut aligner = Aligner::new(method);
+    let give = |aligner: &mut Aligner<'_, S>, input: Input| {
+        shared.observer.aligns(&input);
+        aligner.take(&input, &mut |progress| shared.progress(progress))
+    };
     let mut request = aligner.begin(listener);
     loop {
         request = match request {
             Request::Compute => aligner.compute(listener),
             Request::Locate => match aiding.displacement() {
-                Some(place) => aligner.displace(&place, listener),
+                Some(place) => give(&mut aligner, Input::Displaced(place)),
                 None => Request::Continue,
             },
             Request::Done => {
@@ -42,7 +46,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             }
             Request::Continue | Request::MayDrive => {
                 if aligner.state() == State::Homing && shared.homed.signaled() {
-                    let first = aligner.home(&shared.sway.get(), listener);
+                    let first = give(&mut aligner, Input::Homed(shared.sway.get()));
                     if first != Request::Continue {
                         request = first;
                         continue;
@@ -56,7 +60,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 match select(shared.orders.wait(), channels.samples.receive()).await {
                     Either::First(order) => {
                         shared.obey(&order);
-                        aligner.obey(&order, listener)
+                        give(&mut aligner, Input::Ordered(order))
                     }
                     Either::Second(sample) => {
                         if aligner.state() == State::Aligning {

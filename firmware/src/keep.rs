@@ -19,12 +19,12 @@ use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::attitude::Keeper;
 use orientation::attitude::restart::Remembered;
-use orientation::navigation::{Navigator, Output, Policy};
+use orientation::navigation::{Input, Motion, Navigator, Output, Policy};
 use orientation::units;
 
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
-use crate::shared::{Motion, Shared};
+use crate::shared::Shared;
 use crate::storage::HEADING;
 
 /// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
@@ -91,36 +91,36 @@ async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, share
         None
     });
     let to_save = Cell::new(None);
-    let outlet = &mut |output| execute(output, &to_save, shared);
     let mut navigator = Navigator::new(keeper, policy, remembered);
+    let give = |navigator: &mut Navigator, input: Input| {
+        shared.observer.navigates(&input);
+        navigator.take(&input, &mut |output| execute(output, &to_save, shared));
+    };
     let mut latest = Instant::MIN;
     while !navigator.is_over() {
         select(shared.caught_up.wait(), Timer::after(REST)).await;
-        navigator.set_idle(shared.is_idle());
+        give(&mut navigator, Input::Idle(shared.is_idle()));
         if !shared.is_behind.get() {
             if let Some((at, azimuth)) = shared.found.try_take() {
-                navigator.find(at, azimuth);
+                give(&mut navigator, Input::Found(at, azimuth));
             }
             while let Ok(motion) = shared.motions.try_receive() {
-                match motion {
-                    Motion::Moved(sample) => {
-                        if navigator.wants_aiding(sample.time) {
-                            navigator.aid(aiding.velocity(), aiding.azimuth(), outlet);
-                        }
-                        navigator.push(&sample, outlet);
-                        latest = Instant::now();
+                if let Motion::Moved(sample) = motion {
+                    if navigator.wants_aiding(sample.time) {
+                        give(&mut navigator, aided(aiding));
                     }
-                    Motion::Exchanged(down) => navigator.exchange(down, outlet),
+                    latest = Instant::now();
                 }
+                give(&mut navigator, Input::Motion(motion));
             }
-            navigator.settle(outlet);
+            give(&mut navigator, Input::Settled);
         }
         if latest.elapsed().as_micros() >= SILENCE {
             let now = units::Instant(Instant::now().as_micros());
             if navigator.wants_aiding(now) {
-                navigator.aid(aiding.velocity(), aiding.azimuth(), outlet);
+                give(&mut navigator, aided(aiding));
             }
-            navigator.tick(now, outlet);
+            give(&mut navigator, Input::Passed(now));
         }
         shared.is_at_rest.set(navigator.is_at_rest());
         if let Some(item) = to_save.take()
@@ -129,6 +129,11 @@ async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, share
             fail(fault, &mut has_failed, shared);
         }
     }
+}
+
+/// What is known from outside at this moment.
+fn aided(aiding: &dyn Aiding) -> Input {
+    Input::Aided(aiding.velocity(), aiding.azimuth())
 }
 
 /// Reads the heading that was stored before the restart. An item with a wrong checksum counts as

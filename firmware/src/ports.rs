@@ -8,6 +8,7 @@ use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::alignment::{Azimuth, Method};
 use orientation::attitude::Report;
+use orientation::navigation::{self, aligner};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -284,6 +285,12 @@ pub trait Observer {
 
     /// The keeper's report, once a second.
     fn kept(&self, _: &Report) {}
+
+    /// An input of the aligner beside its samples, before it is taken.
+    fn aligns(&self, _: &aligner::Input) {}
+
+    /// An input of the navigator, before it is taken.
+    fn navigates(&self, _: &navigation::Input) {}
 
     /// A new reading of the coarse sensors on the base at a time of the instrument's clock.
     fn sensed(&self, _: Instant, _: &BaseReading) {}

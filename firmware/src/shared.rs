@@ -10,11 +10,10 @@ use embassy_time::{Duration, Instant, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Azimuth, Progress, Request};
 use orientation::device::{Device, Trouble};
-use orientation::navigation::Order;
-use orientation::navigation::progress::VerticalGyro;
+use orientation::navigation::{Motion, Order};
 use orientation::roll;
+use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
-use orientation::signal::{InertialSample, Sample};
 use orientation::units::{self, Angle};
 
 use crate::event::Event;
@@ -50,15 +49,6 @@ pub(crate) async fn discard<S>(channels: &Channels<'_, S>) {
     loop {
         channels.samples.receive().await;
     }
-}
-
-/// A message from acquisition to the navigator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// An increment of rotation and velocity of the body.
-    Moved(InertialSample),
-    /// From the next increment on, another gyro measures about the down axis.
-    Exchanged(VerticalGyro),
 }
 
 /// The latest corrected angle of an axis' encoder and the time of its reading.

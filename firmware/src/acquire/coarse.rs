@@ -7,10 +7,11 @@ use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
 use super::increments;
+use orientation::navigation::Motion;
 use orientation::navigation::progress::VerticalGyro;
 
 use crate::ports::BaseReading;
-use crate::shared::{Motion, Shared};
+use crate::shared::Shared;
 
 /// Quarter of a turn, in steps of an [`Angle`].
 const QUARTER_TURN: u32 = 1 << 30;

@@ -7,6 +7,7 @@
 use embassy_time::{Duration, Instant};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::TRIAD;
+use orientation::navigation::Motion;
 use orientation::signal::InertialSample;
 use orientation::units::SpecificForce;
 
@@ -16,7 +17,7 @@ use super::outlet::Outlet;
 use super::{Source, increments};
 use crate::configuration::{VehicleConfiguration, period};
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
-use crate::shared::{Channels, Motion};
+use crate::shared::Channels;
 
 /// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A> {

@@ -11,6 +11,7 @@ use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
 use orientation::alignment::Progress;
 use orientation::attitude::Report;
+use orientation::navigation::{self, aligner};
 
 use super::kept::Kept;
 use super::{Run, RunError};
@@ -33,6 +34,14 @@ impl Observer for Log<'_> {
     fn kept(&self, report: &Report) {
         self.reports.borrow_mut().push(*report);
         self.watch.kept(report);
+    }
+
+    fn aligns(&self, input: &aligner::Input) {
+        self.watch.aligns(input);
+    }
+
+    fn navigates(&self, input: &navigation::Input) {
+        self.watch.navigates(input);
     }
 
     fn sensed(&self, at: Instant, reading: &BaseReading) {

@@ -10,6 +10,7 @@ mod instrument_parts;
 mod keeping_instrument;
 mod mount;
 mod recordings;
+mod replaying;
 mod spin;
 mod stops_instrument;
 mod stops_instrument_faults;

@@ -3,7 +3,7 @@
 use super::Order;
 use crate::alignment::progress::{Listener, Progress};
 use crate::alignment::refusal::Refusal;
-use crate::alignment::{Azimuth, Input, Method, Request};
+use crate::alignment::{Azimuth, Method, Request, method};
 use crate::signal::Timed;
 use crate::signal::sway::SwayNoise;
 use crate::units::Instant;
@@ -11,6 +11,18 @@ use crate::units::Instant;
 /// Longest time until the mechanism's angles are valid, µs: six searches of a stage for its index
 /// over the whole travel, with the rests between them, 15 minutes.
 const LONGEST_HOMING: u64 = 900_000_000;
+
+/// Input of the aligner beside the samples. What it does follows from both and their order alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// The mechanism's angles are valid; noise that the compensated sway of the base leaves in the
+    /// samples.
+    Homed(SwayNoise),
+    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east, m.
+    Displaced([f64; 2]),
+    /// An order.
+    Ordered(Order),
+}
 
 /// State of the aligner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,14 +78,17 @@ impl<'m, S: Timed> Aligner<'m, S> {
         self.follow(request, listener)
     }
 
-    /// Reports that the mechanism's angles are valid, and the noise that the compensated sway of
-    /// the base leaves in the samples.
-    pub fn home(&mut self, sway: &SwayNoise, listener: Listener) -> Request {
-        if self.state != State::Homing {
-            return Request::Continue;
+    /// Takes an input.
+    pub fn take(&mut self, input: &Input, listener: Listener) -> Request {
+        match input {
+            Input::Homed(sway) if self.state == State::Homing => {
+                self.state = State::Aligning;
+                self.pass(method::Input::Sway(sway), listener)
+            }
+            Input::Homed(_) => Request::Continue,
+            Input::Displaced(place) => self.pass(method::Input::Displaced(place), listener),
+            Input::Ordered(order) => self.obey(order, listener),
         }
-        self.state = State::Aligning;
-        self.take(Input::Sway(sway), listener)
     }
 
     /// Takes a sample.
@@ -82,7 +97,7 @@ impl<'m, S: Timed> Aligner<'m, S> {
         match self.state {
             State::Aligning => {
                 self.taken = Some(now);
-                self.take(Input::Sample(sample), listener)
+                self.pass(method::Input::Sample(sample), listener)
             }
             State::Homing => {
                 let since = *self.since.get_or_insert(now);
@@ -95,13 +110,8 @@ impl<'m, S: Timed> Aligner<'m, S> {
         }
     }
 
-    /// Takes the displacement of the vehicle, north and east, m.
-    pub fn displace(&mut self, displacement: &[f64; 2], listener: Listener) -> Request {
-        self.take(Input::Displaced(displacement), listener)
-    }
-
     /// Obeys an order. An alignment that is over cannot fail, and one in progress is not begun.
-    pub fn obey(&mut self, order: &Order, listener: Listener) -> Request {
+    fn obey(&mut self, order: &Order, listener: Listener) -> Request {
         match (order, self.state) {
             (Order::Restart, State::Idle) => self.begin(listener),
             (Order::Restart, _) | (_, State::Idle) => Request::Continue,
@@ -121,11 +131,11 @@ impl<'m, S: Timed> Aligner<'m, S> {
 
     /// Ends the alignment with a reason.
     fn fail(&mut self, reason: &Refusal, listener: Listener) -> Request {
-        self.take(Input::Failed(reason), listener)
+        self.pass(method::Input::Failed(reason), listener)
     }
 
     /// Passes an input to the method.
-    fn take(&mut self, input: Input<'_, S>, listener: Listener) -> Request {
+    fn pass(&mut self, input: method::Input<'_, S>, listener: Listener) -> Request {
         let request = self.method.take(input, listener);
         self.follow(request, listener)
     }

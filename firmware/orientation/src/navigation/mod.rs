@@ -18,7 +18,7 @@ pub mod policy;
 pub mod progress;
 
 pub use aligner::Aligner;
-pub use navigator::{Navigator, Output};
+pub use navigator::{Input, Motion, Navigator, Output};
 pub use policy::{Policy, Realignment};
 pub use progress::Progress;
 

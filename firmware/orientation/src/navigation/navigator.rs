@@ -50,7 +50,34 @@ pub struct Attitude {
     pub is_recalled: bool,
 }
 
-/// What follows from an event.
+/// Motion of the body, as its inertial sensors show it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// An increment of rotation and velocity.
+    Moved(InertialSample),
+    /// From the next increment on, another gyro measures about the down axis.
+    Exchanged(VerticalGyro),
+}
+
+/// Input of the navigator. What it does follows from its inputs and their order alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// Whether no alignment runs.
+    Idle(bool),
+    /// The azimuth of an alignment, which belongs to a sample of this time.
+    Found(Instant, Azimuth),
+    /// Motion of the body.
+    Motion(Motion),
+    /// There is no increment of a later time yet: a found azimuth belongs to the latest one.
+    Settled,
+    /// Aiding from outside: velocity over ground north and east, m/s, and an azimuth of body x at this
+    /// moment, where they are known.
+    Aided(Option<[f64; 2]>, Option<Azimuth>),
+    /// Time has passed in which no increment came.
+    Passed(Instant),
+}
+
+/// What follows from an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// Progress for the log.
@@ -163,31 +190,29 @@ impl<'k> Navigator<'k> {
         self.is_due(now) && self.looks + 1 >= LOOKS
     }
 
-    /// Takes the azimuth of an alignment, which belongs to a sample of the time `at`.
-    pub fn find(&mut self, at: Instant, azimuth: Azimuth) {
-        self.found = Some((at, azimuth));
-    }
-
-    /// Learns whether an alignment runs.
-    pub fn set_idle(&mut self, is_idle: bool) {
-        self.is_idle = is_idle;
+    /// Takes an input, within bounded time.
+    pub fn take(&mut self, input: &Input, outlet: Outlet) {
+        match input {
+            Input::Idle(is_idle) => self.is_idle = *is_idle,
+            Input::Found(at, azimuth) => self.found = Some((*at, *azimuth)),
+            Input::Motion(Motion::Moved(sample)) => self.push(sample, outlet),
+            Input::Motion(Motion::Exchanged(down)) => self.exchange(*down, outlet),
+            Input::Settled => self.take_found(Instant(u64::MAX), outlet),
+            Input::Aided(velocity, azimuth) => self.aid(*velocity, *azimuth, outlet),
+            Input::Passed(now) => self.tick(*now, outlet),
+        }
     }
 
     /// Takes an increment of rotation and velocity.
-    pub fn push(&mut self, sample: &InertialSample, outlet: Outlet) {
+    fn push(&mut self, sample: &InertialSample, outlet: Outlet) {
         self.take_found(sample.time, outlet);
         self.keeper.push(sample);
         self.moved = Some(sample.time);
         self.tick(sample.time, outlet);
     }
 
-    /// Takes a found azimuth that belongs to the latest sample, or to one without an increment.
-    pub fn settle(&mut self, outlet: Outlet) {
-        self.take_found(Instant(u64::MAX), outlet);
-    }
-
     /// From the next increment on, another gyro measures about the down axis.
-    pub fn exchange(&mut self, down: VerticalGyro, outlet: Outlet) {
+    fn exchange(&mut self, down: VerticalGyro, outlet: Outlet) {
         let Policy { beside, precise, .. } = self.policy;
         self.keeper.exchange_down(match down {
             VerticalGyro::Coarse => beside,
@@ -199,9 +224,8 @@ impl<'k> Navigator<'k> {
         outlet(Output::Progress(Progress::DownGyro(down)));
     }
 
-    /// Takes aiding from outside: velocity over ground north and east, m/s, and an azimuth of body
-    /// x at this moment, where they are known.
-    pub fn aid(&mut self, velocity: Option<[f64; 2]>, azimuth: Option<Azimuth>, outlet: Outlet) {
+    /// Takes aiding from outside.
+    fn aid(&mut self, velocity: Option<[f64; 2]>, azimuth: Option<Azimuth>, outlet: Outlet) {
         self.keeper.move_at(velocity);
         if let Some(azimuth) = azimuth {
             self.align(azimuth, outlet);
@@ -210,8 +234,8 @@ impl<'k> Navigator<'k> {
     }
 
     /// Lets time pass: checks the state ten times a second and reports its changes; once a second
-    /// also does everything else. Also called where no samples arrive.
-    pub fn tick(&mut self, now: Instant, outlet: Outlet) {
+    /// also does everything else.
+    fn tick(&mut self, now: Instant, outlet: Outlet) {
         self.now = now;
         if self.due.is_none() {
             self.due = Some(Instant(now.0 + LOOK));

@@ -4,7 +4,7 @@ use embassy_time::Duration;
 use orientation::alignment::{Azimuth, Progress};
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::navigation::{self, Navigator, Output, Policy, Realignment};
+use orientation::navigation::{self, Input, Motion, Navigator, Output, Policy, Realignment};
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
 
@@ -38,6 +38,10 @@ fn policy() -> Policy {
     }
 }
 
+fn moved(index: u64, turn: f64) -> Input {
+    Input::Motion(Motion::Moved(sample(index, turn)))
+}
+
 fn keeper() -> Keeper {
     let latitude = Latitude::from_degrees(45.0).expect("a latitude");
     Keeper::new(&Setting::precise(latitude, 0.01, gyro()))
@@ -50,11 +54,11 @@ fn azimuth_after(later: u64) -> f64 {
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
     let mut navigator = Navigator::new(&mut keeper, &policy(), None);
     let azimuth = Azimuth { angle: 100.0 * DEGREE, sigma: 0.01 * DEGREE };
-    navigator.find(Instant(505 * 10_000), azimuth);
+    navigator.take(&Input::Found(Instant(505 * 10_000), azimuth), &mut |_| ());
     for index in 501..=505 + later {
-        navigator.push(&sample(index, TURN), &mut |_| ());
+        navigator.take(&moved(index, TURN), &mut |_| ());
     }
-    navigator.settle(&mut |_| ());
+    navigator.take(&Input::Settled, &mut |_| ());
     let azimuth = keeper.report().azimuth.expect("it was handed over");
     azimuth.angle.to_degrees()
 }
@@ -84,9 +88,9 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
             _ => None,
         };
         let azimuth = outside.map(|it| Azimuth { angle: it * DEGREE, sigma: 0.01 * DEGREE });
-        navigator.aid(None, azimuth, &mut outlet);
-        navigator.push(&sample(index, 0.0), &mut outlet);
-        navigator.settle(&mut outlet);
+        navigator.take(&Input::Aided(None, azimuth), &mut outlet);
+        navigator.take(&moved(index, 0.0), &mut outlet);
+        navigator.take(&Input::Settled, &mut outlet);
     }
     assert_eq!(shown, [None, Some(true), Some(true), Some(false)]);
 }
