@@ -14,19 +14,11 @@ pub struct AccelerometerConfiguration {
     pub bias_sigma_m_s2: f64,
 }
 
-impl AccelerometerConfiguration {
-    /// White noise of one sample at `rate_hz`, m/s²: density·√(`f_s`/2), the whole band to Nyquist.
-    #[must_use]
-    pub fn white_sigma_m_s2(&self, rate_hz: f64) -> f64 {
-        self.noise_m_s2_sqrt_hz * libm::sqrt(0.5 * rate_hz)
-    }
-}
-
 /// An accelerometer at work: what it drew at start and the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accelerometer {
     /// Biases of x, y, z as drawn at this start, m/s².
-    bias_m_s2: [f64; 3],
+    pub bias_m_s2: [f64; 3],
     /// White noise, m/s², drawn for x, y, z in turn.
     white: White,
 }
@@ -37,32 +29,18 @@ impl Accelerometer {
     pub fn new(configuration: &AccelerometerConfiguration, rate_hz: f64, seed: u64) -> Self {
         let mut start = Generator::stream(seed, source::ACCELEROMETER_START);
         let sigma = configuration.bias_sigma_m_s2;
+        // White noise of one sample: density·√(fs/2), the whole band to Nyquist.
+        let white = configuration.noise_m_s2_sqrt_hz * libm::sqrt(0.5 * rate_hz);
         Self {
             bias_m_s2: configuration.bias_m_s2.map(|bias| bias + sigma * start.gaussian()),
-            white: White::new(
-                configuration.white_sigma_m_s2(rate_hz),
-                seed,
-                source::ACCELEROMETER_WHITE,
-            ),
+            white: White::new(white, seed, source::ACCELEROMETER_WHITE),
         }
-    }
-
-    /// Biases of this start, m/s².
-    #[must_use]
-    pub fn bias_m_s2(&self) -> [f64; 3] {
-        self.bias_m_s2
     }
 
     /// The next output, m/s², for a true specific force in m/s².
     #[inline]
     pub fn sample(&mut self, force_m_s2: [f64; 3]) -> [f64; 3] {
-        let [x, y, z] = force_m_s2;
-        let [bias_x, bias_y, bias_z] = self.bias_m_s2;
-        [
-            x + bias_x + self.white.sample(),
-            y + bias_y + self.white.sample(),
-            z + bias_z + self.white.sample(),
-        ]
+        core::array::from_fn(|axis| force_m_s2[axis] + self.bias_m_s2[axis] + self.white.sample())
     }
 }
 

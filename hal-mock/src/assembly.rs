@@ -13,10 +13,36 @@ use crate::chip::{ReadyLine, Rig, Select, SpiChip, Transaction};
 use crate::fault::Blackout;
 use crate::violation::{Violation, Violations};
 
-/// Something that is done with a chip of any type.
-pub trait Task {
+/// Something that is done with a chip of any type; what is learnt stays as it was where the board has no
+/// such chip.
+#[derive(Debug)]
+pub enum Task<'t, 'b> {
+    /// Learns when the chip acts of itself.
+    Next(&'t mut Option<Instant>),
+    /// Has the chip do what is due.
+    Event,
+    /// Has the chip answer.
+    Answer(&'t Transaction<'b>, &'t mut [u8]),
+    /// Looks at the data-ready line.
+    Line(&'t mut ReadyLine),
+    /// Takes the supply away for a moment.
+    Restart(Instant),
+    /// Learns what was done to the chip that its data sheet forbids.
+    Violations(&'t mut Option<Violations>),
+}
+
+impl Task<'_, '_> {
     /// Does it with a chip in the environment that the board gives it.
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E);
+    pub fn perform<E: ?Sized, C: SpiChip<E>>(self, chip: &mut C, environment: &mut E) {
+        match self {
+            Self::Next(next) => *next = chip.next_event(),
+            Self::Event => chip.event(environment),
+            Self::Answer(transaction, reply) => chip.transact(environment, transaction, reply),
+            Self::Line(line) => *line = chip.ready_line(),
+            Self::Restart(now) => chip.power_cycle(now),
+            Self::Violations(found) => *found = Some(chip.violations().clone()),
+        }
+    }
 }
 
 /// The chips of a board in a world `P`: what names its parts. Times that they are asked for never fall.
@@ -25,7 +51,7 @@ pub trait Chips<P> {
     const SELECTS: &'static [Select];
 
     /// Performs a task with a chip, or nothing where the board has no such chip.
-    fn with(&mut self, plant: &mut P, select: Select, task: &mut impl Task);
+    fn with(&mut self, plant: &mut P, select: Select, task: Task);
 
     /// Moves the world on to `now`, which is never before the time of an earlier call, where readings alone
     /// do not.
@@ -50,9 +76,9 @@ pub struct Board<'a, P, C> {
 impl<P, C: Chips<P>> Board<'_, P, C> {
     /// What was done to a chip that its data sheet forbids; none where the board has no such chip.
     pub fn violations(&mut self, select: Select) -> Option<Violations> {
-        let mut found = Found(None);
-        self.with(select, &mut found);
-        found.0
+        let mut found = None;
+        self.with(select, Task::Violations(&mut found));
+        found
     }
 
     /// The forbidden accesses that are kept ([`Violations::first`]) with their chips, chip by chip in the
@@ -72,7 +98,7 @@ impl<P, C: Chips<P>> Board<'_, P, C> {
             match (event, blackout) {
                 (Some((at, select)), blackout) if blackout.is_none_or(|b| at < b.at) => {
                     C::move_on(&mut self.plant, at);
-                    self.with(select, &mut Event);
+                    self.with(select, Task::Event);
                 }
                 (_, Some(Blackout { select, at })) => {
                     self.blackouts = &self.blackouts[1..];
@@ -87,9 +113,9 @@ impl<P, C: Chips<P>> Board<'_, P, C> {
     /// The chip that acts next, and when; of several at one time the first of [`Chips::SELECTS`].
     fn next_event(&mut self) -> Option<(Instant, Select)> {
         let mut due = |select| {
-            let mut next = Next(None);
-            self.with(select, &mut next);
-            Some((next.0?, select))
+            let mut next = None;
+            self.with(select, Task::Next(&mut next));
+            Some((next?, select))
         };
         C::SELECTS.iter().filter_map(|select| due(*select)).min_by_key(|(at, _)| *at)
     }
@@ -97,80 +123,26 @@ impl<P, C: Chips<P>> Board<'_, P, C> {
     /// Takes a chip's supply away at `now` and gives it back at once.
     fn restart(&mut self, select: Select, now: Instant) {
         C::lose(&mut self.plant, select, now);
-        self.with(select, &mut Restart(now));
+        self.with(select, Task::Restart(now));
     }
 
     /// Performs a task with a chip, or nothing where the board has no such chip.
-    fn with(&mut self, select: Select, task: &mut impl Task) {
+    fn with(&mut self, select: Select, task: Task) {
         self.chips.with(&mut self.plant, select, task);
-    }
-}
-
-/// Learns when a chip acts of itself.
-struct Next(Option<Instant>);
-
-impl Task for Next {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
-        self.0 = chip.next_event();
-    }
-}
-
-/// Has a chip do what is due.
-struct Event;
-
-impl Task for Event {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
-        chip.event(environment);
-    }
-}
-
-/// Has a chip answer.
-struct Answer<'t, 'b>(&'t Transaction<'b>, &'t mut [u8]);
-
-impl Task for Answer<'_, '_> {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
-        chip.transact(environment, self.0, self.1);
-    }
-}
-
-/// Looks at a chip's data-ready line.
-struct Line(ReadyLine);
-
-impl Task for Line {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
-        self.0 = chip.ready_line();
-    }
-}
-
-/// Takes a chip's supply away for a moment.
-struct Restart(Instant);
-
-impl Task for Restart {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
-        chip.power_cycle(self.0);
-    }
-}
-
-/// What was done to a chip that its data sheet forbids.
-struct Found(Option<Violations>);
-
-impl Task for Found {
-    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
-        self.0 = Some(chip.violations().clone());
     }
 }
 
 impl<P, C: Chips<P>> Rig for Board<'_, P, C> {
     fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]) {
         self.advance(transaction.now);
-        self.with(select, &mut Answer(transaction, reply));
+        self.with(select, Task::Answer(transaction, reply));
     }
 
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine {
         self.advance(now);
-        let mut line = Line(ReadyLine::default());
-        self.with(select, &mut line);
-        line.0
+        let mut line = ReadyLine::default();
+        self.with(select, Task::Line(&mut line));
+        line
     }
 
     fn power_cycle(&mut self, select: Select, now: Instant) {

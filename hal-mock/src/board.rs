@@ -38,7 +38,7 @@ where
     const SELECTS: &'static [Select] =
         &[Select::Actuator, Select::Gyro, Select::Accelerometer, Select::Encoder];
 
-    fn with(&mut self, plant: &mut Plant<'a>, select: Select, task: &mut impl Task) {
+    fn with(&mut self, plant: &mut Plant<'a>, select: Select, task: Task) {
         match select {
             Select::Gyro => task.perform(&mut self.gyro, plant),
             Select::Accelerometer => task.perform(&mut self.accelerometer, plant),
@@ -54,7 +54,7 @@ where
 
     fn lose(plant: &mut Plant<'a>, select: Select, now: Instant) {
         if select == Select::Actuator {
-            plant.stop_motor(now);
+            plant.drive.stop(now);
         }
     }
 }

@@ -76,7 +76,7 @@ impl<P: Channels<N>, const N: usize> ConverterBoard<'_, P, N> {
 impl<P: Channels<N>, const N: usize> Chips<P> for Converters<N> {
     const SELECTS: &'static [Select] = P::CHIPS;
 
-    fn with(&mut self, plant: &mut P, select: Select, task: &mut impl Task) {
+    fn with(&mut self, plant: &mut P, select: Select, task: Task) {
         let chips = P::CHIPS.iter().zip(&mut self.converters).enumerate();
         if let Some((channel, (_, chip))) = chips.into_iter().find(|(_, (at, _))| **at == select) {
             task.perform(chip, &mut Channel { plant, channel });

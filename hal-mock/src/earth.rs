@@ -31,8 +31,7 @@ pub fn normal_gravity_m_s2(latitude_rad: f64) -> f64 {
 
 /// Radii of curvature of the ellipsoid, m, along the meridian and across it, at a geodetic latitude in
 /// rad: a(1 − e²)/(1 − e² sin²φ)^³ᐟ² and a/√(1 − e² sin²φ).
-#[must_use]
-pub fn curvature_radii_m(latitude_rad: f64) -> [f64; 2] {
+pub(crate) fn curvature_radii_m(latitude_rad: f64) -> [f64; 2] {
     let sine = libm::sin(latitude_rad);
     let square = 1.0 - ECCENTRICITY_SQUARED * sine * sine;
     let transverse_m = SEMI_MAJOR_M / libm::sqrt(square);
@@ -70,8 +69,7 @@ impl Attitude {
     }
 
     /// Matrix from body to navigation axes: Rz(azimuth)·Ry(pitch)·Rx(roll).
-    #[must_use]
-    pub fn body_to_navigation(&self) -> Matrix {
+    pub(crate) fn body_to_navigation(&self) -> Matrix {
         let tilt = multiply(&about_y(self.pitch_rad), &about_x(self.roll_rad));
         multiply(&about_z(self.azimuth_rad), &tilt)
     }
@@ -86,7 +84,7 @@ pub struct Site {
     /// Earth rate in north, east, down, rad/s.
     earth_rate_rad_s: [f64; 3],
     /// Normal gravity there, m/s².
-    gravity_m_s2: f64,
+    pub gravity_m_s2: f64,
 }
 
 impl Site {
@@ -102,12 +100,6 @@ impl Site {
     /// This place under a base of another attitude.
     pub fn with_attitude(&self, attitude: &Attitude) -> Self {
         Self { body_to_navigation: attitude.body_to_navigation(), ..*self }
-    }
-
-    /// Local gravity, m/s²: the g of the g-sensitivity.
-    #[must_use]
-    pub fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
     }
 
     /// Matrix from platform to navigation axes with the stage at `stage_rad`, clockwise from above

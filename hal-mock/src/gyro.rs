@@ -70,12 +70,6 @@ impl GyroConfiguration {
         // √h is 60 √s.
         self.n_deg_sqrt_h * (DEGREE / 60.0) * libm::sqrt(rate_hz)
     }
-
-    /// Step of the rate random walk from sample to sample at `rate_hz`, rad/s: K/√`f_s`.
-    #[must_use]
-    pub fn walk_sigma_rad_s(&self, rate_hz: f64) -> f64 {
-        self.k_deg_h_sqrt_h * (DEGREE_PER_HOUR / 60.0) / libm::sqrt(rate_hz)
-    }
 }
 
 /// A gyro at work: what it drew at start, what of its errors is steady, and the state of its noise.
@@ -90,9 +84,9 @@ pub struct Gyro {
     /// Sine and cosine of the axis's elevation.
     elevation: [f64; 2],
     /// Turn-on bias of this start, rad/s.
-    bias_rad_s: f64,
+    pub bias_rad_s: f64,
     /// Scale factor error of this start, 1.
-    scale_error: f64,
+    pub scale_error: f64,
     /// Angle random walk: white noise of the rate, rad/s.
     white: White,
     /// Steps of the rate random walk, rad/s.
@@ -117,6 +111,8 @@ impl Gyro {
         let mut start = Generator::stream(seed, source::GYRO_START);
         let bias_deg_h = c.bias_deg_h + c.bias_sigma_deg_h * start.gaussian();
         let b = c.b_deg_h * DEGREE_PER_HOUR;
+        // Step of the rate random walk from sample to sample, K/√fs; √h is 60 √s.
+        let walk = c.k_deg_h_sqrt_h * (DEGREE_PER_HOUR / 60.0) / libm::sqrt(rate_hz);
         let noise = Generator::stream(seed, source::GYRO_FLICKER);
         let flicker_high_hz = c.flicker_high_hz.unwrap_or(FLICKER_HIGH_HZ);
         Self {
@@ -127,7 +123,7 @@ impl Gyro {
             bias_rad_s: bias_deg_h * DEGREE_PER_HOUR,
             scale_error: c.scale_error + c.scale_sigma * start.gaussian(),
             white: White::new(c.white_sigma_rad_s(rate_hz), seed, source::GYRO_WHITE),
-            walk: White::new(c.walk_sigma_rad_s(rate_hz), seed, source::GYRO_WALK),
+            walk: White::new(walk, seed, source::GYRO_WALK),
             walked_rad_s: 0.0,
             flicker: Flicker::new(b, FLICKER_LOW_HZ, flicker_high_hz, rate_hz, noise),
             dither: Dither::new(c.dither_arcsec * ARCSECOND, rate_hz, seed),
@@ -136,29 +132,17 @@ impl Gyro {
         }
     }
 
-    /// Turn-on bias of this start, rad/s.
-    #[must_use]
-    pub fn bias_rad_s(&self) -> f64 {
-        self.bias_rad_s
-    }
-
-    /// Scale factor error of this start, 1.
-    #[must_use]
-    pub fn scale_error(&self) -> f64 {
-        self.scale_error
-    }
-
     /// Rate along the sensitive axis, rad/s, of a platform turning at `platform_rad_s` (x along the
     /// axis, y 90° clockwise, z down; the stage's own rate included).
-    #[must_use]
-    pub fn along_axis(&self, platform_rad_s: [f64; 3]) -> f64 {
+    pub(crate) fn along_axis(&self, platform_rad_s: [f64; 3]) -> f64 {
         let [sine, cosine] = self.elevation;
         // Elevation is up, platform z is down.
         cosine * platform_rad_s[0] - sine * platform_rad_s[2]
     }
 
     /// What the gyro shows without noise, ramp and temperature, rad/s: scale, bias, g-sensitivity.
-    /// `axis_rad_s` from [`Gyro::along_axis`], `force_g` the specific force on platform x and y in g.
+    /// `axis_rad_s` is the inertial rate along the sensitive axis, `force_g` the specific force on
+    /// platform x and y in g.
     #[must_use]
     pub fn steady(&self, axis_rad_s: f64, force_g: [f64; 2]) -> f64 {
         let [along, across] = self.g_sensitivity_deg_h_g;

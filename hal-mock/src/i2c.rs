@@ -30,8 +30,7 @@ pub struct Transfer<'a> {
 
 impl Transfer<'_> {
     /// When the reply's byte number `index`, from 0, goes over the bus, to the next microsecond.
-    #[must_use]
-    pub fn time_of(&self, index: usize) -> Instant {
+    pub(crate) fn time_of(&self, index: usize) -> Instant {
         self.now + bits(bit_times(self.sent.len()) + bit_times(index), self.hertz)
     }
 }

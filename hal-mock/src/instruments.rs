@@ -117,16 +117,14 @@ pub struct Instruments {
     pub(crate) site: Site,
     /// Errors of the encoder.
     encoder: EncoderConfiguration,
-    /// The warm-up.
-    temperature: TemperatureConfiguration,
     /// The precise gyro.
     pub(crate) gyro: Gyro,
     /// The accelerometer beside it.
     accelerometer: Accelerometer,
-    /// The thermometer of the accelerometer.
+    /// The thermometer of the accelerometer, with the warm-up.
     thermometer: Thermometer,
     /// What the latest stage state gives.
-    pose: Pose,
+    pub(crate) pose: Pose,
 }
 
 /// How the base moves at one moment: small angles on top of its attitude, and their derivatives.
@@ -166,13 +164,13 @@ impl BaseMotion {
 
 /// What one stage state gives without noise, computed once while the stage stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Pose {
+pub(crate) struct Pose {
     /// The stage state that it belongs to.
     stage: StageState,
     /// What the encoder shows there, rad.
     encoder_rad: f64,
     /// What the sensors feel there.
-    felt: Felt,
+    pub(crate) felt: Felt,
 }
 
 /// What the platform's sensors feel, less noise.
@@ -207,7 +205,6 @@ impl Instruments {
             attitude,
             site: Site::new(c.latitude_deg.to_radians(), &attitude),
             encoder: c.encoder,
-            temperature: c.temperature,
             gyro: Gyro::new(&c.gyro, c.rate_hz, seed),
             accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
             thermometer: Thermometer::new(&c.temperature, seed),
@@ -241,21 +238,15 @@ impl Instruments {
         self.pose.felt = self.felt_on([x, y, z + stage.rate_rad_s], force_m_s2);
     }
 
-    /// Sets what is felt by instruments that the caller has moved.
-    pub(crate) fn feel(&mut self, felt: Felt) {
-        self.pose.felt = felt;
-    }
-
     /// Reads everything once, `time_s` after the first sample. Call `rate_hz` times a second.
     #[inline]
     pub fn sample(&mut self, time_s: f64, effect: &Effect) -> Sample {
-        let temperature_c = self.temperature.at(time_s);
         Sample {
             time_s,
             stage_rad: self.pose.encoder_rad,
             rate_rad_s: self.rate(time_s, effect),
             force_m_s2: self.force(effect),
-            temperature_c: self.thermometer.sample(temperature_c),
+            temperature_c: self.thermometer.sample(time_s),
         }
     }
 
@@ -263,7 +254,7 @@ impl Instruments {
     #[inline]
     pub fn rate(&mut self, time_s: f64, effect: &Effect) -> f64 {
         let Felt { steady_rad_s, force_g, .. } = self.pose.felt;
-        let temperature_c = self.temperature.at(time_s);
+        let temperature_c = self.thermometer.temperature.at(time_s);
         let rate_rad_s = steady_rad_s + effect.rate_rad_s;
         self.gyro.sample_under(force_g, rate_rad_s, time_s, temperature_c)
     }
@@ -279,7 +270,7 @@ impl Instruments {
     /// What the thermometer shows next, °C, `time_s` after the first sample.
     #[inline]
     pub fn temperature(&mut self, time_s: f64) -> f64 {
-        self.thermometer.sample(self.temperature.at(time_s))
+        self.thermometer.sample(time_s)
     }
 
     /// What the encoder shows, rad: it has no noise.
@@ -294,9 +285,9 @@ impl Instruments {
             attitude: self.attitude,
             stage: self.pose.stage,
             axis_rad_s: self.pose.felt.axis_rad_s,
-            gyro_bias_rad_s: self.gyro.bias_rad_s(),
-            gyro_scale_error: self.gyro.scale_error(),
-            accelerometer_bias_m_s2: self.accelerometer.bias_m_s2(),
+            gyro_bias_rad_s: self.gyro.bias_rad_s,
+            gyro_scale_error: self.gyro.scale_error,
+            accelerometer_bias_m_s2: self.accelerometer.bias_m_s2,
         }
     }
 
@@ -317,7 +308,7 @@ impl Instruments {
     /// What is felt of an angular rate, the stage's own included, and a specific force on the platform axes.
     fn felt_on(&self, platform_rad_s: [f64; 3], force_m_s2: [f64; 3]) -> Felt {
         let axis_rad_s = self.gyro.along_axis(platform_rad_s);
-        let gravity = self.site.gravity_m_s2();
+        let gravity = self.site.gravity_m_s2;
         let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
         let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
         Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g }

@@ -68,18 +68,9 @@ pub(crate) fn register(map: &[Registers], address: u16) -> Option<&Registers> {
 }
 
 /// The first `N` registers after a reset.
-pub(crate) const fn reset<const N: usize>(map: &[Registers]) -> [u32; N] {
-    let (mut values, mut row) = ([0; N], 0);
-    while row < map.len() {
-        let [first, last] = map[row].addresses;
-        let mut address = first as usize;
-        while address <= last as usize && address < N {
-            values[address] = map[row].reset;
-            address += 1;
-        }
-        row += 1;
-    }
-    values
+pub(crate) fn reset<const N: usize>(map: &[Registers]) -> [u32; N] {
+    let value = |address| register(map, address as u16).map_or(0, |registers| registers.reset);
+    core::array::from_fn(value)
 }
 
 /// The first `N` registers of one byte after a reset.

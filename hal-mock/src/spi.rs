@@ -4,7 +4,6 @@
 
 use core::cell::RefCell;
 use core::convert::Infallible;
-use core::fmt::{self, Debug, Formatter};
 
 use embassy_time::{Duration, Instant, Timer};
 use embedded_hal::digital::ErrorType as PinErrorType;
@@ -32,12 +31,6 @@ impl<'a> SpiPort<'a> {
     #[must_use]
     pub const fn new(rig: &'a RefCell<dyn Rig + 'a>, select: Select, hertz: u32) -> Self {
         Self { rig, select, hertz }
-    }
-}
-
-impl Debug for SpiPort<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} at {} Hz", self.select, self.hertz)
     }
 }
 
@@ -133,12 +126,6 @@ impl<'a> ReadyPin<'a> {
             Some(at) => Timer::at(at).await,
             None => core::future::pending().await,
         }
-    }
-}
-
-impl Debug for ReadyPin<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "data-ready of {:?}", self.select)
     }
 }
 

@@ -3,70 +3,48 @@
 //! A true rate or force goes through the error model of its sensor, then through the faults, and clips
 //! last: a fault may show what no sensor would, but never more than the full scale.
 
-use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
+use crate::accelerometer::Accelerometer;
 use crate::gyro::{Gyro, GyroConfiguration};
 use crate::noise::Generator;
 use crate::sensor_fault::SensorFault;
-
-/// What is fixed to a body, and what goes wrong with it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StrapdownConfiguration<'a, const L: usize> {
-    /// The gyros; each draws for itself.
-    pub(crate) gyros: [GyroConfiguration; 3],
-    /// Readings of a gyro per second, Hz, > 0.
-    pub(crate) rate_hz: f64,
-    /// Rates at which the gyros clip, rad/s, > 0: one for each, or a single one for all three.
-    pub(crate) rate_limits_rad_s: [f64; L],
-    /// The accelerometers.
-    pub(crate) accelerometer: AccelerometerConfiguration,
-    /// Readings of the accelerometers per second, Hz, > 0.
-    pub(crate) accelerometer_hz: f64,
-    /// Force at which an accelerometer clips, m/s², > 0.
-    pub(crate) force_limit_m_s2: f64,
-    /// What goes wrong, in any order; channels 0 to 2 are the gyros, those from 3 on the accelerometers.
-    pub(crate) faults: &'a [SensorFault],
-}
 
 /// A seed for each of three gyros, from as many streams of a seed: none shares a stream with another.
 pub(crate) fn gyro_seeds(seed: u64, streams: [u64; 3]) -> [u64; 3] {
     streams.map(|index| Generator::stream(seed, index).next_u64())
 }
 
+/// Three gyros read `rate_hz` times a second (> 0), which draw from the seeds of three streams of a seed.
+pub(crate) fn gyros(
+    configurations: &[GyroConfiguration; 3],
+    rate_hz: f64,
+    seed: u64,
+    streams: [u64; 3],
+) -> [Gyro; 3] {
+    let seeds = gyro_seeds(seed, streams);
+    [0, 1, 2].map(|axis: usize| Gyro::new(&configurations[axis], rate_hz, seeds[axis]))
+}
+
 /// The sensors at work, of which the last `N` axes of the accelerometer are looked at. Each keeps what it
 /// showed last, for a fault that repeats it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Strapdown<'a, const N: usize, const L: usize> {
+pub(crate) struct Strapdown<'a, const N: usize> {
     /// The gyros.
-    gyros: [Gyro; 3],
+    pub(crate) gyros: [Gyro; 3],
     /// The accelerometers.
-    accelerometer: Accelerometer,
-    /// Rates at which the gyros clip, rad/s: one for each, or a single one for all three.
-    rate_limits_rad_s: [f64; L],
-    /// Force at which an accelerometer clips, m/s².
-    force_limit_m_s2: f64,
-    /// What goes wrong, in any order.
-    faults: &'a [SensorFault],
+    pub(crate) accelerometer: Accelerometer,
+    /// Rates at which the gyros clip, rad/s, > 0.
+    pub(crate) rate_limits_rad_s: [f64; 3],
+    /// Force at which an accelerometer clips, m/s², > 0.
+    pub(crate) force_limit_m_s2: f64,
+    /// What goes wrong, in any order; channels 0 to 2 are the gyros, those from 3 on the accelerometers.
+    pub(crate) faults: &'a [SensorFault],
     /// What was shown last: rates, rad/s, and forces, m/s².
-    rates_rad_s: [f64; 3],
+    pub(crate) rates_rad_s: [f64; 3],
     /// Forces that were shown last, m/s².
-    forces_m_s2: [f64; N],
+    pub(crate) forces_m_s2: [f64; N],
 }
 
-impl<'a, const N: usize, const L: usize> Strapdown<'a, N, L> {
-    /// Sensors whose gyros draw from the seeds of three streams of a seed.
-    pub(crate) fn new(c: &StrapdownConfiguration<'a, L>, seed: u64, streams: [u64; 3]) -> Self {
-        let seeds = gyro_seeds(seed, streams);
-        Self {
-            gyros: [0, 1, 2].map(|axis: usize| Gyro::new(&c.gyros[axis], c.rate_hz, seeds[axis])),
-            accelerometer: Accelerometer::new(&c.accelerometer, c.accelerometer_hz, seed),
-            rate_limits_rad_s: c.rate_limits_rad_s,
-            force_limit_m_s2: c.force_limit_m_s2,
-            faults: c.faults,
-            rates_rad_s: [0.0; 3],
-            forces_m_s2: [0.0; N],
-        }
-    }
-
+impl<const N: usize> Strapdown<'_, N> {
     /// What a gyro shows next, rad/s, of a rate about its axis in rad/s and a specific force along it and
     /// along the next axis in g. Call at its rate.
     pub(crate) fn rate(
@@ -80,7 +58,7 @@ impl<'a, const N: usize, const L: usize> Strapdown<'a, N, L> {
         let gyro = &mut self.gyros[axis];
         let steady_rad_s = gyro.steady(rate_rad_s, force_g);
         let value = gyro.sample(steady_rad_s, time_s, temperature_c);
-        let (last, full) = (self.rates_rad_s[axis], self.rate_limit_rad_s(axis));
+        let (last, full) = (self.rates_rad_s[axis], self.rate_limits_rad_s[axis]);
         let shown = SensorFault::spoilt(self.faults, axis, time_s, [value, last], full);
         self.rates_rad_s[axis] = shown;
         shown
@@ -99,29 +77,18 @@ impl<'a, const N: usize, const L: usize> Strapdown<'a, N, L> {
 
     /// Whether one of the latest outputs is at its full scale.
     pub(crate) fn is_clipped(&self) -> bool {
-        let mut rates =
-            self.rates_rad_s.iter().zip([0, 1, 2].map(|axis| self.rate_limit_rad_s(axis)));
+        let mut rates = self.rates_rad_s.iter().zip(self.rate_limits_rad_s);
         rates.any(|(rate, limit)| rate.abs() >= limit)
             || self.forces_m_s2.iter().any(|force| force.abs() >= self.force_limit_m_s2)
     }
 
     /// Turn-on biases of the gyros, rad/s.
     pub(crate) fn gyro_biases_rad_s(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis: usize| self.gyros[axis].bias_rad_s())
-    }
-
-    /// Biases of the accelerometers, m/s², along all three axes.
-    pub(crate) fn accelerometer_biases_m_s2(&self) -> [f64; 3] {
-        self.accelerometer.bias_m_s2()
+        [0, 1, 2].map(|axis: usize| self.gyros[axis].bias_rad_s)
     }
 
     /// Scale factor errors of the gyros, 1.
     pub(crate) fn scale_errors(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error())
-    }
-
-    /// Rate at which the gyro of an axis, 0 to 2, clips, rad/s.
-    fn rate_limit_rad_s(&self, axis: usize) -> f64 {
-        self.rate_limits_rad_s[axis.min(L - 1)]
+        [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error)
     }
 }

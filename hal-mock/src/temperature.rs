@@ -36,6 +36,8 @@ impl TemperatureConfiguration {
 /// A thermometer: the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thermometer {
+    /// The true temperature over the time.
+    pub(crate) temperature: TemperatureConfiguration,
     /// White noise of a reading, °C.
     white: White,
 }
@@ -44,12 +46,13 @@ impl Thermometer {
     /// A thermometer with the noise of a configuration; the seed fixes its readings.
     #[must_use]
     pub fn new(configuration: &TemperatureConfiguration, seed: u64) -> Self {
-        Self { white: White::new(configuration.noise_c, seed, source::THERMOMETER) }
+        let white = White::new(configuration.noise_c, seed, source::THERMOMETER);
+        Self { temperature: *configuration, white }
     }
 
-    /// The next reading, °C, of a true temperature in °C.
+    /// The next reading, °C, `elapsed_s` seconds after switching on.
     #[inline]
-    pub fn sample(&mut self, temperature_c: f64) -> f64 {
-        temperature_c + self.white.sample()
+    pub fn sample(&mut self, elapsed_s: f64) -> f64 {
+        self.temperature.at(elapsed_s) + self.white.sample()
     }
 }

@@ -139,13 +139,9 @@ impl Ads1262 {
 
     /// Begins conversions at `at`; what was converted before is lost.
     fn begin(&mut self, at: Instant) {
-        let registers = &self.registers;
-        let latency = timing::latency(
-            registers.value(registers::FILTER),
-            registers.value(registers::RATE),
-            registers.value(registers::DELAY),
-        );
-        let hertz = timing::hertz(registers.value(registers::RATE));
+        let fields = [registers::FILTER, registers::RATE, registers::DELAY];
+        let [filter, rate, delay] = fields.map(|field| self.registers.value(field));
+        let (latency, hertz) = (timing::latency(filter, rate, delay), timing::hertz(rate));
         self.clear();
         if !self.chip_fault.is_dead {
             self.running = Some(Cadence { since: at + latency, count: 0, hertz });

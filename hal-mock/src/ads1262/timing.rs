@@ -13,24 +13,12 @@ pub(super) const GREATEST_BUS_HERTZ: u32 = 8_000_000;
 
 /// Conversions per second by code of the data rate.
 pub(super) fn hertz(rate: u8) -> f64 {
+    /// The nominal 16.6 samples per second.
+    const SIXTEEN: f64 = 50.0 / 3.0;
     /// Data rates in the order of their codes (9.6, MODE2), samples per second.
     const HERTZ: [f64; 16] = [
-        2.5,
-        5.0,
-        10.0,
-        50.0 / 3.0,
-        20.0,
-        50.0,
-        60.0,
-        100.0,
-        400.0,
-        1200.0,
-        2400.0,
-        4800.0,
-        7200.0,
-        14_400.0,
-        19_200.0,
-        38_400.0,
+        2.5, 5.0, 10.0, SIXTEEN, 20.0, 50.0, 60.0, 100.0, 400.0, 1200.0, 2400.0, 4800.0, 7200.0,
+        14_400.0, 19_200.0, 38_400.0,
     ];
     HERTZ[usize::from(rate & 0x0F)]
 }

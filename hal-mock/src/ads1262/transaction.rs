@@ -14,10 +14,8 @@ enum Phase {
     Command,
     /// The next byte is the number of registers less one.
     Count { address: u8, is_write: bool },
-    /// Registers go out.
-    Read { address: u8, left: u8 },
-    /// Registers come in.
-    Write { address: u8, left: u8 },
+    /// Registers come in or go out.
+    Registers { address: u8, is_write: bool, left: u8 },
     /// A conversion goes out.
     Data { frame: Frame, sent: usize },
 }
@@ -89,7 +87,9 @@ impl Ads1262 {
     /// The byte that goes out while the next one comes in.
     fn output(&self, phase: &Phase, direct: &mut Direct) -> u8 {
         match phase {
-            Phase::Read { address, .. } => self.registers.get(*address).unwrap_or(0),
+            Phase::Registers { address, is_write: false, .. } => {
+                self.registers.get(*address).unwrap_or(0)
+            }
             Phase::Data { frame, sent } => frame.get(*sent).copied().unwrap_or(0),
             _ => direct.next(),
         }
@@ -103,21 +103,20 @@ impl Ads1262 {
                 Phase::Command
             }
             Phase::Command => self.command(byte, end),
-            Phase::Count { address, is_write: true } => Phase::Write { address, left: byte },
-            Phase::Count { address, is_write: false } => Phase::Read { address, left: byte },
-            Phase::Read { address, left } => {
-                if self.registers.get(address).is_none() {
+            Phase::Count { address, is_write } => {
+                Phase::Registers { address, is_write, left: byte }
+            }
+            Phase::Registers { address, is_write, left } => {
+                if is_write {
+                    self.write(address, byte, end);
+                } else if self.registers.get(address).is_none() {
                     self.violations.record(Misuse::UnknownRegister, address, begin);
                 }
-                let next =
-                    Phase::Read { address: address.saturating_add(1), left: left.wrapping_sub(1) };
-                if left == 0 { Phase::Command } else { next }
-            }
-            Phase::Write { address, left } => {
-                self.write(address, byte, end);
-                let next =
-                    Phase::Write { address: address.saturating_add(1), left: left.wrapping_sub(1) };
-                if left == 0 { Phase::Command } else { next }
+                let address = address.saturating_add(1);
+                match left.checked_sub(1) {
+                    Some(left) => Phase::Registers { address, is_write, left },
+                    None => Phase::Command,
+                }
             }
             Phase::Data { frame, sent } if sent + 1 < frame.len() => {
                 Phase::Data { frame, sent: sent + 1 }
@@ -180,9 +179,7 @@ impl Ads1262 {
     fn end(&mut self, phase: &Phase, now: Instant) {
         let address = match phase {
             Phase::Command => return,
-            Phase::Count { address, .. }
-            | Phase::Read { address, .. }
-            | Phase::Write { address, .. } => *address,
+            Phase::Count { address, .. } | Phase::Registers { address, .. } => *address,
             Phase::Data { .. } => 0x12,
         };
         self.violations.record(Misuse::Length, address, now);

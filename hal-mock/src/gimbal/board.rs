@@ -54,7 +54,7 @@ impl<'a> Chips<Gimbal<'a>> for GimbalChips {
         Select::InnerEncoder,
     ];
 
-    fn with(&mut self, plant: &mut Gimbal<'a>, select: Select, task: &mut impl Task) {
+    fn with(&mut self, plant: &mut Gimbal<'a>, select: Select, task: Task) {
         match select {
             Select::Gyro => task.perform(&mut self.gyro, plant),
             Select::Accelerometer => task.perform(&mut self.accelerometer, plant),

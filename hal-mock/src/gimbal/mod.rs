@@ -202,7 +202,7 @@ impl<'a> Gimbal<'a> {
                 felt
             }
         };
-        self.payload.instruments.feel(felt);
+        self.payload.instruments.pose.felt = felt;
     }
 
     /// What is felt on a base that moves.
@@ -223,7 +223,7 @@ impl<'a> Gimbal<'a> {
             turn[i] + outer.rate_rad_s * axes.outer[i] + inner.rate_rad_s * axes.inner[i]
         });
         let Instruments { gyro, site, .. } = &self.payload.instruments;
-        let gravity = site.gravity_m_s2();
+        let gravity = site.gravity_m_s2;
         let [along, inner_g, third_g] =
             [axes.sensitive, axes.inner, axes.third].map(|axis| dot(axis, force_m_s2) / gravity);
         let (axis_rad_s, force_g) = (dot(axes.sensitive, rate), [along, inner_g]);

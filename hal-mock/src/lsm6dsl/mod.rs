@@ -121,10 +121,8 @@ impl Lsm6dsl {
         let is_settled = now >= measuring.settled;
         let first = [OUTX_L_XL, OUTX_L_G][sensor];
         for (axis, count) in (0..).zip(counts) {
-            self.put(
-                first + 2 * axis,
-                if is_settled { libm::round(count) as i16 } else { i16::MAX },
-            );
+            let word = if is_settled { libm::round(count) as i16 } else { i16::MAX };
+            self.put(first + 2 * axis, word);
         }
         let temperature = 256.0 * (environment.temperature_c(now) - 25.0);
         self.put(OUT_TEMP_L, libm::round(temperature) as i16);

@@ -71,7 +71,7 @@ impl<'a> Drive<'a> {
     /// Angle and rate at the moment last reached.
     #[inline]
     pub(crate) fn state(&self) -> StageState {
-        self.train.state()
+        self.train.state
     }
 
     /// How far the encoder has slipped and crept, rad.

@@ -124,7 +124,7 @@ pub struct Plant<'a> {
     /// Instruments on the stage, and the motion of the base.
     payload: Payload<'a>,
     /// Motor, gear and stage, with their faults.
-    drive: Drive<'a>,
+    pub(crate) drive: Drive<'a>,
     /// Moment of the latest pose on a swaying base.
     swayed_at: Option<Instant>,
     /// Where the accelerometer sits.
@@ -151,12 +151,6 @@ impl<'a> Plant<'a> {
     #[inline]
     pub fn advance(&mut self, now: Instant) {
         self.drive.advance(now);
-    }
-
-    /// The motor loses its current: its field stops where it is. A motor driver that starts again
-    /// counts from zero, and the rotor takes the nearest of its positions that fits.
-    pub fn stop_motor(&mut self, now: Instant) {
-        self.drive.stop(now);
     }
 
     /// What the sensors cannot know: attitude of the base at rest, drawn biases and scale; stage as

@@ -16,9 +16,9 @@ pub(super) struct Ringing {
     /// ω√(1 − ζ²), rad/s.
     angular_rad_s: f64,
     /// Offset r from where the gear holds the stage, rad.
-    offset_rad: f64,
+    pub(super) offset_rad: f64,
     /// Rate r′ of the offset, rad/s.
-    rate_rad_s: f64,
+    pub(super) rate_rad_s: f64,
 }
 
 impl Ringing {
@@ -28,11 +28,6 @@ impl Ringing {
         let omega = core::f64::consts::TAU * hertz;
         let angular_rad_s = omega * libm::sqrt(1.0 - damping * damping);
         Self { decay_per_s: damping * omega, angular_rad_s, ..Self::default() }
-    }
-
-    /// Offset, rad, and its rate, rad/s.
-    pub(super) fn state(&self) -> (f64, f64) {
-        (self.offset_rad, self.rate_rad_s)
     }
 
     /// Whether the stage neither is off nor moves against the gear.

@@ -102,7 +102,7 @@ pub(crate) struct Train {
     /// Until when the ringing is followed.
     now: Instant,
     /// Stage angle and rate at that moment.
-    state: StageState,
+    pub(crate) state: StageState,
 }
 
 impl Train {
@@ -127,11 +127,6 @@ impl Train {
             now: Instant::MIN,
             state: c.unevenness.stage(StageState { angle_rad: c.start_rad, rate_rad_s: 0.0 }),
         }
-    }
-
-    /// Stage angle and rate at the moment last reached.
-    pub(crate) fn state(&self) -> StageState {
-        self.state
     }
 
     /// Moves on to `now`; a moment in the past changes nothing. Free while the stage stands.
@@ -295,11 +290,10 @@ impl Train {
     /// Angle and rate of the stage now.
     fn state_now(&self) -> StageState {
         let elapsed_s = self.elapsed_s(self.now);
-        let (offset, rate) = self.ringing.state();
         let [low, high] = self.configuration.travel_rad;
         self.configuration.unevenness.stage(StageState {
-            angle_rad: (self.output_at(elapsed_s) + offset).max(low).min(high),
-            rate_rad_s: self.output_rate_at(elapsed_s) + rate,
+            angle_rad: (self.output_at(elapsed_s) + self.ringing.offset_rad).max(low).min(high),
+            rate_rad_s: self.output_rate_at(elapsed_s) + self.ringing.rate_rad_s,
         })
     }
 }

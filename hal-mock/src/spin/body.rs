@@ -27,15 +27,15 @@ impl Felt {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body<'a> {
     /// What acts on the body.
-    forces: Forces<'a>,
+    pub(super) forces: Forces<'a>,
     /// Rate of the roll over the time, rad/s.
-    spin: Profile<'a>,
+    pub(super) spin: Profile<'a>,
     /// Roll at the start, rad.
     first_roll_rad: f64,
     /// Distances of the accelerometers along y and z from the axis, m.
     radius_m: [f64; 2],
     /// Where the body is, as of the latest time.
-    flight: Flight,
+    pub(super) flight: Flight,
     /// The latest time, s.
     time_s: f64,
 }
@@ -76,28 +76,14 @@ impl<'a> Body<'a> {
         self.first_roll_rad + self.spin.integral(time_s)
     }
 
-    /// Rate of the roll at a time in s, rad/s.
-    pub(super) fn spin_rad_s(&self, time_s: f64) -> f64 {
-        self.spin.value(time_s)
-    }
-
-    /// The lift at a time in s, m/s².
-    pub(super) fn lift_m_s2(&self, time_s: f64) -> f64 {
-        self.forces.lift_m_s2.value(time_s)
-    }
-
-    /// Place, direction and speed as of the latest time.
-    pub(super) fn flight(&self) -> &Flight {
-        &self.flight
-    }
-
     /// What is felt at a time in s near the latest one: pitch and course change little meanwhile.
     pub(super) fn felt(&self, time_s: f64) -> Felt {
         let change = self.flight.derivative(&self.forces, time_s);
         let (sine, cosine) = libm::sincos(self.flight.pitch_rad);
         let (across, up) = libm::sincos(self.roll_rad(time_s));
-        let (lift, side) = (self.lift_m_s2(time_s), self.forces.side_m_s2.value(time_s));
-        let about_x = self.spin_rad_s(time_s) - change.course_rad * sine;
+        let Forces { lift_m_s2, side_m_s2, .. } = &self.forces;
+        let (lift, side) = (lift_m_s2.value(time_s), side_m_s2.value(time_s));
+        let about_x = self.spin.value(time_s) - change.course_rad * sine;
         // The rates of a level body: about the right wing, and about up.
         let (pitching, turning) = (change.pitch_rad, -change.course_rad * cosine);
         let [radius_y, radius_z] = self.radius_m;

@@ -125,10 +125,10 @@ impl SpinTruth {
     fn of(body: &Body, sensors: &Sensors, time_s: f64) -> Self {
         Self {
             roll_rad: body.roll_rad(time_s),
-            spin_rad_s: body.spin_rad_s(time_s),
-            flight: *body.flight(),
-            lift_m_s2: body.lift_m_s2(time_s),
-            gyro_scale_error: sensors.scale_errors(),
+            spin_rad_s: body.spin.value(time_s),
+            flight: body.flight,
+            lift_m_s2: body.forces.lift_m_s2.value(time_s),
+            gyro_scale_error: sensors.0.scale_errors(),
         }
     }
 }

@@ -2,30 +2,30 @@
 
 use super::SpinConfiguration;
 use super::body::Felt;
+use crate::accelerometer::Accelerometer;
 use crate::noise::source;
-use crate::strapdown::{Strapdown, StrapdownConfiguration};
+use crate::strapdown::{Strapdown, gyros};
 
 /// Temperature of all of it, °C: that at which a gyro's bias is stated.
 const TEMPERATURE_C: f64 = 25.0;
 
 /// The sensors at work.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sensors<'a>(Strapdown<'a, 2, 3>);
+pub(super) struct Sensors<'a>(pub(super) Strapdown<'a, 2>);
 
 impl<'a> Sensors<'a> {
     /// The sensors of a body at the start of its flight.
     pub(super) fn new(configuration: &SpinConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
-        let strapdown = StrapdownConfiguration {
-            gyros: c.gyros,
-            rate_hz: c.rate_hz,
+        Self(Strapdown {
+            gyros: gyros(&c.gyros, c.rate_hz, seed, source::SPIN_GYROS),
+            accelerometer: Accelerometer::new(&c.accelerometer, c.rate_hz, seed),
             rate_limits_rad_s: c.gyro_full_scale_rad_s,
-            accelerometer: c.accelerometer,
-            accelerometer_hz: c.rate_hz,
             force_limit_m_s2: c.accelerometer_full_scale_m_s2,
             faults: c.faults,
-        };
-        Self(Strapdown::new(&strapdown, seed, source::SPIN_GYROS))
+            rates_rad_s: [0.0; 3],
+            forces_m_s2: [0.0; 2],
+        })
     }
 
     /// What a gyro shows next, rad/s, of a rate about its axis. Call at its rate.
@@ -42,10 +42,5 @@ impl<'a> Sensors<'a> {
     pub(super) fn sample(&mut self, time_s: f64, felt: &Felt) -> Felt {
         let rate_rad_s = [0, 1, 2].map(|axis| self.rate(axis, time_s, felt.rate_rad_s[axis]));
         Felt { rate_rad_s, force_m_s2: self.force(time_s, felt.force_m_s2) }
-    }
-
-    /// Scale factor errors of the gyros, 1.
-    pub(super) fn scale_errors(&self) -> [f64; 3] {
-        self.0.scale_errors()
     }
 }

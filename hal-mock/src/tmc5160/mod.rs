@@ -24,7 +24,7 @@ use embassy_time::{Duration, Instant};
 
 use self::demand::{Demand, FRACTION_BITS};
 use self::map::{ADDRESSES, MAP, address};
-use self::ramp::Ramp;
+use self::ramp::{Motion, Ramp};
 use crate::chip::{SpiChip, Transaction};
 use crate::environment::Mechanics;
 use crate::registers::{self, Access, Registers};
@@ -190,7 +190,7 @@ impl Tmc5160 {
     /// Where the motor's field stands, microsteps, 0 where the chip began.
     #[must_use]
     pub fn field(&self) -> i64 {
-        self.ramp.field()
+        self.ramp.motion.field
     }
 
     /// Clocks until `now`, whole ones.
@@ -219,10 +219,10 @@ impl Tmc5160 {
         self.drive(environment);
         self.pins = environment.reference_switches();
         self.blocked = environment.is_blocked();
-        let moved = self.ramp.fine_velocity();
+        let moved = self.ramp.motion.velocity;
         self.latch_switches();
         self.watch_load();
-        if self.ramp.fine_velocity() != moved {
+        if self.ramp.motion.velocity != moved {
             self.drive(environment);
         }
         self.note();
@@ -230,9 +230,9 @@ impl Tmc5160 {
 
     /// Turns the field.
     fn drive(&self, environment: &mut impl Mechanics) {
-        let fine =
-            self.field() << FIELD_BITS | self.ramp.fraction() >> (FRACTION_BITS - FIELD_BITS);
-        let per_second = self.ramp.fine_velocity() as f64 * self.per_second;
+        let Motion { field, fraction, velocity } = self.ramp.motion;
+        let fine = field << FIELD_BITS | fraction >> (FRACTION_BITS - FIELD_BITS);
+        let per_second = velocity as f64 * self.per_second;
         environment.drive(self.at, fine as f64 * (1.0 / f64::from(1 << FIELD_BITS)), per_second);
     }
 

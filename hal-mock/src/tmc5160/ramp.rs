@@ -18,13 +18,13 @@ const MARGIN: i128 = 1 << (FRACTION_BITS - 2);
 
 /// Where the motor's field stands and how fast it turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Motion {
+pub(super) struct Motion {
     /// Where the field stands, whole microsteps.
-    field: i64,
+    pub field: i64,
     /// How far it stands beyond, 2⁻⁴² microsteps, ≥ 0.
-    fraction: i64,
+    pub fraction: i64,
     /// How fast it turns, 2⁻¹⁷ units of VACTUAL.
-    velocity: i64,
+    pub velocity: i64,
 }
 
 impl Motion {
@@ -79,7 +79,7 @@ pub(super) struct Stops {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Ramp {
     /// Where the field is, and how fast it turns.
-    motion: Motion,
+    pub motion: Motion,
     /// The field where XACTUAL is 0.
     origin: i64,
     /// What the registers ask for.
@@ -102,11 +102,6 @@ impl Ramp {
         Self { motion: Motion { field, ..Motion::default() }, origin: field, ..Self::default() }
     }
 
-    /// The motor's field, microsteps.
-    pub fn field(&self) -> i64 {
-        self.motion.field
-    }
-
     /// XACTUAL; it wraps around (6.3.1, XTARGET).
     pub fn position(&self) -> i32 {
         (self.motion.field - self.origin) as i32
@@ -120,16 +115,6 @@ impl Ramp {
     /// The way to the target, in 2⁻⁴² microsteps.
     fn remaining(&self, motion: Motion) -> i128 {
         (i128::from(self.distance(motion)) << FRACTION_BITS) - i128::from(motion.fraction)
-    }
-
-    /// 2⁻⁴² microsteps beyond the field.
-    pub fn fraction(&self) -> i64 {
-        self.motion.fraction
-    }
-
-    /// 2⁻¹⁷ units of VACTUAL.
-    pub fn fine_velocity(&self) -> i64 {
-        self.motion.velocity
     }
 
     /// VACTUAL, towards zero.

@@ -200,7 +200,7 @@ impl Tmc5160 {
 
     /// The register TSTEP of this moment, clocks.
     fn step_time(&self) -> u32 {
-        let speed = self.ramp.fine_velocity().unsigned_abs();
+        let speed = self.ramp.motion.velocity.unsigned_abs();
         STEP_PRODUCT.checked_div(speed).map_or(REST, |time| time.min(u64::from(REST)) as u32)
     }
 
@@ -249,7 +249,7 @@ impl Tmc5160 {
     /// Stops on a stall above TCOOLTHRS (13.4), with the hysteresis of 6.2.
     pub(super) fn watch_load(&mut self) {
         let threshold = u64::from(self.written(address::TCOOLTHRS));
-        let speed = self.ramp.fine_velocity().unsigned_abs();
+        let speed = self.ramp.motion.velocity.unsigned_abs();
         let shift = if self.written(address::GCONF) & (1 << 14) == 0 { 4 } else { 5 };
         let upper = (threshold - (threshold >> shift)).saturating_sub(1);
         let limit = if self.fast { threshold } else { upper };

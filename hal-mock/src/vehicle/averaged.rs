@@ -22,7 +22,7 @@ struct Mark {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Averaged<'a, const CHIPS: usize> {
     /// The motion up to the latest reading.
-    motion: Motion<'a>,
+    pub(crate) motion: Motion<'a>,
     /// The latest reading of each chip.
     marks: [Mark; CHIPS],
 }
@@ -31,11 +31,6 @@ impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
     /// A motion of which no chip has seen anything yet.
     pub(crate) fn new(motion: Motion<'a>) -> Self {
         Self { motion, marks: [Mark::default(); CHIPS] }
-    }
-
-    /// The motion at the latest reading.
-    pub(crate) fn motion(&self) -> &Motion<'a> {
-        &self.motion
     }
 
     /// Means over the sample of a chip with a period in s that ends at a time in s.
@@ -52,6 +47,6 @@ impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
 
     /// What has been integrated by now.
     fn mark(&self) -> Mark {
-        Mark { time_s: self.motion.time_s(), integrals: *self.motion.integrals() }
+        Mark { time_s: self.motion.time_s, integrals: self.motion.integrals }
     }
 }

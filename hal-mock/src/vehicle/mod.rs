@@ -183,8 +183,8 @@ impl<'a> Vehicle<'a> {
     fn sample(&mut self) -> Option<VehicleSample> {
         let time_s = self.samples.next()? as f64 / self.rate_hz;
         self.motion.advance(time_s);
-        let felt = self.motion.integrals().means(&self.before, 1.0 / self.rate_hz);
-        self.before = *self.motion.integrals();
+        let felt = self.motion.integrals.means(&self.before, 1.0 / self.rate_hz);
+        self.before = self.motion.integrals;
         let (shown, is_clipped) = self.sensors.sample(time_s, &felt);
         let turned_rad = shown.rate_rad_s.map(|rate| rate / self.rate_hz);
         Some(VehicleSample { time_s, turned_rad, force_m_s2: shown.force_m_s2, is_clipped })

@@ -76,13 +76,13 @@ pub struct Motion<'a> {
     /// From the point of sway to the sensors, m, forward, right, down.
     lever_m: [f64; 3],
     /// The latest moment, s from the start.
-    time_s: f64,
+    pub time_s: f64,
     /// Position at the start.
     start: Position,
     /// Position at the latest moment.
-    position: Position,
+    pub position: Position,
     /// What an ideal strapdown unit has summed up.
-    integrals: Integrals,
+    pub integrals: Integrals,
     /// Earth in the middle of the latest panel: a vehicle goes less than a metre in one.
     place: Place,
     /// What was felt at the latest node.
@@ -124,30 +124,9 @@ impl<'a> Motion<'a> {
         for panel in 1..=panels as u32 {
             // The last panel ends at the time asked for, whatever was rounded.
             let left = panels - f64::from(panel);
-            self.panel(if left == 0.0 {
-                time_s
-            } else {
-                from_s + seconds / panels * f64::from(panel)
-            });
+            let end_s = from_s + seconds / panels * f64::from(panel);
+            self.panel(if left == 0.0 { time_s } else { end_s });
         }
-    }
-
-    /// Time of the latest moment, s.
-    #[must_use]
-    pub fn time_s(&self) -> f64 {
-        self.time_s
-    }
-
-    /// Integrals up to the latest moment.
-    #[must_use]
-    pub fn integrals(&self) -> &Integrals {
-        &self.integrals
-    }
-
-    /// Position at the latest moment.
-    #[must_use]
-    pub fn position(&self) -> &Position {
-        &self.position
     }
 
     /// North and east from the start, m.

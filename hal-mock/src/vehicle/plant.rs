@@ -20,7 +20,7 @@ use crate::environment::ForceInput;
 use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
 use crate::strapdown::gyro_seeds;
-use crate::temperature::{TemperatureConfiguration, Thermometer};
+use crate::temperature::Thermometer;
 
 /// The select lines of the gyros' converters: forward, right, down.
 pub const GYROS: [Select; 3] = [Select::Gyro, Select::GyroRight, Select::GyroDown];
@@ -68,8 +68,6 @@ pub struct VehiclePlant<'a> {
     motion: Averaged<'a, 4>,
     /// What is fixed to the vehicle.
     sensors: Sensors<'a>,
-    /// The warm-up.
-    temperature: TemperatureConfiguration,
     /// The thermometer of the accelerometer.
     thermometer: Thermometer,
     /// White noise of each converter, V.
@@ -90,7 +88,6 @@ impl<'a> VehiclePlant<'a> {
         Self {
             motion: Averaged::new(c.vehicle.motion()),
             sensors: Sensors::new(&c.vehicle, c.accelerometer_hz, seed),
-            temperature: c.vehicle.temperature,
             thermometer: Thermometer::new(&c.vehicle.temperature, seed),
             converters: gyro_seeds(seed, source::VEHICLE_GYROS).map(converter),
             volts_per_rad_s: c.gyro_volts_per_rad_s,
@@ -100,12 +97,12 @@ impl<'a> VehiclePlant<'a> {
 
     /// What the sensors cannot know, as of the latest reading.
     pub fn truth(&self) -> VehicleTruth {
-        self.sensors.truth(self.motion.motion())
+        self.sensors.truth(&self.motion.motion)
     }
 
     /// The truth at `now`, which is not before the latest reading.
     pub fn truth_at(&self, now: Instant) -> VehicleTruth {
-        let mut motion = self.motion.motion().clone();
+        let mut motion = self.motion.motion.clone();
         motion.advance(seconds(now));
         self.sensors.truth(&motion)
     }
@@ -125,7 +122,7 @@ impl ForceInput for VehiclePlant<'_> {
     }
 
     fn temperature_c(&mut self, now: Instant) -> f64 {
-        self.thermometer.sample(self.temperature.at(seconds(now)))
+        self.thermometer.sample(seconds(now))
     }
 }
 

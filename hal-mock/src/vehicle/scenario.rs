@@ -60,10 +60,9 @@ impl Scenario {
         let mut day = Self::empty(&mut draw);
         for index in 0..count {
             let parts = if index == 0 { 0 } else { PARTS };
+            let drives = [(); PARTS].map(|()| draw.drive(drive_s / PARTS as f64));
             // What does not fit any more is not driven.
-            let _ = day.legs.extend_from_slice(
-                &[(); PARTS].map(|()| draw.drive(drive_s / PARTS as f64))[..parts],
-            );
+            let _ = day.legs.extend_from_slice(&drives[..parts]);
             let _ = day.legs.push(draw.stop(stop_s, SwayConfiguration::default()));
         }
         day

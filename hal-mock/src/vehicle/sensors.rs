@@ -1,9 +1,10 @@
 //! Three gyros and three accelerometers fixed to the vehicle.
 
 use super::{VehicleConfiguration, VehicleTruth};
+use crate::accelerometer::Accelerometer;
 use crate::earth::{InertialInput, normal_gravity_m_s2};
 use crate::noise::source;
-use crate::strapdown::{Strapdown, StrapdownConfiguration};
+use crate::strapdown::{Strapdown, gyros};
 use crate::temperature::TemperatureConfiguration;
 use crate::vehicle::motion::Motion;
 
@@ -11,7 +12,7 @@ use crate::vehicle::motion::Motion;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensors<'a> {
     /// The gyros and accelerometers, with full scales and faults.
-    strapdown: Strapdown<'a, 3, 1>,
+    strapdown: Strapdown<'a, 3>,
     /// The warm-up.
     temperature: TemperatureConfiguration,
     /// Gravity at the start, the g of the g-sensitivity.
@@ -26,17 +27,17 @@ impl<'a> Sensors<'a> {
         seed: u64,
     ) -> Self {
         let c = configuration;
-        let strapdown = StrapdownConfiguration {
-            gyros: c.gyros,
-            rate_hz: c.rate_hz,
-            rate_limits_rad_s: [c.gyro_full_scale_rad_s],
-            accelerometer: c.accelerometer,
-            accelerometer_hz,
+        let strapdown = Strapdown {
+            gyros: gyros(&c.gyros, c.rate_hz, seed, source::VEHICLE_GYROS),
+            accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
+            rate_limits_rad_s: [c.gyro_full_scale_rad_s; 3],
             force_limit_m_s2: c.accelerometer_full_scale_m_s2,
             faults: c.faults,
+            rates_rad_s: [0.0; 3],
+            forces_m_s2: [0.0; 3],
         };
         Self {
-            strapdown: Strapdown::new(&strapdown, seed, source::VEHICLE_GYROS),
+            strapdown,
             temperature: c.temperature,
             gravity_m_s2: normal_gravity_m_s2(c.latitude_deg.to_radians()),
         }
@@ -66,12 +67,12 @@ impl<'a> Sensors<'a> {
     pub(super) fn truth(&self, motion: &Motion) -> VehicleTruth {
         VehicleTruth {
             attitude: motion.attitude(),
-            position: *motion.position(),
+            position: motion.position,
             displacement_m: motion.displacement_m(),
             velocity_m_s: motion.velocity_m_s(),
             gyro_bias_rad_s: self.strapdown.gyro_biases_rad_s(),
             gyro_scale_error: self.strapdown.scale_errors(),
-            accelerometer_bias_m_s2: self.strapdown.accelerometer_biases_m_s2(),
+            accelerometer_bias_m_s2: self.strapdown.accelerometer.bias_m_s2,
         }
     }
 }

@@ -329,9 +329,9 @@ fn bias_and_scale_are_drawn_once_a_seed_with_their_deviation() {
     let drawn = (0..4000).map(|seed| Gyro::new(&gyro, 100.0, seed));
     let (mut bias, mut scale) = ([0.0; 2], 0.0);
     for gyro in drawn {
-        let off = gyro.bias_rad_s() / DEGREE_PER_HOUR - 10.0;
+        let off = gyro.bias_rad_s / DEGREE_PER_HOUR - 10.0;
         bias = [bias[0] + off / 4000.0, bias[1] + off * off / 4000.0];
-        scale += gyro.scale_error().powi(2) / 4000.0;
+        scale += gyro.scale_error.powi(2) / 4000.0;
     }
     let relative = 4.0 * (2.0_f64 / 4000.0).sqrt();
     assert_near(bias[0], 0.0, 4.0 * 2.0 / 4000.0_f64.sqrt());

@@ -140,7 +140,7 @@ fn a_sensor_without_dynamics_shows_a_gyros_numbers() {
     let mut flat = Gyro::new(&GyroConfiguration { molecular, ..errors }, RATE_HZ, 3);
     for k in 0..1000 {
         let elapsed = f64::from(k) / RATE_HZ;
-        let bias = plain.bias_rad_s();
+        let bias = plain.bias_rad_s;
         let expected = plain.sample(1e-4 + bias, elapsed, 25.0);
         assert_near(flat.sample(1e-4 + bias, elapsed, 25.0), expected, 1e-18);
     }
