@@ -11,8 +11,7 @@ pub fn pause(delay: &mut impl DelayNs, time: Duration) -> impl Future<Output = (
 
 /// Converts a time to whole microseconds, rounded up; saturates at the limit of 32 bits.
 fn microseconds(time: Duration) -> u32 {
-    let whole =
-        u32::try_from(time.as_secs()).ok().and_then(|seconds| seconds.checked_mul(1_000_000));
-    let part = time.subsec_nanos().div_ceil(1000);
-    whole.and_then(|whole| whole.checked_add(part)).unwrap_or(u32::MAX)
+    let part = u64::from(time.subsec_nanos().div_ceil(1000));
+    let whole = time.as_secs().saturating_mul(1_000_000).saturating_add(part);
+    u32::try_from(whole).unwrap_or(u32::MAX)
 }

@@ -17,7 +17,7 @@ const SECOND_STAGE: [u16; 16] =
     [5760, 2880, 1440, 864, 720, 288, 240, 144, 36, 12, 6, 3, 2, 1, 1, 1];
 
 /// Data rate, nominal: the internal oscillator is within 2 % (section 7.5), so measure it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum DataRate {
     /// 2.5 SPS.
@@ -37,6 +37,7 @@ pub enum DataRate {
     /// 100 SPS.
     Sps100,
     /// 400 SPS.
+    #[default]
     Sps400,
     /// 1200 SPS.
     Sps1200,
@@ -118,8 +119,8 @@ impl Gain {
 }
 
 /// Configuration of the converter. Inputs are AIN0 and AIN1; reference and oscillator are the
-/// internal ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// internal ones. The default is 400 SPS, the mean over one period, gain 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configuration {
     /// Data rate.
     pub rate: DataRate,
@@ -127,13 +128,6 @@ pub struct Configuration {
     pub filter: Filter,
     /// Amplifier gain.
     pub gain: Gain,
-}
-
-impl Default for Configuration {
-    /// 400 SPS, mean over one period, gain 1.
-    fn default() -> Self {
-        Self { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 }
-    }
 }
 
 impl Configuration {

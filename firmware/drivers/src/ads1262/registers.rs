@@ -1,6 +1,6 @@
 //! Commands, register addresses and bits (SBAS661C table 9-33 and section 9.6).
 
-use crate::fault::Fault;
+use crate::fault::{Fault, compare};
 
 /// Resets the chip to its default registers.
 pub const RESET: u8 = 0x06;
@@ -121,11 +121,6 @@ impl Image {
 
     /// Compares the contents with the answer to [`READ_BACK`].
     pub(super) fn verify(&self, [_, _, found @ ..]: &[u8; COMMAND]) -> Result<(), Fault> {
-        for (register, (found, written)) in (POWER..).zip(found.iter().zip(&self.0)) {
-            if found != written {
-                return Err(Fault::NotAsWritten { register });
-            }
-        }
-        Ok(())
+        compare(POWER, found, &self.0)
     }
 }

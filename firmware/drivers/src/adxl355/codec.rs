@@ -105,7 +105,7 @@ pub fn self_test_passes(without: [i32; 3], with: [i32; 3], samples: i32) -> bool
 pub const fn settings(rate: OutputRate) -> [u8; SETTINGS] {
     // Offsets; activity detection with its count of 1; filter; FIFO mark at 96, interrupts and
     // synchronisation off; range; measuring; no self-test.
-    [0, 0, 0, 0, 0, 0, 0, 0, 0, 1, rate.filter(), 0x60, 0, 0, RANGE_2_G, 0, 0]
+    [0, 0, 0, 0, 0, 0, 0, 0, 0, 1, rate as u8, 0x60, 0, 0, RANGE_2_G, 0, 0]
 }
 
 /// Compares the writable registers with their required contents.

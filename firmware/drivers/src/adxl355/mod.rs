@@ -293,7 +293,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
 
     /// Sets what differs from the reset values; allowed in standby only (Register Map, note).
     async fn configure(&mut self) -> Result<(), Fault> {
-        let rate = (FILTER, self.configuration.rate.filter());
+        let rate = (FILTER, self.configuration.rate as u8);
         self.write(&[rate, (RANGE, RANGE_2_G), (POWER_CTL, MEASURING)]).await
     }
 

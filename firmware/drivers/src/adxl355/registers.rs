@@ -90,12 +90,6 @@ pub enum OutputRate {
 }
 
 impl OutputRate {
-    /// The filter register for this rate, without the high-pass filter.
-    #[must_use]
-    pub const fn filter(self) -> u8 {
-        self as u8
-    }
-
     /// Time from one sample to the next, exact: 250 µs · 2ⁿ.
     #[must_use]
     pub const fn period(self) -> Duration {

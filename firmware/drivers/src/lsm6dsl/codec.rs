@@ -101,10 +101,9 @@ pub type Sums = [[i32; 3]; 2];
 #[must_use]
 pub fn self_test_passes(without: &Sums, with: &Sums, samples: i32) -> bool {
     let within = |sensor: usize, [least, most]: [i32; 2]| {
-        let pairs = without[sensor].iter().zip(&with[sensor]);
-        pairs.into_iter().all(|(off, on)| {
-            (least * samples..=most * samples).contains(&(on - off).saturating_abs())
-        })
+        let limits = least * samples..=most * samples;
+        let mut pairs = without[sensor].iter().zip(&with[sensor]);
+        pairs.all(|(off, on)| limits.contains(&(on - off).saturating_abs()))
     };
     within(0, RATE_ANSWER) && within(1, FORCE_ANSWER)
 }

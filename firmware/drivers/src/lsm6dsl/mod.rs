@@ -167,8 +167,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
     /// # Errors
     /// [`Fault::Bus`]; [`Fault::Reset`]; [`Fault::NotAsWritten`] for a register that has changed.
     pub async fn read(&mut self) -> Result<Option<Reading>, Fault> {
-        let status = self.status().await?;
-        let is_fresh = status.has_rate() && status.has_force();
+        let is_fresh = self.status().await?.is_fresh();
         let was_stale = core::mem::replace(&mut self.was_stale, !is_fresh);
         if self.reads_unchecked == READS_UNCHECKED || (!is_fresh && was_stale) {
             self.reads_unchecked = READS_UNCHECKED;
@@ -228,8 +227,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
         let mut sums = Sums::default();
         for _ in 0..SELF_TEST_SAMPLES {
             pause(&mut self.delay, SELF_TEST_INTERVAL).await;
-            let status = self.status().await?;
-            if !(status.has_rate() && status.has_force()) {
+            if !self.status().await?.is_fresh() {
                 return Err(Fault::NotReady);
             }
             let Frame { rate, force, .. } = self.sample().await?;
@@ -271,8 +269,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
     /// Writes registers, one after another.
     async fn write(&mut self, contents: &[(u8, u8)]) -> Result<(), Fault> {
         for (register, value) in contents {
-            let bytes = [*register, *value];
-            self.bus.write(self.address, &bytes).await.map_err(|_| Fault::Bus)?;
+            self.bus.write(self.address, &[*register, *value]).await.map_err(|_| Fault::Bus)?;
         }
         Ok(())
     }

@@ -47,16 +47,10 @@ pub const TEST_FORCES: u8 = 0x05;
 pub struct Status(pub u8);
 
 impl Status {
-    /// New data of the accelerometer since it was last read.
+    /// New data of accelerometer and gyro since they were last read.
     #[must_use]
-    pub const fn has_force(self) -> bool {
-        self.0 & 0x01 != 0
-    }
-
-    /// New data of the gyro since it was last read.
-    #[must_use]
-    pub const fn has_rate(self) -> bool {
-        self.0 & 0x02 != 0
+    pub const fn is_fresh(self) -> bool {
+        self.0 & 0x03 == 0x03
     }
 }
 

@@ -28,7 +28,7 @@ use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::spi::{Operation, SpiDevice};
 use orientation::units::Angle;
 
-use crate::fault::Fault;
+use crate::fault::{Fault, compare};
 use crate::pause::pause;
 use registers::{
     BANDWIDTH, BURST, Bandwidth, CALIBRATION, CORRECTION, DIRECTION, Hysteresis, USER_ID,
@@ -145,7 +145,8 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         if is_pattern {
             return Ok(());
         }
-        held(WATCHED[index], self.register(WATCHED[index]).await?, expected[index])
+        let found = self.register(WATCHED[index]).await?;
+        compare(WATCHED[index] as u8, &[found], &[expected[index]])
     }
 
     async fn see_pattern(&mut self) -> Result<(), Fault> {
@@ -174,7 +175,7 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     /// Writes a register and reads it back.
     async fn set(&mut self, register: u16, value: u8) -> Result<(), Fault> {
         self.write(register, value).await?;
-        held(register, self.agreed(register).await?, value)
+        compare(register as u8, &[self.agreed(register).await?], &[value])
     }
 
     /// Reads a register twice: single registers have no checksum, and the value is written back.
@@ -206,11 +207,4 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         let mut operations = [Operation::Write(&bytes)];
         self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
     }
-}
-
-/// Whether a register holds its required content; a register above 0xFF is reported by its lower
-/// byte.
-fn held(register: u16, found: u8, expected: u8) -> Result<(), Fault> {
-    let fault = Fault::NotAsWritten { register: register as u8 };
-    if found == expected { Ok(()) } else { Err(fault) }
 }

@@ -180,8 +180,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::NotReady`] while it moves.
     pub async fn set_position(&mut self, microsteps: i32) -> Result<(), Fault> {
         let position = microsteps.cast_unsigned();
-        let mut state = [0];
-        self.pass(&mut [Pass::Read(&[registers::RAMP_STAT], &mut state)]).await?;
+        let state = self.read(&[registers::RAMP_STAT], false).await?;
         if !is_set(state, ramp_stat::STANDING) {
             return Err(Fault::NotReady);
         }
@@ -195,10 +194,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// The position, microsteps, at which the left switch became active since the last
     /// [`Self::run`]; a soft stop ends beyond it.
     pub async fn left_edge(&mut self) -> Result<Option<i32>, Fault> {
-        let mut found = [0; 2];
-        let addresses = [registers::RAMP_STAT, registers::XLATCH];
-        self.pass(&mut [Pass::Read(&addresses, &mut found)]).await?;
-        let [state, edge] = found;
+        let [state, edge] = self.read(&[registers::RAMP_STAT, registers::XLATCH], false).await?;
         Ok((state & ramp_stat::LATCHED_LEFT != 0).then(|| edge.cast_signed()))
     }
 
@@ -220,9 +216,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::Checksum`] if the two readings of the position contradict each other, or if a bit is
     /// set that is reserved as zero; [`Fault::Identity`] if the version does not come back.
     pub async fn status(&mut self) -> Result<Status, Fault> {
-        let mut found = [0; LOOKED_AT.len()];
-        self.pass(&mut [Pass::Read(&LOOKED_AT, &mut found)]).await?;
-        let [ramp, position, velocity, driver, global, inputs, again] = found;
+        let [ramp, position, velocity, driver, global, inputs, again] =
+            self.read(&LOOKED_AT, false).await?;
         check_version(inputs)?;
         let clock = self.configuration.clock;
         let status = Status::new(clock, [ramp, position, velocity, driver, global]);
@@ -234,6 +229,17 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
             return Err(Fault::Checksum);
         }
         Ok(status)
+    }
+
+    /// Reads registers of a chip, which may have been reset or not.
+    async fn read<const N: usize>(
+        &mut self,
+        addresses: &[Address; N],
+        may_be_reset: bool,
+    ) -> Result<[u32; N], Fault> {
+        let mut values = [0; N];
+        self.link.pass(&mut [Pass::Read(addresses, &mut values)], may_be_reset).await?;
+        Ok(values)
     }
 
     /// Makes passes through a chip that must not have been reset.
@@ -276,9 +282,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// Verifies that the chip is a TMC5160 in the mode with its internal ramp generator. It may
     /// have been reset.
     async fn identify(&mut self) -> Result<(), Fault> {
-        let mut inputs = [0];
-        self.pass_anyhow(&mut [Pass::Read(&[registers::IOIN], &mut inputs)]).await?;
-        let [inputs] = inputs;
+        let [inputs] = self.read(&[registers::IOIN], true).await?;
         check_version(inputs)?;
         if inputs & ioin::STEP_MODE != 0 {
             return Err(Fault::Identity { found: inputs });
@@ -293,8 +297,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     async fn come_to_rest(&mut self) -> Result<(), Fault> {
         self.pass_anyhow(&mut [Pass::Write(&STOP)]).await?;
         for _ in 0..STOPPING_LOOKS {
-            let mut state = [0];
-            self.pass_anyhow(&mut [Pass::Read(&[registers::RAMP_STAT], &mut state)]).await?;
+            let state = self.read(&[registers::RAMP_STAT], true).await?;
             if is_set(state, ramp_stat::STANDING) {
                 return self.pass_anyhow(&mut [Pass::Write(&HOLD)]).await.map(|_| ());
             }
@@ -337,10 +340,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// Lets the bridges work and reads whether they have detected a short.
     async fn test_bridges(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, BRIDGE_TEST).await;
-        let mut found = [0; 2];
-        let addresses = [registers::DRV_STATUS, registers::GSTAT];
-        self.pass(&mut [Pass::Read(&addresses, &mut found)]).await?;
-        let [driver, global] = found;
+        let [driver, global] = self.read(&[registers::DRV_STATUS, registers::GSTAT], false).await?;
         if driver & drv_status::SHUT_DOWN != 0 || global & gstat::ALL != 0 {
             return Err(Fault::SelfTest);
         }
