@@ -132,12 +132,6 @@ impl SpecificForce {
     pub fn m_per_s2(self) -> f64 {
         f64::from(self.0) * 1e-6
     }
-
-    /// Whether the value stands at a limit of its range, where a sensor or a conversion clips.
-    #[must_use]
-    pub fn is_saturated(self) -> bool {
-        self.0 == i32::MAX || self.0 == i32::MIN
-    }
 }
 
 /// Specific force on a spinning body, 1 LSB = 10 µm/s², range ±21 474 m/s²: at 100 turns a second

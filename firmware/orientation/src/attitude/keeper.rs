@@ -224,11 +224,8 @@ impl Keeper {
     /// # Errors
     /// Reason for which the saved azimuth is rejected.
     pub fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
-        let report = self.report();
-        let rates = self.vertical.rest_rates().filter(|_| report.is_at_rest);
-        let rest = f64::from(self.vertical.course.stood);
-        let now = restart::Now { pitch: report.pitch, roll: report.roll, rates, rest };
-        restart::check(remembered, &now, &self.setting)?;
+        let rest = (self.vertical.rest_rates(), f64::from(self.vertical.course.stood));
+        restart::check(remembered, &self.report(), rest, &self.setting)?;
         self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });
         Ok(())
     }

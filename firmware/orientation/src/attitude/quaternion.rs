@@ -134,7 +134,7 @@ impl Attitude {
 #[must_use]
 pub fn angles([w, x, y, z]: [f64; 4]) -> [f64; 3] {
     let (east, north) = (2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z));
-    let pitch = libm::asin(bounded(2.0 * (w * y - x * z)));
+    let pitch = libm::asin((2.0 * (w * y - x * z)).clamp(-1.0, 1.0));
     if east * east + north * north < ON_END * ON_END {
         let course = libm::atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z));
         return [course, pitch, 0.0];
@@ -152,9 +152,4 @@ pub fn quaternion(angles: [f64; 3]) -> [f64; 4] {
         (cosine, sine)
     });
     [c * e * g + d * f * h, c * e * h - d * f * g, c * f * g + d * e * h, d * e * g - c * f * h]
-}
-
-/// Limits a sine to ±1, because rounding may exceed it.
-fn bounded(sine: f64) -> f64 {
-    if sine.abs() > 1.0 { libm::copysign(1.0, sine) } else { sine }
 }

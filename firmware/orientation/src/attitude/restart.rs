@@ -5,6 +5,7 @@
 //! on its gyros. Gravity alone does not show a rotation about the vertical, so gyros whose biases
 //! do not repeat cannot confirm the heading, and then the azimuth is rejected.
 
+use super::keeper::Report;
 use super::setting::Setting;
 use crate::checksum::{numbers, record, record_bytes};
 use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};
@@ -38,19 +39,6 @@ pub struct Remembered {
     pub rates: [f64; 3],
     /// Averaging time of these rates, s.
     pub rest: f64,
-}
-
-/// Present state of the body, to be compared with the saved one.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Now {
-    /// Pitch, rad.
-    pub(super) pitch: f64,
-    /// Roll, rad.
-    pub(super) roll: f64,
-    /// Mean rates at rest, rad/s; none where it moves.
-    pub(super) rates: Option<[f64; 3]>,
-    /// Averaging time of these rates, s.
-    pub(super) rest: f64,
 }
 
 /// Reason for which a saved azimuth is rejected.
@@ -87,14 +75,16 @@ crate::words! { RecallRefusal:
         Rounded::<2>(sigma);
 }
 
-/// Checks that a body is still in its saved attitude.
+/// Checks that a body is still in its saved attitude, by its mean rates over the present rest, rad/s
+/// (none where it moves), and the length of that rest, s.
 pub(super) fn check(
     before: &Remembered,
-    now: &Now,
+    now: &Report,
+    (rates, rest): (Option<[f64; 3]>, f64),
     setting: &Setting,
 ) -> Result<(), RecallRefusal> {
-    let Some(rates) = now.rates.filter(|_| now.rest >= REST_SECONDS) else {
-        return Err(RecallRefusal::NotAtRest { seconds: now.rest });
+    let Some(rates) = rates.filter(|_| now.is_at_rest && rest >= REST_SECONDS) else {
+        return Err(RecallRefusal::NotAtRest { seconds: rest });
     };
     let tilt = (now.pitch - before.pitch).abs().max((now.roll - before.roll).abs());
     if tilt > TILT || tilt.is_nan() {
@@ -102,7 +92,7 @@ pub(super) fn check(
     }
     let sigmas: [f64; 3] = core::array::from_fn(|axis| {
         let gyro = &setting.gyros[axis];
-        let noise = gyro.noise.white_variance(now.rest) + gyro.noise.white_variance(before.rest);
+        let noise = gyro.noise.white_variance(rest) + gyro.noise.white_variance(before.rest);
         libm::sqrt(2.0 * gyro.bias_sigma * gyro.bias_sigma + noise)
     });
     let away = (0..3).map(|axis| (rates[axis] - before.rates[axis]).abs() / sigmas[axis]);

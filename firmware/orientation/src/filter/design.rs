@@ -189,10 +189,8 @@ fn step_response<const SECTIONS: usize>(gains: &[Gains; SECTIONS]) -> (u32, f64)
     const STILL: f64 = 1e-3 * SETTLED;
     let mut states = [(0.0, 1.0); SECTIONS];
     let (mut settling, mut power, mut count) = (0, 0.0, 0);
-    while states
-        .iter()
-        .any(|&(slope, level): &(f64, f64)| libm::fabs(slope) + libm::fabs(level) > STILL)
-    {
+    let moves = |(slope, level): &(f64, f64)| libm::fabs(*slope) + libm::fabs(*level) > STILL;
+    while states.iter().any(moves) {
         let rest = fall(gains, &mut states);
         power += rest * rest;
         count += 1;

@@ -165,8 +165,7 @@ impl<T: Scalar> Sum for Complex<T> {
 /// Square root of a non-negative number, to 1e-14 relative: the hardware finds it in single
 /// precision, two Newton steps refine it. It takes a third of the instructions of `libm::sqrt` on a
 /// Cortex-M4.
-#[must_use]
-pub fn quick_root(square: f64) -> f64 {
+pub(crate) fn quick_root(square: f64) -> f64 {
     let rough = square as f32;
     // Subnormal numbers, zero, and numbers beyond single precision take the library's way.
     if !(f32::MIN_POSITIVE..=f32::MAX).contains(&rough) {

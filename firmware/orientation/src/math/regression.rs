@@ -109,8 +109,7 @@ impl<const P: usize> Regression<P> {
     /// Regression from sums that were gathered elsewhere: products of the columns, lower triangle,
     /// and of each with the left side. The square of the left side is missing, so chi-square is not
     /// valid.
-    #[must_use]
-    pub fn of_products(products: [[f64; P]; P], with_left: [f64; P], rows: usize) -> Self {
+    pub(crate) fn of_products(products: [[f64; P]; P], with_left: [f64; P], rows: usize) -> Self {
         Self { products, with_left, left_squared: 0.0, rows }
     }
 }

@@ -237,9 +237,7 @@ impl<'k> Navigator<'k> {
     /// also does everything else.
     fn tick(&mut self, now: Instant, outlet: Outlet) {
         self.now = now;
-        if self.due.is_none() {
-            self.due = Some(Instant(now.0 + LOOK));
-        }
+        self.due.get_or_insert(Instant(now.0 + LOOK));
         if !self.is_due(now) {
             return;
         }

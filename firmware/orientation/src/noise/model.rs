@@ -69,6 +69,13 @@ impl GyroNoise {
         Self { quantisation: q * ARCSECOND, ..self }
     }
 
+    /// Model of the coefficients Q, N, B, K and R in SI units, in that order.
+    pub fn of(coefficients: [f64; 5]) -> Self {
+        let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
+            coefficients;
+        Self { quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp }
+    }
+
     /// Coefficients Q, N, B, K and R in SI units, in that order.
     #[must_use]
     pub fn coefficients(&self) -> [f64; 5] {
@@ -84,8 +91,7 @@ impl GyroNoise {
 
     /// Variance of a mean over `seconds` due to rounding of the angle at either end, 2Q²/T²,
     /// (rad/s)².
-    #[must_use]
-    pub fn rounding_variance(&self, seconds: f64) -> f64 {
+    pub(crate) fn rounding_variance(&self, seconds: f64) -> f64 {
         let rounding = self.quantisation / seconds;
         2.0 * rounding * rounding
     }
@@ -97,8 +103,7 @@ impl GyroNoise {
     }
 
     /// Two-sided spectral density at a frequency in Hz, (rad/s)²/Hz: N² + B²/(2πf) + K²/(2πf)².
-    #[must_use]
-    pub fn density_at(&self, frequency: f64) -> f64 {
+    pub(crate) fn density_at(&self, frequency: f64) -> f64 {
         let (n, b) = (self.angle_random_walk, self.bias_instability);
         let k = self.rate_random_walk / (TURN * frequency);
         n * n + b * b / (TURN * frequency) + k * k
@@ -107,15 +112,13 @@ impl GyroNoise {
     /// Two-sided density as it scatters the phasors of single periods about those of others,
     /// (rad/s)²/Hz. The random walk counts twice there, because its slope within a period is not
     /// removed.
-    #[must_use]
-    pub fn density_of_period(&self, frequency: f64) -> f64 {
+    pub(crate) fn density_of_period(&self, frequency: f64) -> f64 {
         let k = self.rate_random_walk / (TURN * frequency);
         self.density_at(frequency) + k * k
     }
 
     /// Whether successive dwells share noise other than a ramp: B or K is present.
-    #[must_use]
-    pub fn is_coloured(&self) -> bool {
+    pub(crate) fn is_coloured(&self) -> bool {
         self.bias_instability > 0.0 || self.rate_random_walk > 0.0
     }
 

@@ -134,12 +134,6 @@ impl<T: Scalar> Steps<T> {
         &self.of
     }
 
-    /// Variance that the flicker faster than all processes adds to a mean over `seconds`, (rad/s)².
-    fn fast(&mut self, model: &Model, seconds: f64) -> f64 {
-        self.over(model, seconds);
-        self.fast
-    }
-
     /// Computes the transitions. Correlation times are in the ratio of [`SPACING`], so one
     /// exponential serves them all.
     #[inline(never)]
@@ -297,27 +291,20 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
             scale(row, T::of(white));
             return;
         }
-        if let Some(previous) = self.end {
-            self.drift(start - previous);
+        let gap = self.end.replace(end).map_or(0.0, |previous| start - previous);
+        if gap > 0.0 {
+            self.belief.advance(self.gap.over(&self.model, gap));
         }
-        self.end = Some(end);
         self.observe(end - start, white, row);
-    }
-
-    /// Propagates the processes over a time without a measurement.
-    fn drift(&mut self, seconds: f64) {
-        if seconds > 0.0 {
-            self.belief.advance(self.gap.over(&self.model, seconds));
-        }
     }
 
     /// Predicts the dwell's mean, replaces the row by its normalised innovation, and updates the
     /// states.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
         let Self { model, belief, dwell, .. } = self;
-        let fast = dwell.fast(model, seconds);
-        let steps = dwell.over(model, seconds);
-        let (cross, variance) = belief.mean_covariance(steps, T::of(white + fast));
+        dwell.over(model, seconds);
+        let Steps { fast, of: steps, .. } = dwell;
+        let (cross, variance) = belief.mean_covariance(steps, T::of(white + *fast));
         belief.innovation(steps, row);
         belief.advance(steps);
         belief.learn(&cross, variance, row);

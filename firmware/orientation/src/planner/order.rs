@@ -29,20 +29,8 @@ pub enum Order {
 /// and eighths.
 pub const PARTS: u8 = 24;
 
-/// Burov's four positions, in twenty-fourths of a turn.
-const QUADRATURE: [u8; 4] = [0, 12, 6, 18];
-/// Burov's positions and back, in twenty-fourths of a turn.
-const THERE_AND_BACK: [u8; 8] = [0, 12, 6, 18, 18, 6, 12, 0];
-/// Mirrored pairs, in twenty-fourths of a turn.
-const MIRRORED: [u8; 8] = [0, 12, 12, 0, 6, 18, 18, 6];
-/// Quarters in the order of their angle and back, in twenty-fourths of a turn.
-const SWEEP: [u8; 8] = [0, 6, 12, 18, 18, 12, 6, 0];
 /// The two pairs of opposite positions, in twenty-fourths of a turn.
 const PAIRS: [[u8; 2]; 2] = [[0, 12], [6, 18]];
-/// Thirds, in twenty-fourths of a turn.
-const THIRDS: [u8; 3] = [0, 8, 16];
-/// Eighths, in twenty-fourths of a turn.
-const EIGHTHS: [u8; 8] = [0, 3, 6, 9, 12, 15, 18, 21];
 
 impl Order {
     /// Orders that the planner compares.
@@ -63,12 +51,12 @@ impl Order {
     /// Positions of a pass in twenty-fourths of a turn; for [`Self::Pairs`] one of each pair.
     const fn pass(self) -> &'static [u8] {
         match self {
-            Self::Quadrature | Self::Pairs => &QUADRATURE,
-            Self::ThereAndBack => &THERE_AND_BACK,
-            Self::Mirrored => &MIRRORED,
-            Self::Sweep => &SWEEP,
-            Self::Thirds => &THIRDS,
-            Self::Eighths => &EIGHTHS,
+            Self::Quadrature | Self::Pairs => &[0, 12, 6, 18],
+            Self::ThereAndBack => &[0, 12, 6, 18, 18, 6, 12, 0],
+            Self::Mirrored => &[0, 12, 12, 0, 6, 18, 18, 6],
+            Self::Sweep => &[0, 6, 12, 18, 18, 12, 6, 0],
+            Self::Thirds => &[0, 8, 16],
+            Self::Eighths => &[0, 3, 6, 9, 12, 15, 18, 21],
         }
     }
 

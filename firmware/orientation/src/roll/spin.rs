@@ -107,6 +107,14 @@ impl Spin {
         }
     }
 
+    /// Phase lock, where that is the method.
+    fn lock(&self) -> Option<&Lock> {
+        match &self.corrector {
+            Corrector::Extrema(_) => None,
+            Corrector::Lock(lock) => Some(lock),
+        }
+    }
+
     /// Roll at the latest sample. Before the first correction it counts from zero at the first
     /// sample.
     #[must_use]
@@ -118,28 +126,19 @@ impl Spin {
     /// give none.
     #[must_use]
     pub fn sigma(&self) -> Option<f64> {
-        match &self.corrector {
-            Corrector::Extrema(_) => None,
-            Corrector::Lock(lock) => lock.sigma(&self.phase_accumulator),
-        }
+        self.lock()?.sigma(&self.phase_accumulator)
     }
 
     /// Scale error of the gyro, shown over true less one, and its 1σ; `None` for extrema.
     #[must_use]
     pub fn scale(&self) -> Option<[f64; 2]> {
-        match &self.corrector {
-            Corrector::Extrema(_) => None,
-            Corrector::Lock(lock) => Some(lock.scale()),
-        }
+        self.lock().map(Lock::scale)
     }
 
     /// Lift of the latest turns, m/s², negative where it points down; `None` where it is unknown.
     #[must_use]
     pub fn lift(&self) -> Option<f64> {
-        match &self.corrector {
-            Corrector::Extrema(_) => None,
-            Corrector::Lock(lock) => lock.lift(),
-        }
+        self.lock()?.lift()
     }
 
     /// Source of the present roll, or fault that prevents it, with its duration.

@@ -79,10 +79,7 @@ impl Blocks {
     pub fn statistics(&self, sample_seconds: f64) -> Option<BlockStatistics> {
         let blocks = NonZero::new(self.full as u32).filter(|blocks| blocks.get() >= 4)?;
         let scale = 1e-9 / f64::from(self.length);
-        let mut means = [0.0; BLOCKS];
-        for (mean, sum) in means.iter_mut().zip(self.sums) {
-            *mean = sum as f64 * scale;
-        }
+        let mut means = self.sums.map(|sum| sum as f64 * scale);
         // Samples after the last full block are merged into it, so that no part of the dwell is
         // left out.
         let tail = self.length - self.lacking;
@@ -120,8 +117,7 @@ impl BlockStatistics {
     }
 
     /// The slope's standard deviation for a block standard deviation of one, 1/s.
-    #[must_use]
-    pub fn slope_unit(&self) -> f64 {
+    pub(crate) fn slope_unit(&self) -> f64 {
         1.0 / (libm::sqrt(spread(self.count())) * self.block_seconds)
     }
 

@@ -247,8 +247,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     }
 
     /// Whether a stage angle agrees with that of the first sample within `tolerance`.
-    #[must_use]
-    pub fn stands_at(&self, stage: Angle, tolerance: Angle) -> bool {
+    pub(crate) fn stands_at(&self, stage: Angle, tolerance: Angle) -> bool {
         (stage - self.anchor).0.cast_signed().unsigned_abs() <= tolerance.0
     }
 

@@ -59,7 +59,6 @@ impl Increment {
     }
 
     /// Whether the rotation is large enough for an attitude update at once.
-    #[must_use]
     #[inline]
     pub fn is_large(&self) -> bool {
         let [x, y, z] = self.sums;

@@ -78,7 +78,7 @@ pub struct Block {
 /// An encoder may be read less often than the gyro: a sample that repeats the previous angle
 /// carries no new reading, and a block begins, has its middle and ends only at samples with a new
 /// angle. If none comes for two blocks the platform stands still, which makes a block too.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Blocks {
     /// Least number of sample periods in a block, and the number after which its middle is taken.
     periods: u32,
@@ -115,18 +115,7 @@ impl Blocks {
     #[must_use]
     pub fn of(periods: u32) -> Self {
         let middle = periods / 2;
-        Self {
-            periods: (2 * middle).max(1),
-            middle,
-            last: None,
-            begun: None,
-            phasors: [[0; 2]; 2],
-            middle_time: 0,
-            count: 0,
-            turning: 0.0,
-            rate: 0,
-            is_saturated: false,
-        }
+        Self { periods: (2 * middle).max(1), middle, ..Self::default() }
     }
 
     /// Discards the block in progress, so that the next samples do not join on to it.
@@ -217,26 +206,6 @@ impl Blocks {
     }
 }
 
-/// Reference values from which time, gyro rate and platform rate are counted, so that their
-/// products stay small.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reference {
-    /// Reference time, µs.
-    pub time: u64,
-    /// Reference rate of the gyro, nrad/s.
-    pub rate: i32,
-    /// Reference rate of the platform, rad/s.
-    pub turning: f32,
-}
-
-impl Reference {
-    /// Takes the values of a block as reference.
-    #[must_use]
-    pub fn of(block: &Block) -> Self {
-        Self { time: block.time, rate: block.rate, turning: block.turning }
-    }
-}
-
 /// Exact integer products of the signals of some blocks. They must be emptied into [`Sums`] every
 /// 4096 blocks at the latest, before the 64-bit sums can overflow.
 #[derive(Clone, Copy, Debug, Default)]
@@ -254,9 +223,10 @@ pub struct Products {
 const PRODUCTS: usize = SIGNALS * (SIGNALS + 1) / 2 - 1;
 
 impl Products {
-    /// Adds a block, with the angular acceleration of the platform, rad/s².
+    /// Adds a block, with the angular acceleration of the platform, rad/s². Time, gyro rate and
+    /// platform rate are counted from those of a reference, so that their products stay small.
     #[inline]
-    pub fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
+    pub fn push(&mut self, block: &Block, quickening: f32, reference: &Block) {
         let rate = i64::from(block.rate) - i64::from(reference.rate);
         let turning = block.turning - reference.turning;
         let is_far = rate.abs() > FURTHEST || turning.abs().max(quickening.abs()) > FASTEST;
@@ -292,7 +262,8 @@ impl Products {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {
     products: [f64; PRODUCTS],
-    rows: u32,
+    /// Number of blocks.
+    pub rows: u32,
 }
 
 impl Sums {
@@ -310,12 +281,6 @@ impl Sums {
             *sum += product;
         }
         self.rows += other.rows;
-    }
-
-    /// Number of blocks.
-    #[must_use]
-    pub fn rows(&self) -> u32 {
-        self.rows
     }
 
     /// Sum of the products of two signals, which must not both be the rate, in the product of their

@@ -5,7 +5,7 @@ use orientation::alignment::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use orientation::math::regression::Column;
 use orientation::signal::Sample;
 use orientation::signal::phasor::{
-    Block, Blocks, COLUMNS, Products, QUICKENING, RATE, Reference, Sums, TURNING,
+    Block, Blocks, COLUMNS, Products, QUICKENING, RATE, Sums, TURNING,
 };
 use orientation::units::{Angle, AngularRate, Instant};
 
@@ -50,7 +50,7 @@ impl Made {
     }
 
     /// Products of these samples through blocks of so many periods.
-    fn sums(&self, rows: &[(f64, [f64; COLUMNS], f64)], periods: u32) -> (Sums, Reference) {
+    fn sums(&self, rows: &[(f64, [f64; COLUMNS], f64)], periods: u32) -> (Sums, Block) {
         let mut blocks = Blocks::of(periods);
         let samples = rows.iter().map(|(time, _, rate)| Sample {
             time: Instant::from_seconds(*time),
@@ -59,7 +59,7 @@ impl Made {
             ..Sample::default()
         });
         let blocks: Vec<Block> = samples.filter_map(|sample| blocks.push(&sample, None)).collect();
-        let reference = Reference::of(&blocks[1]);
+        let reference = blocks[1];
         let mut sums = Sums::default();
         for some in blocks.windows(3).collect::<Vec<_>>().chunks(500) {
             let mut products = Products::default();
@@ -194,14 +194,15 @@ fn the_products_hold_four_thousand_blocks_of_the_greatest_values() {
         };
         all.extend(blocks.push(&sample, Some(if number % 2 == 0 { 4.0 } else { -4.0 })));
     }
-    let reference = Reference { turning: 4.0, ..Reference::of(&all[0]) };
+    let mut reference = all[0];
+    reference.turning = 4.0;
     let mut products = Products::default();
     // Overflow panics in this profile.
     all.iter().take(4096).for_each(|block| products.push(block, 10.0, &reference));
     assert!(products.is_clamped);
     let mut sums = Sums::default();
     sums.absorb(&products);
-    assert_eq!(sums.rows(), 4096);
+    assert_eq!(sums.rows, 4096);
     assert!((sums.product(QUICKENING, QUICKENING) - 409_600.0).abs() < 1e-6);
 }
 

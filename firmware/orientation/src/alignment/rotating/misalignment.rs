@@ -65,7 +65,7 @@ impl Modulated {
     pub fn misalignment(&self, noise: &GyroNoise) -> Option<AxisMisalignment> {
         let Self { sums, seconds, turned, width } = self;
         let mean = turned / seconds;
-        let rows = f64::from(sums.rows().max(1));
+        let rows = f64::from(sums.rows.max(1));
         let modulation = sums.product(TURNING, TURNING) / rows - squared(sums.mean(TURNING));
         let enough =
             turned.abs() >= LEAST_TURNS * TURN && modulation > squared(LEAST_MODULATION * mean);

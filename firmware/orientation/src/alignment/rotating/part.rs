@@ -3,7 +3,7 @@
 
 use crate::math::Complex;
 use crate::math::regression::Regression;
-use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, Reference, SINE, Sums};
+use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, SINE, Sums};
 use crate::units::Angle;
 
 /// Steps of an [`Angle`] in an eighth of a turn.
@@ -70,7 +70,7 @@ pub(super) struct Part {
 
 impl Part {
     /// Adds a block, with the platform's angular acceleration, rad/s².
-    pub(super) fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
+    pub(super) fn push(&mut self, block: &Block, quickening: f32, reference: &Block) {
         let turning = block.turning;
         if self.rows == 0 {
             (self.least, self.greatest) = (turning, turning);

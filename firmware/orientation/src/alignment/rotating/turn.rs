@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use super::part::AXES;
 use crate::math::regression::{Column, Regression};
-use crate::signal::phasor::{COLUMNS, COSINE, ONE, RATE, Reference, SINE, Sums, TIME, TURNING};
+use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, RATE, SINE, Sums, TIME, TURNING};
 
 /// Greatest number of entries in a stretch; with more turns, neighbours are joined.
 pub const TURNS: usize = 32;
@@ -63,7 +63,7 @@ impl Turn {
     #[must_use]
     pub fn of(
         sums: &Sums,
-        reference: &Reference,
+        reference: &Block,
         since: u64,
         seconds: f64,
         forces: &[Regression<COLUMNS>; AXES],

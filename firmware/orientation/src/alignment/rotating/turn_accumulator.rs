@@ -17,7 +17,7 @@ use crate::device::Trouble;
 use crate::math::Complex;
 use crate::math::reference_table::Table;
 use crate::signal::Sample;
-use crate::signal::phasor::{Block, Blocks, Reference, Sums};
+use crate::signal::phasor::{Block, Blocks, Sums};
 use crate::units::{Angle, SpecificForce, TURN as WHOLE_TURN};
 
 /// Number of eighths in a turn.
@@ -78,8 +78,8 @@ pub struct TurnAccumulator {
     pub(crate) mode: Mode,
     /// The two latest blocks: a block is used when the platform's acceleration in it is known.
     latest: [Option<Block>; 2],
-    /// Reference values of the turn in progress.
-    reference: Option<Reference>,
+    /// Block from whose values those of the turn in progress are counted.
+    reference: Option<Block>,
     /// Eighth in progress.
     part: Part,
     /// Complete eighths of the turn in progress.
@@ -280,7 +280,7 @@ impl TurnAccumulator {
             self.note_break(block.turned, block.seconds);
             return has_turned;
         }
-        let reference = *self.reference.get_or_insert_with(|| Reference::of(&block));
+        let reference = *self.reference.get_or_insert(block);
         self.part.push(&block, quickening, &reference);
         if self.part.reached() >= EIGHTH {
             return self.end_part();

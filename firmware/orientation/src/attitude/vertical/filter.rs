@@ -25,7 +25,7 @@ const STATES: usize = 17;
 /// Index of the rotation about the vertical.
 pub const TURN: usize = 2;
 /// Index of the first bias.
-const BIAS: usize = 3;
+pub const BIAS: usize = 3;
 /// Index of the first scale and axis error: the excess of each gyro per rotation about each axis,
 /// row by row.
 const AXES: usize = 6;
@@ -124,10 +124,8 @@ pub struct Filter {
     correction: States,
 }
 
-/// Initialisation and propagation.
 impl Filter {
     /// Filter with these 1σ of the gyros' biases, rad/s, before the level is set.
-    #[must_use]
     pub fn new(biases: [f32; 3], expected: &Expected) -> Self {
         let mut filter = Self::default();
         for (axis, bias) in biases.into_iter().enumerate() {
@@ -319,10 +317,7 @@ impl Filter {
             self.covariance[place][row] = before * left;
         }
     }
-}
 
-/// External changes of the states.
-impl Filter {
     /// Begins a rest: the velocity is zero.
     pub fn stand(&mut self) {
         self.velocity = [0.0; 2];
@@ -389,10 +384,7 @@ impl Filter {
         self.inflate(0, variance);
         self.inflate(1, variance);
     }
-}
 
-/// Results of the filter.
-impl Filter {
     /// Variance of a state including corrections that have not been applied yet.
     pub fn variance(&self, place: usize) -> f32 {
         let correction = self.correction[place];
@@ -405,26 +397,17 @@ impl Filter {
     }
 
     /// Standard deviation of the greater tilt, 1σ, rad.
-    #[must_use]
     pub fn tilt_sigma(&self) -> f32 {
         libm::sqrtf(self.variance(0).max(self.variance(1)))
     }
 
     /// Variances of the biases, (rad/s)².
-    #[must_use]
     pub fn bias_variances(&self) -> [f32; 3] {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
     }
 
-    /// Index of an axis's bias among the states.
-    #[must_use]
-    pub fn bias(axis: usize) -> usize {
-        BIAS + axis
-    }
-
     /// Part of the growth of the level's variance that gravity lately compensated; one where there
     /// was no growth.
-    #[must_use]
     pub fn share_of_gravity(&self) -> f32 {
         let Balance { grown, gained } = self.balance;
         if grown > 0.0 { gained / grown } else { 1.0 }

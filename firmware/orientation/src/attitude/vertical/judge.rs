@@ -1,6 +1,6 @@
 //! Supervision of the gyrovertical: the forces ten times a second, rest detection twice a second.
 
-use super::filter::{Correction, Filter, TURN};
+use super::filter::{BIAS, Correction, TURN};
 use super::motion::GRAVITY;
 use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
@@ -172,7 +172,7 @@ impl Vertical {
     /// Updates a bias with the mean rates of a rest.
     fn learn(&mut self, axis: usize) -> Task {
         if let Some([off, variance]) = self.findings.biases {
-            self.filter.measure(Filter::bias(axis), off[axis], variance[axis]);
+            self.filter.measure(BIAS + axis, off[axis], variance[axis]);
         }
         if axis < 2 {
             return Task::Learn(axis + 1);
@@ -261,7 +261,7 @@ impl Vertical {
             Found::StrangeBias => {
                 self.move_on(&window, was_rest);
                 // Constant rates were taken for a rotation until now.
-                let turned = dot(&self.matrix[2], &self.rest.turned_evenly());
+                let turned = dot(&self.matrix[2], &self.rest.steady.turned);
                 self.filter.inflate(TURN, turned * turned);
                 self.widen_biases(&difference(&means.rate, &self.bias), &means.rate);
             }
@@ -307,7 +307,7 @@ impl Vertical {
     /// Inflates the biases by the Earth rate that they may contain.
     pub(super) fn inflate_biases(&mut self) {
         for axis in 0..3 {
-            self.filter.inflate(Filter::bias(axis), 2.0 * self.unknown);
+            self.filter.inflate(BIAS + axis, 2.0 * self.unknown);
         }
     }
 
@@ -321,7 +321,7 @@ impl Vertical {
             squares.fold(1.0, f32::max).min(WIDEST * WIDEST)
         };
         for (axis, variance) in scaled(&stated, ratio(off)).into_iter().enumerate() {
-            self.filter.inflate(Filter::bias(axis), variance);
+            self.filter.inflate(BIAS + axis, variance);
         }
         self.rest.count_anew();
         let beyond = ratio(found);

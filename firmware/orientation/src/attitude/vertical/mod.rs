@@ -21,8 +21,8 @@ mod rest;
 mod stretch;
 mod sums;
 
-pub use self::course::Course;
-use self::filter::{Expected, Filter, TURN};
+use self::course::Course;
+use self::filter::{BIAS, Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
 use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
@@ -65,8 +65,8 @@ pub enum Trust {
 }
 
 /// State of the gyrovertical.
-#[derive(Clone, Debug)]
-pub struct Vertical {
+#[derive(Clone, Debug, Default)]
+pub(super) struct Vertical {
     /// Expected errors of the gyros.
     expected: Expected,
     /// Variances of the switch-on biases, (rad/s)², and variance of the Earth rate that they may
@@ -126,44 +126,24 @@ pub struct Vertical {
 
 impl Vertical {
     /// Begins with these gyros at this site.
-    #[must_use]
     pub fn new(setting: &Setting) -> Self {
         // While north is unknown, a level axis may contain the Earth rate in addition to its bias.
         let unknown = 0.5 * setting.latitude.horizontal_rate() * setting.latitude.horizontal_rate();
-        let sigmas = setting
-            .gyros
-            .map(|gyro| libm::sqrt(gyro.bias_sigma * gyro.bias_sigma + unknown) as f32);
+        let priors = setting.gyros.map(|gyro| gyro.bias_sigma * gyro.bias_sigma);
+        let sigmas = priors.map(|prior| libm::sqrt(prior + unknown) as f32);
         let expected = Expected::of(setting);
         let period = setting.sample_seconds as f32;
         Self {
-            priors: setting.gyros.map(|gyro| (gyro.bias_sigma * gyro.bias_sigma) as f32),
+            priors: priors.map(|prior| prior as f32),
             unknown: unknown as f32,
-            is_bias_beyond_stated: false,
             force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
             period,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate() as f32)],
-            increment: Increment::default(),
-            force: Sums::default(),
-            attitude: Attitude::default(),
             matrix: Attitude::default().matrix(),
-            bias: [0.0; 3],
-            axes: [[0.0; 3]; 3],
             filter: Filter::new(sigmas, &expected),
             expected,
-            stretch: Stretch::default(),
-            block: Stretch::default(),
-            task: Task::Nothing,
             tasks_per_sample: Self::tasks_per_sample(period),
-            findings: Findings::default(),
-            window: Window::default(),
-            rest: ZeroVelocityDetector::default(),
-            rested: Rested::default(),
-            before: Before::default(),
-            course: Course::default(),
-            since: Instant::default(),
-            trust: Trust::Starting,
-            is_lost: false,
-            knows_north: false,
+            ..Self::default()
         }
     }
 
@@ -261,13 +241,9 @@ impl Vertical {
         let level = difference(&off, &scaled(down, dot(down, &off)));
         difference(shown, &level)
     }
-}
 
-/// Results of the gyrovertical.
-impl Vertical {
     /// Attitude from body axes to the level frame at the latest sample; the course is zero for a
     /// body that was level at the start.
-    #[must_use]
     pub fn attitude(&self) -> Attitude {
         let mut increment = self.increment;
         let seconds = self.time().0.saturating_sub(self.since.0) as f32 * 1e-6;
@@ -279,20 +255,17 @@ impl Vertical {
     }
 
     /// Standard deviation of pitch and of roll, 1σ, rad.
-    #[must_use]
     pub fn sigma(&self) -> f32 {
         let tilt = self.filter.tilt_sigma();
         libm::sqrtf(tilt * tilt + self.force_tilt * self.force_tilt)
     }
 
     /// Standard deviations of the biases, 1σ, rad/s.
-    #[must_use]
     pub fn bias_sigmas(&self) -> Vector {
         self.filter.bias_variances().map(libm::sqrtf)
     }
 
     /// Whether the body is at rest.
-    #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.rest.is_at_rest
     }
@@ -304,13 +277,11 @@ impl Vertical {
 
     /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
     /// during gaps.
-    #[must_use]
     pub fn turn_variance(&self) -> f32 {
         self.filter.variance(TURN)
     }
 
     /// Mean rates about the body's axes at rest, rad/s, including the Earth rate; `None` in motion.
-    #[must_use]
     pub fn rest_rates(&self) -> Option<[f64; 3]> {
         let frame = turned(&transposed(&self.matrix), &self.frame);
         self.is_at_rest().then(|| sum(&self.bias, &frame).map(f64::from))
@@ -325,7 +296,7 @@ impl Vertical {
         self.priors[2] = sigma * sigma;
         self.bias[2] = 0.0;
         self.axes[2] = [0.0; 3];
-        self.filter.reset(Filter::bias(2), sigma * sigma);
+        self.filter.reset(BIAS + 2, sigma * sigma);
         self.filter.reset_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
         self.rest.exchange(2, self.expected.walk[2]);
@@ -346,7 +317,7 @@ impl Vertical {
         // The estimate of the sum now holds for the bias, which has a tighter prior.
         self.bias = difference(&self.bias, &more);
         for (axis, bias) in self.bias.into_iter().enumerate() {
-            self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
+            self.filter.measure(BIAS + axis, -bias, self.priors[axis]);
         }
         self.correct();
     }

@@ -119,7 +119,7 @@ pub struct ZeroVelocityDetector {
     turned: Vector,
     seconds: f32,
     /// Successive steady windows.
-    steady: Steady,
+    pub(super) steady: Steady,
     /// Whether the body is at rest.
     pub is_at_rest: bool,
     /// Mean force of the latest rest, m/s².
@@ -130,11 +130,11 @@ pub struct ZeroVelocityDetector {
 
 /// Successive windows that are steady, but not quiet.
 #[derive(Clone, Copy, Debug, Default)]
-struct Steady {
+pub(super) struct Steady {
     /// Number of windows.
     windows: u32,
     /// Rotation beyond the biases in these windows, rad.
-    turned: Vector,
+    pub(super) turned: Vector,
     /// Force in the first window, m/s², and greatest squared deviation from it.
     force: Vector,
     moved: f32,
@@ -234,12 +234,6 @@ impl ZeroVelocityDetector {
                 let is_longer = rested < EVEN && windows >= EVEN + OUTLASTING * rested;
                 turned[axis].abs() <= bound || rested == 0 || (is_longer && less > 0.0)
             })
-    }
-
-    /// Rotation beyond the biases while the rates were constant, rad.
-    #[must_use]
-    pub fn turned_evenly(&self) -> Vector {
-        self.steady.turned
     }
 
     /// Restarts the rotation beyond the biases: they were updated, or a motion ended.

@@ -25,8 +25,7 @@ pub enum Estimate {
 
 impl Estimate {
     /// The estimate in another unit, which is `unit` in the present one.
-    #[must_use]
-    pub fn in_unit(self, unit: f64) -> Self {
+    pub(crate) fn in_unit(self, unit: f64) -> Self {
         match self {
             Self::Found { value, sigma } => {
                 Self::Found { value: value / unit, sigma: sigma / unit }
@@ -95,14 +94,7 @@ impl NoiseFit {
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.
     pub fn noise(&self) -> GyroNoise {
-        let found = |estimate: Estimate| estimate.value().unwrap_or(0.0);
-        GyroNoise {
-            quantisation: found(self.quantisation),
-            angle_random_walk: found(self.angle_random_walk),
-            bias_instability: found(self.bias_instability),
-            rate_random_walk: found(self.rate_random_walk),
-            rate_ramp: found(self.rate_ramp),
-        }
+        GyroNoise::of(self.estimates().map(|estimate| estimate.value().unwrap_or(0.0)))
     }
 
     /// All estimates in the field's units, as [`Coefficient`] states them.

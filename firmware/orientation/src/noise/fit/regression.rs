@@ -14,7 +14,7 @@ pub const COLUMNS: usize = 5;
 pub const WHITE: usize = 1;
 
 /// Set of coefficients that take part, one bit each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Columns(pub u8);
 
 impl Columns {
@@ -49,7 +49,7 @@ impl Columns {
 
 /// Weighted normal equations of the points over some columns, which are scaled to norm 1; the
 /// entries of other columns are zero.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {
     /// Columns that take part.
     columns: Columns,
@@ -64,12 +64,7 @@ pub struct Sums {
 impl Sums {
     /// Normal equations of points whose variances have the standard deviations `sigmas`.
     pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
-        let mut sums = Self {
-            columns,
-            normal: [[0.0; COLUMNS]; COLUMNS],
-            right: [0.0; COLUMNS],
-            scales: [0.0; COLUMNS],
-        };
+        let mut sums = Self { columns, ..Self::default() };
         for (point, sigma) in points.iter().zip(sigmas) {
             let weight = 1.0 / sigma;
             sums.add(&terms(point.seconds), point.variance * weight, weight);

@@ -51,14 +51,7 @@ pub struct Model {
 impl Model {
     /// Noise model with these coefficients.
     pub fn noise(&self) -> GyroNoise {
-        let [q, n, b, k, r] = self.squares.map(libm::sqrt);
-        GyroNoise {
-            quantisation: q,
-            angle_random_walk: n,
-            bias_instability: b,
-            rate_random_walk: k,
-            rate_ramp: r,
-        }
+        GyroNoise::of(self.squares.map(libm::sqrt))
     }
 }
 

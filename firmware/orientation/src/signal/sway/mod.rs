@@ -65,7 +65,7 @@ const LONGEST_STEP: f32 = 0.05;
 const LARGE: f32 = 3.0;
 
 /// Stated properties of the coarse sensors and of their place on the base.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoarseSensors {
     /// Angle random walk N of the gyros, rad/√s.
     pub rate_noise: f32,
@@ -94,11 +94,8 @@ impl CoarseSensors {
         Self {
             rate_noise: (rate * 1e-3 * DEGREE * half) as f32,
             force_noise: (force * 1e-6 * half) as f32,
-            mismatch: 0.0,
-            delay: 0.0,
-            delay_sigma: 0.0,
-            lever: 0.0,
             memory: 20.0,
+            ..Self::default()
         }
     }
 
@@ -178,7 +175,7 @@ impl Watch {
 }
 
 /// Estimator of the sway.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Sway {
     /// Stated properties of the sensors.
     sensors: CoarseSensors,
@@ -205,18 +202,7 @@ impl Sway {
     /// Begins without an estimate.
     #[must_use]
     pub fn new(sensors: CoarseSensors) -> Self {
-        Self {
-            sensors,
-            up: None,
-            origin: [AngularRate(0); 3],
-            bias: [0.0; 3],
-            rate: [0.0; 2],
-            latest: [0.0; 2],
-            age: 0.0,
-            upright: 0.0,
-            watch: Watch::default(),
-            decision: Decision::Watching,
-        }
+        Self { sensors, ..Self::default() }
     }
 
     /// Present state of the decision.

@@ -24,8 +24,7 @@ impl SwayNoise {
     pub const UNMEASURED: Self = Self { correlation: f64::MAX, ..Self::NONE };
 
     /// Whether the sensors failed that would have observed the sway.
-    #[must_use]
-    pub fn is_unmeasured(&self) -> bool {
+    pub(crate) fn is_unmeasured(&self) -> bool {
         self.correlation >= f64::MAX
     }
 
@@ -37,8 +36,7 @@ impl SwayNoise {
     }
 
     /// Gauss–Markov part of [`Self::mean_variance`], (rad/s)², which neighbouring dwells share.
-    #[must_use]
-    pub fn angle_mean_variance(&self, seconds: f64) -> f64 {
+    pub(crate) fn angle_mean_variance(&self, seconds: f64) -> f64 {
         if self.angle_variance <= 0.0 {
             return 0.0;
         }
