@@ -2,6 +2,7 @@
 
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::units::DEGREE;
 
 use super::NO_NOISE;
@@ -65,9 +66,8 @@ pub fn noise(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
 /// Keys of drift and g-sensitivity that are missing, where a usual one of either would explain the dwells.
 pub fn missing(header: &Header, body: &Body, asked: &Asked, refusal: &Refusal) -> Option<String> {
     let is_scattered = match refusal {
-        Refusal::ResidualsNotWhite { ratio } | Refusal::NoiseNotAsStated { ratio } => {
-            *ratio <= NO_NOISE
-        }
+        Refusal::ResidualsNotWhite { ratio }
+        | Refusal::Stepwise(Stepwise::NoiseNotAsStated { ratio }) => *ratio <= NO_NOISE,
         Refusal::ResidualsCorrelated { .. } | Refusal::EarthRateMismatch { .. } => true,
         _ => false,
     };

@@ -15,7 +15,10 @@ mod warming;
 pub use vehicle::{of_level, of_vehicle};
 
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::Refusal as Rotating;
+use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stops::Refusal as Stops;
 
 use crate::methods::asked::Asked;
 use crate::methods::rotating;
@@ -98,19 +101,23 @@ pub fn of_turning(
 fn is_short(refusal: &Refusal) -> bool {
     matches!(
         refusal,
-        Refusal::TooFewPositions { .. }
-            | Refusal::AzimuthUnobservable
-            | Refusal::SignUnknown
-            | Refusal::NotInHalf
-            | Refusal::TrendNotSeparable
-            | Refusal::BudgetNotMet { .. }
-            | Refusal::TiltTooUncertain { .. }
-            | Refusal::TurnsTooFew { .. }
-            | Refusal::NoStop
-            | Refusal::OneStop { .. }
-            | Refusal::StopTooShort { .. }
-            | Refusal::DriveTooShort { .. }
+        Refusal::BudgetNotMet { .. }
             | Refusal::LatitudeTooHigh { .. }
+            | Refusal::Stepwise(
+                Stepwise::TooFewPositions { .. }
+                    | Stepwise::AzimuthUnobservable
+                    | Stepwise::SignUnknown
+                    | Stepwise::NotInHalf
+                    | Stepwise::TrendNotSeparable
+                    | Stepwise::TiltTooUncertain { .. }
+            )
+            | Refusal::Rotating(Rotating::TurnsTooFew { .. })
+            | Refusal::Stops(
+                Stops::NoStop
+                    | Stops::OneStop { .. }
+                    | Stops::StopTooShort { .. }
+                    | Stops::DriveTooShort { .. }
+            )
     )
 }
 
@@ -119,9 +126,8 @@ fn is_scattered(refusal: &Refusal) -> bool {
     matches!(
         refusal,
         Refusal::ResidualsNotWhite { .. }
-            | Refusal::TurnsDisturbed { .. }
-            | Refusal::TurnsDisagree { .. }
             | Refusal::BudgetNotMet { .. }
+            | Refusal::Rotating(Rotating::TurnsDisturbed { .. } | Rotating::TurnsDisagree { .. })
     )
 }
 

@@ -1,6 +1,7 @@
 //! An accelerometer that warms up: on an arc its biases change as the forces of a stage do that counts the other way.
 
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::math::regression::{Column, Regression};
 use orientation::signal::dwell::Dwell;
@@ -27,8 +28,11 @@ struct Found {
 /// What is likely where biases that drift explain the forces, and a stage that counts the other way, which gives an
 /// azimuth where `is_reversed`, does not clearly explain them better.
 pub fn of(session: &Session, refusal: &Refusal, is_reversed: bool) -> Option<String> {
-    let is_of_forces =
-        matches!(refusal, Refusal::AccelerometerDisagrees { .. } | Refusal::TiltStepped { .. });
+    let is_of_forces = matches!(
+        refusal,
+        Refusal::AccelerometerDisagrees { .. }
+            | Refusal::Stepwise(stepwise::Refusal::TiltStepped { .. })
+    );
     let (dwells, gravity) = (session.dwells(), session.setting().site.latitude.gravity());
     let steady = fit(dwells, gravity, 1.0, Column::Absent)?;
     let drifting = fit(dwells, gravity, 1.0, Column::Free)?;

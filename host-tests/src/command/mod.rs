@@ -162,20 +162,10 @@ impl Shown<'_> {
     }
 }
 
-/// What was found, without the usual remedy for it, and what it is likely to come from.
-fn explained(reason: &str, cause: &str) -> String {
-    let remedies = REMEDIES.iter().find_map(|remedy| reason.strip_suffix(remedy));
-    format!("{}; {cause}", remedies.unwrap_or(reason))
+/// What was found, without the usual remedy with which the reason ends, and what it is likely to come from.
+fn explained(reason: &str, remedy: &str, cause: &str) -> String {
+    format!("{}; {cause}", reason.strip_suffix(remedy).unwrap_or(reason))
 }
-
-/// What is to be done where the platform is at fault.
-const REMEDIES: [&str; 5] = [
-    ": keep the platform still",
-    ": keep the base still, let the sensor settle",
-    ": level it",
-    ": turn the stage over a longer arc",
-    "; turn a full circle or calibrate the accelerometer",
-];
 
 /// The half of the circle in which an azimuth lies.
 #[derive(Clone, Copy, Debug, ValueEnum)]

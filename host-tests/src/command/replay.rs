@@ -134,7 +134,7 @@ fn replay(
     let is_caused = outcome.reason.is_some() && header.session.is_none();
     let cause = is_caused.then(|| finished.cause(&header, &body, &asked)).flatten();
     let reason = outcome.reason.map(|reason| match cause {
-        Some(cause) => explained(&reason, &cause),
+        Some(cause) => explained(&reason, outcome.remedy, &cause),
         None => reason,
     });
     let outcome = Outcome { source: Some(Source::File(name.clone())), reason, ..outcome };

@@ -86,6 +86,9 @@ pub struct Outcome {
     /// Why the result is refused; only with `refused`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// How that reason ends where it names the usual remedy, which a likelier cause takes the place of.
+    #[serde(skip)]
+    pub remedy: &'static str,
     /// Azimuth of body x at the end of the recording, from true north, clockwise from above, [0, 360) °; only
     /// with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -251,6 +254,7 @@ impl Outcome {
             method,
             status: "refused",
             reason: None,
+            remedy: "",
             azimuth_deg: None,
             sigma_deg: None,
             error_deg: None,
@@ -280,6 +284,7 @@ impl Outcome {
             azimuth_deg: found,
             sigma_deg: azimuth.map(|azimuth| degrees(azimuth.sigma)),
             error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
+            remedy: verdict.as_ref().err().map_or("", Refusal::remedy),
             ..self.settled(verdict.as_ref().err().map(ToString::to_string))
         }
     }

@@ -17,6 +17,7 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
@@ -264,10 +265,10 @@ fn a_sound_instrument_is_not_refused() {
 fn two_positions_are_too_few() {
     let mut case = sound();
     turned(&mut case, 2, 180.0);
-    assert_eq!(verdict(&case, &[], 2), Err(Refusal::SignUnknown));
+    assert_eq!(verdict(&case, &[], 2), Err(Refusal::Stepwise(stepwise::Refusal::SignUnknown)));
     // Coming back to the same two places does not help.
     case.stops.extend_from_within(..);
-    assert_eq!(verdict(&case, &[], 3), Err(Refusal::SignUnknown));
+    assert_eq!(verdict(&case, &[], 3), Err(Refusal::Stepwise(stepwise::Refusal::SignUnknown)));
 }
 
 #[test]
@@ -280,7 +281,11 @@ fn a_short_arc_about_the_turning_point_cannot_tell() {
     turned(&mut case, 6, 1.0);
     let verdict = verdict(&case, &[], 4);
     assert!(
-        matches!(verdict, Err(Refusal::AzimuthUnobservable | Refusal::BudgetNotMet { .. })),
+        matches!(
+            verdict,
+            Err(Refusal::Stepwise(stepwise::Refusal::AzimuthUnobservable)
+                | Refusal::BudgetNotMet { .. })
+        ),
         "{verdict:?}"
     );
 }
@@ -293,7 +298,10 @@ fn an_accelerometer_bias_on_a_short_arc_makes_the_tilt_too_uncertain() {
     case.setting.site.required_sigma = 0.5_f64.to_radians();
     turned(&mut case, 12, 4.0);
     let verdict = verdict(&case, &[], 5);
-    assert!(matches!(verdict, Err(Refusal::TiltTooUncertain { .. })), "{verdict:?}");
+    assert!(
+        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::TiltTooUncertain { .. }))),
+        "{verdict:?}"
+    );
 }
 
 #[test]
@@ -306,7 +314,7 @@ fn a_gyro_that_is_noisier_than_stated_is_refused() {
             verdict,
             Err(Refusal::ResidualsNotWhite { .. }
                 | Refusal::ResidualsCorrelated { .. }
-                | Refusal::Disturbed { .. })
+                | Refusal::Stepwise(stepwise::Refusal::Disturbed { .. }))
         ),
         "{verdict:?}"
     );

@@ -13,6 +13,7 @@ mod foundations;
 mod integrity;
 mod planner;
 mod positions;
+mod refusals;
 mod roll;
 mod rotating;
 mod session;

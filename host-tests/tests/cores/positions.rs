@@ -13,6 +13,7 @@ use host::simulate::stage_path;
 use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
@@ -117,7 +118,10 @@ fn two_opposite_positions_are_refused_without_the_half_and_right_with_it() {
     let angles_deg = [0.0, 180.0, 180.0, 0.0, 0.0, 180.0];
     let gyro = [0.002, 0.0, 0.0, 0.0];
     let trial = |half| Trial { gyro, angles_deg: &angles_deg, seconds: 30.0, half };
-    assert_eq!(trial(None).verdict(70.0, 1), Err(Refusal::SignUnknown));
+    assert_eq!(
+        trial(None).verdict(70.0, 1),
+        Err(Refusal::Stepwise(stepwise::Refusal::SignUnknown))
+    );
     let (mut ratios, mut widened) = (Vec::new(), 0);
     for seed in 1..=60 {
         let azimuth = 40.0 + (seed * 17 % 100) as f64;

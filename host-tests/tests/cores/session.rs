@@ -8,6 +8,7 @@ use host::simulate::run;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::procedure::Survey;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
@@ -107,7 +108,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
     run(&mut session, &world(10.0), &lasting, Rotation::fixed(1.0), 2000.0, 6);
     let conclusion = session.conclusion().expect("it has ended");
     assert!(
-        matches!(conclusion.verdict, Err(Refusal::Disturbed { .. })),
+        matches!(conclusion.verdict, Err(Refusal::Stepwise(stepwise::Refusal::Disturbed { .. }))),
         "{:?}",
         conclusion.verdict
     );
@@ -129,7 +130,10 @@ fn a_stage_that_does_not_arrive_is_refused() {
     // It takes longer for a rotation than is allowed.
     run(&mut session, &world(10.0), &[], Rotation::fixed(50.0), 2000.0, 8);
     let verdict = session.conclusion().expect("it has ended").verdict;
-    assert!(matches!(verdict, Err(Refusal::StageNotThere { .. })), "{verdict:?}");
+    assert!(
+        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::StageNotThere { .. }))),
+        "{verdict:?}"
+    );
 }
 
 #[test]
@@ -273,7 +277,9 @@ fn a_session_goes_on_when_its_dwells_scatter_more_than_the_noise_predicts() {
 fn a_session_that_cannot_reach_its_accuracy_in_time_says_so_early_and_how_near_it_could_come() {
     let (session, end) = until(0.01, 300.0, 1.0, 5);
     let verdict = session.conclusion().expect("done").verdict;
-    let Err(Refusal::OutOfReach { sigma, required, seconds }) = verdict else {
+    let Err(Refusal::Stepwise(stepwise::Refusal::OutOfReach { sigma, required, seconds })) =
+        verdict
+    else {
         panic!("{verdict:?}")
     };
     assert!((required - 0.01).abs() < 1e-9 && seconds == 300.0);
@@ -328,7 +334,7 @@ fn a_survey_that_shows_the_accuracy_out_of_reach_ends_before_anything_turns() {
     let verdict = session.conclusion().expect("done").verdict;
     // The 900 s after the survey give √2·0.02/(10.15·√(1/4)) rad = 0.32°, less the rotations' time.
     assert!(
-        matches!(verdict, Err(Refusal::OutOfReach { sigma, .. }) if (0.32..0.36).contains(&sigma)),
+        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::OutOfReach { sigma, .. })) if (0.32..0.36).contains(&sigma)),
         "{verdict:?}"
     );
     assert!(session.dwells().is_empty());
@@ -344,7 +350,10 @@ fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
     stuck.gyro.n_deg_sqrt_h = 0.0;
     let session = surveyed(&stuck, StopRule::AllPositions, 26);
     let verdict = session.conclusion().expect("done").verdict;
-    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Constant)));
+    assert_eq!(
+        verdict,
+        Err(Refusal::Stepwise(stepwise::Refusal::NoiseUnknown(FitError::Constant)))
+    );
     let overload =
         Disturbance { start_s: 100.0, seconds: 1.0, rate_deg_h: 1e9, ..Disturbance::default() };
     let mut session = Session::new(
@@ -360,5 +369,8 @@ fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
     .expect("it begins");
     run(&mut session, &world(70.0), &[overload], Rotation::fixed(1.0), 900.0, 27);
     let verdict = session.conclusion().expect("done").verdict;
-    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Saturated)));
+    assert_eq!(
+        verdict,
+        Err(Refusal::Stepwise(stepwise::Refusal::NoiseUnknown(FitError::Saturated)))
+    );
 }

@@ -6,6 +6,7 @@ use host::instrument::{Trial, TurntableRun};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::device::{Device, Trouble};
 use rayon::prelude::*;
@@ -181,7 +182,9 @@ fn an_uneven_gear_is_no_disagreement() {
 fn a_badly_aligned_sensor_is_to_be_aligned() {
     let scenario = TurntableScenario { elevation_deg: -2.5, ..short(1) };
     let reason = verdict(&run(&scenario)).expect_err("it exceeds the limit");
-    assert!(matches!(reason, Refusal::Misaligned { angle, .. } if (angle + 2.5).abs() < 0.01));
+    assert!(
+        matches!(reason, Refusal::Rotating(rotating::Refusal::Misaligned { angle, .. }) if (angle + 2.5).abs() < 0.01)
+    );
     assert!(reason.to_string().contains("align the sensor mechanically"), "{reason}");
 }
 

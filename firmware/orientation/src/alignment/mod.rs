@@ -15,5 +15,8 @@ pub mod stops;
 pub mod verdict;
 
 pub use method::{Input, Method, Request};
-pub use progress::Progress;
+pub use progress::{Listener, Progress};
+pub use refusal::Refusal;
+pub use setup::SetupError;
+pub use slow::SlowMotion;
 pub use verdict::{Azimuth, Solution, Verdict};

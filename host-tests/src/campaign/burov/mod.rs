@@ -11,6 +11,7 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
@@ -123,7 +124,7 @@ impl Trial {
         let azimuth_deg = (GOLDEN_ANGLE_DEG * seed as f64) % 360.0;
         let procedure = Procedure::new(Schedule::Planned(self.plan), 1.0 / RATE_HZ);
         let mut session = Session::new(self.setting(), procedure)
-            .map_err(|_| Refusal::TooFewPositions { positions: 0 })?;
+            .map_err(|_| Refusal::Stepwise(stepwise::Refusal::TooFewPositions { positions: 0 }))?;
         let longest = 2.0 * self.plan.seconds + 60.0;
         simulate::run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
         session

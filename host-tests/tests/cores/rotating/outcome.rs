@@ -92,7 +92,8 @@ fn runs(run: impl Fn(u64, Case) -> Run + Sync + Send) -> Vec<Run> {
 /// The refusal's name.
 fn name(reason: &Refusal) -> String {
     let text = format!("{reason:?}");
-    text.split([' ', '{', '(']).next().unwrap_or_default().to_owned()
+    let own = text.strip_prefix("Rotating(").unwrap_or(&text);
+    own.split([' ', '{', '(', ')']).next().unwrap_or_default().to_owned()
 }
 
 #[track_caller]

@@ -2,6 +2,7 @@
 
 use hal_mock::turntable::{EncoderSlip, Segment, TurntableConfiguration};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating;
 use orientation::alignment::rotating::session::Procedure;
 
 use super::outcome::{
@@ -86,7 +87,10 @@ fn a_session_whose_platform_stops_ends_and_says_so() {
     // Before anything, in the rate-modulated turns, in the clockwise and in the counter-clockwise ones.
     for time_s in [0.0, 10.0, 110.0, 150.0] {
         let refused = stalled_at(time_s).expect_err("it did not turn");
-        assert!(matches!(refused, Refusal::PlatformStopped { .. }), "{refused:?} at {time_s}");
+        assert!(
+            matches!(refused, Refusal::Rotating(rotating::Refusal::PlatformStopped { .. })),
+            "{refused:?} at {time_s}"
+        );
     }
     assert!(stalled_at(1e9).is_ok());
 }
@@ -130,7 +134,10 @@ fn a_slip_while_a_session_turns_the_platform_is_refused() {
             }
         });
         let verdict = driven.session.conclusion().expect("the session has ended").verdict;
-        assert!(matches!(verdict, Err(Refusal::EncoderSlipped { .. })), "{verdict:?} {time_s}");
+        assert!(
+            matches!(verdict, Err(Refusal::Rotating(rotating::Refusal::EncoderSlipped { .. }))),
+            "{verdict:?} {time_s}"
+        );
     }
 }
 

@@ -3,6 +3,7 @@
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Drive, Event, Leg, Stop};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops;
 use orientation::signal::rest::Sensors;
 
 use super::assert_near;
@@ -137,5 +138,5 @@ fn a_vehicle_that_sways_stands_nowhere_by_the_criteria() {
 #[test]
 fn a_vehicle_that_never_stops_stood_nowhere() {
     let outcome = day(&[drive(100.0), drive(100.0), drive(100.0)], 1).run();
-    assert_eq!(outcome.conclusion.verdict, Err(Refusal::NoStop));
+    assert_eq!(outcome.conclusion.verdict, Err(Refusal::Stops(stops::Refusal::NoStop)));
 }

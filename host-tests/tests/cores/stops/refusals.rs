@@ -4,6 +4,7 @@ use hal_mock::sensor_fault::{SensorFailure, SensorFault};
 use hal_mock::vehicle::{Drive, Leg, VehicleSample};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops;
 use orientation::earth::Latitude;
 
 use super::criteria::{day, drive, stop};
@@ -30,27 +31,32 @@ fn a_latitude_near_a_pole_is_refused_whatever_the_stops_show() {
 
 #[test]
 fn one_stop_is_not_enough() {
-    assert_refused!(verdict(&day(&[stop(60.0), drive(300.0)], 1)), Refusal::OneStop { .. });
+    assert_refused!(
+        verdict(&day(&[stop(60.0), drive(300.0)], 1)),
+        Refusal::Stops(stops::Refusal::OneStop { .. })
+    );
 }
 
 #[test]
 fn stops_that_are_too_short_are_named() {
     let short = day(&[stop(60.0), drive(300.0), stop(14.0), drive(60.0)], 1);
-    assert_refused!(verdict(&short), Refusal::StopTooShort { stop: 2, .. });
+    assert_refused!(verdict(&short), Refusal::Stops(stops::Refusal::StopTooShort { stop: 2, .. }));
     let stated = Day { rests: Kind::At(&[[0.0, 60.0], [362.0, 368.0]]), ..two(1) };
-    assert_refused!(verdict(&stated), Refusal::StopTooShort { stop: 2, .. });
+    assert_refused!(verdict(&stated), Refusal::Stops(stops::Refusal::StopTooShort { stop: 2, .. }));
 }
 
 #[test]
 fn a_drive_of_no_length_is_named() {
     let parked = Day { rests: Kind::At(&[[0.0, 60.0], [60.0, 120.0]]), ..day(&[stop(120.0)], 1) };
-    assert_refused!(verdict(&parked), Refusal::DriveTooShort { .. });
+    assert_refused!(verdict(&parked), Refusal::Stops(stops::Refusal::DriveTooShort { .. }));
 }
 
 #[test]
 fn a_lost_sample_is_named_with_its_time() {
     let faults = vec![SensorFault { failure: SensorFailure::Gap, from_s: 200.0, until_s: 200.03 }];
-    let Err(Refusal::RotationMissing { at, .. }) = verdict(&Day { faults, ..two(1) }) else {
+    let Err(Refusal::Stops(stops::Refusal::RotationMissing { at, .. })) =
+        verdict(&Day { faults, ..two(1) })
+    else {
         panic!("a gap")
     };
     assert!((at - 200.0).abs() < 0.1, "{at}");
@@ -62,23 +68,25 @@ fn a_gyro_at_its_limit_is_named_with_its_time() {
     day.scenario.vehicle.gyro_full_scale_rad_s = 10.0;
     day.faults =
         vec![SensorFault { failure: SensorFailure::Saturated(1), from_s: 150.0, until_s: 150.1 }];
-    let Err(Refusal::RotationClipped { at }) = verdict(&day) else { panic!("it saturates") };
+    let Err(Refusal::Stops(stops::Refusal::RotationClipped { at })) = verdict(&day) else {
+        panic!("it saturates")
+    };
     assert!((at - 150.0).abs() < 0.1, "{at}");
 }
 
 #[test]
 fn a_stated_stop_where_the_vehicle_drives_is_none() {
     let day = Day { rests: Kind::At(&[[0.0, 60.0], [200.0, 260.0]]), ..two(1) };
-    assert_refused!(verdict(&day), Refusal::VehicleMoves { stop: 2, .. });
+    assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::VehicleMoves { stop: 2, .. }));
 }
 
 #[test]
 fn accelerometers_at_their_limit_leave_no_stop() {
     let mut day = two(1);
     day.scenario.vehicle.accelerometer_full_scale_m_s2 = 9.5;
-    assert_refused!(verdict(&day), Refusal::NoStop);
+    assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::NoStop));
     day.rests = Kind::Stated;
-    assert_refused!(verdict(&day), Refusal::StopTooShort { stop: 1, .. });
+    assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::StopTooShort { stop: 1, .. }));
 }
 
 #[test]
@@ -87,14 +95,14 @@ fn gyros_that_show_nothing_leave_no_stop() {
         sample.turned_rad = [0.0; 3];
         true
     });
-    assert_refused!(outcome.conclusion.verdict, Refusal::NoStop);
+    assert_refused!(outcome.conclusion.verdict, Refusal::Stops(stops::Refusal::NoStop));
 }
 
 #[test]
 fn ten_degrees_of_latitude_show_in_gravity() {
     let mut day = two(1);
     day.setting = known(62.0, 0.05, Some(1.0));
-    assert_refused!(verdict(&day), Refusal::VehicleMoves { .. });
+    assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::VehicleMoves { .. }));
 }
 
 #[test]
@@ -102,7 +110,10 @@ fn the_other_hemisphere_shows_in_the_rest_rates() {
     for seed in 0..4 {
         let mut day = quiet(two(seed));
         day.setting.site.latitude = known(-52.0, 0.0, None).site.latitude;
-        assert_refused!(verdict(&day), Refusal::EarthNotFelt { stops: 2, of: 2 });
+        assert_refused!(
+            verdict(&day),
+            Refusal::Stops(stops::Refusal::EarthNotFelt { stops: 2, of: 2 })
+        );
     }
 }
 
@@ -198,7 +209,7 @@ fn a_vehicle_on_a_turntable_does_not_stand_but_may_be_turned_between() {
         })
     };
     let turning = day(&[stop(60.0), drive(300.0), turn(60.0, 6.0)], 1);
-    assert_refused!(verdict(&turning), Refusal::OneStop { .. });
+    assert_refused!(verdict(&turning), Refusal::Stops(stops::Refusal::OneStop { .. }));
     // Turned by a quarter at the second stop: two stops at one place.
     let outcome =
         day(&[stop(60.0), drive(300.0), stop(60.0), turn(20.0, 90.0), stop(60.0)], 1).run();

@@ -5,6 +5,7 @@ use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, VehicleSample};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stops;
 use orientation::math::rotation::{Vector, cross, dot, unit};
 use rayon::prelude::*;
 
@@ -197,7 +198,9 @@ fn hidden_by_seconds(seed: u64) -> Day {
 #[test]
 fn a_sway_that_seconds_hide_is_in_sigma_and_no_turn_of_the_vehicle() {
     let verdict = |seed| hidden_by_seconds(seed).run().conclusion.verdict;
-    let is_turning = |seed: &u64| matches!(verdict(*seed), Err(Refusal::EarthNotFelt { .. }));
+    let is_turning = |seed: &u64| {
+        matches!(verdict(*seed), Err(Refusal::Stops(stops::Refusal::EarthNotFelt { .. })))
+    };
     assert_eq!((0..60).into_par_iter().filter(is_turning).count(), 0);
     // The forces of some go round so slowly that they look like a vehicle that moves.
     let ratios = answered(0..60, hidden_by_seconds);

@@ -10,6 +10,7 @@ use host::instrument::kept::KeptPlan;
 use host::instrument::{FramesRun, Trial};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
 use orientation::units::DEGREE;
@@ -313,7 +314,10 @@ fn a_swaying_base_is_taken_off_the_gyro_in_its_frames_too() {
     };
     let alone = swaying(1, false);
     let verdict = found(&alone, &run(&alone, &Injection::NONE));
-    assert!(matches!(verdict, Err(Refusal::Disturbed { .. })), "{verdict:?}");
+    assert!(
+        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::Disturbed { .. }))),
+        "{verdict:?}"
+    );
     let ratios: Vec<f64> = (1..=16_u64)
         .into_par_iter()
         .filter_map(|seed| {

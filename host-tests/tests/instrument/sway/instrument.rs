@@ -8,6 +8,7 @@ use firmware::sway::SwayCompensation;
 use host::instrument::{Around, Run, RunError, Trial, align_on};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::device::Device;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, SpecificForce};
@@ -111,7 +112,10 @@ fn without_the_base_imu_the_same_sways_are_refused() {
         })
         .collect();
     for reason in reasons {
-        assert!(matches!(reason, Refusal::Disturbed { disturbed: 25, .. }), "{reason}");
+        assert!(
+            matches!(reason, Refusal::Stepwise(stepwise::Refusal::Disturbed { disturbed: 25, .. })),
+            "{reason}"
+        );
     }
 }
 
@@ -255,7 +259,7 @@ fn a_sway_that_a_missing_imu_would_have_measured_is_refused_for_the_missing_imu(
         let early = on_base(&mut base, &scenario).expect("possible");
         for run in [&never, &in_frames, &early] {
             let reason = found(&scenario, run).expect_err("nothing takes the sway off");
-            assert_eq!(reason, Refusal::SwayUnmeasured, "seed {seed}");
+            assert_eq!(reason, Refusal::Stepwise(stepwise::Refusal::SwayUnmeasured), "seed {seed}");
             assert!(reason.to_string().contains("the coarse IMU is missing"), "{reason}");
         }
     });

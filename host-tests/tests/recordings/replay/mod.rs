@@ -15,6 +15,7 @@ use host::output::{azimuth_error, columns};
 use host::recording::{Body, Header, StageRow, Truth};
 use orientation::alignment::budget::Source;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::quality::Disturbance;
@@ -173,7 +174,10 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
 fn a_left_out_dwell_makes_the_steps_uneven_for_the_papers_criteria() {
     let options = Asked { criterion: Some(Criterion::LeastSquares), ..Asked::default() };
     let replayed = replayed_with("stepwise-bumped", &options);
-    assert_eq!(replayed.conclusion().verdict, Err(Refusal::StepsUneven));
+    assert_eq!(
+        replayed.conclusion().verdict,
+        Err(Refusal::Stepwise(stepwise::Refusal::StepsUneven))
+    );
 }
 
 #[test]

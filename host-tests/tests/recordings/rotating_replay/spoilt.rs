@@ -1,5 +1,6 @@
 //! Recordings spoilt in one place are refused with the reason, whatever the sensor.
 
+use orientation::alignment::rotating;
 use orientation::device::{Device, Trouble};
 
 use super::{BACK_S, GYRO, MET, MODULATED_S, Recorded, Refusal, conclusion, recorded};
@@ -21,7 +22,11 @@ fn from(rows: &mut [RotatingRow], seconds: f64, change: impl Fn(&mut RotatingRow
 #[test]
 fn half_a_turn_back_is_refused() {
     let half = gyro(|rows| rows.retain(|row| row.time_s < BACK_S + 0.5 / 0.137));
-    assert!(matches!(half.refusal(), Refusal::TurnsTooFew { .. }), "{}", half.refusal());
+    assert!(
+        matches!(half.refusal(), Refusal::Rotating(rotating::Refusal::TurnsTooFew { .. })),
+        "{}",
+        half.refusal()
+    );
 }
 
 #[test]
@@ -44,7 +49,7 @@ fn speeds_that_differ_are_refused() {
             });
         });
         assert!(
-            matches!(unequal.refusal(), Refusal::SpeedsUnequal { .. }),
+            matches!(unequal.refusal(), Refusal::Rotating(rotating::Refusal::SpeedsUnequal { .. })),
             "{}",
             unequal.refusal()
         );
@@ -61,14 +66,19 @@ fn a_platform_that_stops_is_refused() {
             row.stage_rate_rad_s = 0.0;
         });
     });
-    assert!(matches!(stopped.refusal(), Refusal::TurnsTooFew { .. }), "{}", stopped.refusal());
+    assert!(
+        matches!(stopped.refusal(), Refusal::Rotating(rotating::Refusal::TurnsTooFew { .. })),
+        "{}",
+        stopped.refusal()
+    );
 }
 
 #[test]
 fn an_encoder_that_slips_is_refused() {
     for slip_deg in [1.0_f64, -2.0, 10.0] {
         let slipped = gyro(|rows| from(rows, 130.0, |row| row.stage_rad += slip_deg.to_radians()));
-        let Refusal::EncoderSlipped { angle } = slipped.refusal() else {
+        let Refusal::Rotating(rotating::Refusal::EncoderSlipped { angle }) = slipped.refusal()
+        else {
             panic!("{slip_deg}°: {}", slipped.refusal());
         };
         assert!((angle - slip_deg).abs() < 0.3, "{angle}° of {slip_deg}°");

@@ -3,7 +3,6 @@
 
 use heapless::Vec;
 
-use super::Setting;
 use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
 use super::change::{MARKS, Mark};
 use super::heading::Directions;
@@ -12,9 +11,8 @@ use super::solution::{Fit, Pair, Problem, force_density, of_one_turn, of_turn};
 use super::tilting::Tilting;
 use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
 use super::turn_accumulator::TurnAccumulator;
-use crate::alignment::Azimuth;
-use crate::alignment::refusal::Refusal;
-use crate::alignment::slow::SlowMotion;
+use super::{Refusal, Setting};
+use crate::alignment::{self, Azimuth, SlowMotion};
 use crate::device::Device;
 use crate::math::{Complex, chi_square_tail};
 use crate::noise::model::GyroNoise;
@@ -62,7 +60,7 @@ const GREATEST_MOLECULAR: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
-    pub verdict: Result<Azimuth, Refusal>,
+    pub verdict: Result<Azimuth, alignment::Refusal>,
     /// The fit, where both senses were measured; its azimuth is valid only together with the
     /// verdict.
     pub fit: Option<Fit>,
@@ -92,7 +90,7 @@ impl Default for Conclusion {
     /// Result without turns: a refusal.
     fn default() -> Self {
         Self {
-            verdict: Err(Refusal::TurnsTooFew { sense: Sense::Clockwise, turns: 0 }),
+            verdict: Err(Refusal::TurnsTooFew { sense: Sense::Clockwise, turns: 0 }.into()),
             fit: None,
             misalignments: Vec::new(),
             pairs: Vec::new(),
@@ -111,7 +109,7 @@ impl Conclusion {
     }
 
     /// Sequence of checks and computations; the first failure is the refusal.
-    fn decide(&mut self, evidence: &Evidence) -> Result<Azimuth, Refusal> {
+    fn decide(&mut self, evidence: &Evidence) -> Result<Azimuth, alignment::Refusal> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
         setting.site.check_latitude()?;
         self.couple(evidence)?;
@@ -120,13 +118,13 @@ impl Conclusion {
         self.pair(evidence, &mut marks)?;
         let drift = self.scatter(setting);
         let moved = |reason| {
-            let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 };
+            let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 }.into();
             tilting.step.map_or(reason, tilted)
         };
         self.judge_left_out(setting).map_err(moved)?;
         self.solve(evidence, marks)?;
         self.judge_turns(setting, drift)?;
-        let fit = self.fit.ok_or(Refusal::MisalignmentUnknown)?;
+        let fit = self.fit.ok_or(alignment::Refusal::MisalignmentUnknown)?;
         self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
         setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
@@ -135,7 +133,7 @@ impl Conclusion {
 
     /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.
     #[inline(never)]
-    fn couple(&mut self, evidence: &Evidence) -> Result<(), Refusal> {
+    fn couple(&mut self, evidence: &Evidence) -> Result<(), alignment::Refusal> {
         let Evidence { setting, turn_accumulator, .. } = evidence;
         let mut noise = *setting.site.noise.model();
         if !setting.site.noise.is_white_known() {
@@ -152,18 +150,18 @@ impl Conclusion {
         }
         self.angle_random_walk = noise.angle_random_walk;
         if self.misalignments.is_empty() && !setting.sensor.is_flat {
-            return Err(Refusal::MisalignmentUnknown);
+            return Err(alignment::Refusal::MisalignmentUnknown);
         }
-        self.misalignments.iter().try_for_each(|misalignment| setting.accept(misalignment))
+        Ok(self.misalignments.iter().try_for_each(|misalignment| setting.accept(misalignment))?)
     }
 
     /// Refuses a failed accelerometer and an encoder that slipped.
-    fn judge_followed(turn_accumulator: &TurnAccumulator) -> Result<(), Refusal> {
+    fn judge_followed(turn_accumulator: &TurnAccumulator) -> Result<(), alignment::Refusal> {
         if let Some(trouble) = turn_accumulator.accelerometer() {
-            return Err(Refusal::Device { device: Device::Accelerometer, trouble });
+            return Err(alignment::Refusal::Device { device: Device::Accelerometer, trouble });
         }
         if turn_accumulator.slip != 0.0 {
-            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip * DEGREES });
+            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip * DEGREES }.into());
         }
         Ok(())
     }
@@ -175,14 +173,20 @@ impl Conclusion {
 
     /// Finds the averages of both senses for every speed.
     #[inline(never)]
-    fn pair(&mut self, evidence: &Evidence, marks: &mut Vec<Mark, MARKS>) -> Result<(), Refusal> {
+    fn pair(
+        &mut self,
+        evidence: &Evidence,
+        marks: &mut Vec<Mark, MARKS>,
+    ) -> Result<(), alignment::Refusal> {
         let averages = self.averages(evidence, marks);
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
             if of(sense).next().is_none() {
                 let stretches = evidence.turn_accumulator.stretches();
                 let count = stretches.iter().filter(|stretch| stretch.sense == sense);
-                return Err(Refusal::TurnsTooFew { sense, turns: count.map(Stretch::count).sum() });
+                return Err(
+                    Refusal::TurnsTooFew { sense, turns: count.map(Stretch::count).sum() }.into()
+                );
             }
         }
         for clockwise in of(Sense::Clockwise) {
@@ -241,34 +245,34 @@ impl Conclusion {
 
     /// Refuses where too many turns were excluded, or those at an end: then they were not
     /// disturbed, but the heading or the encoder changed.
-    fn judge_left_out(&self, setting: &Setting) -> Result<(), Refusal> {
+    fn judge_left_out(&self, setting: &Setting) -> Result<(), alignment::Refusal> {
         let averages = || self.pairs.iter().flat_map(Pair::senses);
         let disturbed: u32 = averages().map(|average| average.left_out).sum();
         let turns: u32 = disturbed + averages().map(|average| average.turns).sum::<u32>();
         if 4 * disturbed > turns {
-            return Err(Refusal::TurnsDisturbed { disturbed, turns });
+            return Err(Refusal::TurnsDisturbed { disturbed, turns }.into());
         }
         // A sensor that is not flat may still settle in the first turns of a stretch.
         let from = usize::from(!setting.sensor.is_flat);
         let disagreeing = averages().flat_map(|average| average.ends.into_iter().skip(from));
         let disagreeing = disagreeing.max().unwrap_or(0);
         if disagreeing > FEW_DISAGREEING {
-            return Err(Refusal::TurnsDisagree { turns: u32::from(disagreeing) });
+            return Err(Refusal::TurnsDisagree { turns: u32::from(disagreeing) }.into());
         }
         Ok(())
     }
 
     /// Tests chi-square of the turns about their means, and their drift in σ.
-    fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), Refusal> {
+    fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), alignment::Refusal> {
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.site.noise.is_white_known();
         let is_no_chance = chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY;
         if is_known && is_no_chance && self.chi_square > GREATEST_SCATTER * degrees {
-            return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
+            return Err(alignment::Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
         }
         let different = if is_known { DIFFERENT } else { different(self.degrees) };
         if drift > different {
-            return Err(Refusal::DirectionDrifts { sigmas: drift });
+            return Err(Refusal::DirectionDrifts { sigmas: drift }.into());
         }
         Ok(())
     }
@@ -322,10 +326,14 @@ impl Conclusion {
 
     /// Solves, and raises σ by the scatter of the turns and by possible changes from turn to turn.
     #[inline(never)]
-    fn solve(&mut self, evidence: &Evidence, marks: Vec<Mark, MARKS>) -> Result<(), Refusal> {
+    fn solve(
+        &mut self,
+        evidence: &Evidence,
+        marks: Vec<Mark, MARKS>,
+    ) -> Result<(), alignment::Refusal> {
         let Evidence { setting, tilting, .. } = evidence;
         let problem = self.problem(evidence);
-        let mut fit = problem.solve().ok_or(Refusal::MisalignmentUnknown)?;
+        let mut fit = problem.solve().ok_or(alignment::Refusal::MisalignmentUnknown)?;
         let inflation = Directions { problem: &problem, fit: &fit }.inflation(marks);
         let excess = self.excess(setting);
         fit.budget.noise *= excess;
@@ -337,7 +345,7 @@ impl Conclusion {
         fit.budget.encoder = libm::hypot(fit.budget.encoder, OF_SLIP * slip);
         self.fit = Some(fit);
         match tilting.step.filter(|_| !is_small) {
-            Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }),
+            Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }.into()),
             None => inflation.map(|_| ()),
         }
     }
@@ -366,7 +374,12 @@ impl Conclusion {
     }
 
     /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
-    fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Result<(), Refusal> {
+    fn judge_force(
+        &self,
+        setting: &Setting,
+        fit: &Fit,
+        tilting: &Tilting,
+    ) -> Result<(), alignment::Refusal> {
         let gravity = setting.site.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.site.accelerometer_bias_sigma;
         let (density, degrees) = force_density(&self.pairs);
@@ -374,7 +387,7 @@ impl Conclusion {
         for average in self.pairs.iter().flat_map(Pair::senses) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
-                return Err(Refusal::AccelerometerImplausible { ratio });
+                return Err(alignment::Refusal::AccelerometerImplausible { ratio });
             }
             let sigma = libm::sqrt(density / average.seconds) / gravity;
             // The other axis measures the same force a quarter of a turn later.
@@ -382,12 +395,14 @@ impl Conclusion {
             let difference = beside.size() / gravity;
             let allowed = different * 2.0 * sigma + AXES_TOLERANCE * average.force.size() / gravity;
             if average.across != Complex::default() && difference > allowed + TILT_TOLERANCE {
-                return Err(Refusal::AccelerometerDisagrees { scatter: difference * 1e3 });
+                return Err(alignment::Refusal::AccelerometerDisagrees {
+                    scatter: difference * 1e3,
+                });
             }
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
             if apart.size() > different * sigma + TILT_TOLERANCE {
-                return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
+                return Err(Refusal::TiltChanged { change: apart.size() * 1e3 }.into());
             }
         }
         Ok(())
@@ -419,13 +434,13 @@ fn different(degrees: u32) -> f64 {
 }
 
 /// Refusal of unequal speeds, °/s.
-fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
+fn unequal(clockwise: &Average, counter: &Average) -> alignment::Refusal {
     let [clockwise, counter] = [clockwise, counter].map(|average| average.speed * DEGREES);
-    Refusal::SpeedsUnequal { clockwise, counter }
+    Refusal::SpeedsUnequal { clockwise, counter }.into()
 }
 
 /// Applies every test that a fit must pass by itself.
-fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
+fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), alignment::Refusal> {
     setting.site.check_tilt(fit.tilt.size())?;
     if setting.sensor.is_flat {
         judge_flat(setting, fit, degrees)
@@ -435,13 +450,13 @@ fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
 }
 
 /// Tests of a flat sensor: the senses agree, and the Earth rate has the expected magnitude.
-fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
+fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), alignment::Refusal> {
     let sigmas = libm::sqrt(fit.difference);
     let is_molecular = setting.sensor.molecular_sigma > 0.0;
     let different = different(degrees);
     let tolerance = SENSES_TOLERANCE + different * fit.senses_sigma;
     if !is_molecular && sigmas > different && fit.molecular.size() > tolerance {
-        return Err(Refusal::SensesDisagree { sigmas });
+        return Err(Refusal::SensesDisagree { sigmas }.into());
     }
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
     let sigma_and_scale = libm::hypot(sigma, setting.site.amplitude_sigma());
@@ -449,28 +464,28 @@ fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal>
     let tolerance = DIFFERENT * sigma_and_scale + tolerance;
     // A gyro that lags shows a smaller rate; one that is late does not.
     if ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance) {
-        return Err(Refusal::EarthRateMismatch { ratio, sigma });
+        return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
     }
     Ok(())
 }
 
 /// Tests of a sensor with unknown response: its phase, and the agreement of the speeds.
-fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), alignment::Refusal> {
     let phase =
         fit.phases.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
     if phase.abs() > GREATEST_PHASE {
-        return Err(Refusal::PhaseAmbiguous { phase: phase * DEGREES });
+        return Err(Refusal::PhaseAmbiguous { phase: phase * DEGREES }.into());
     }
     if setting.sensor.molecular_sigma == 0.0 {
         return Ok(());
     }
     let sigmas = fit.disagreement.max(fit.lag_disagreement);
     if sigmas > DIFFERENT {
-        return Err(Refusal::SpeedsDisagree { sigmas });
+        return Err(Refusal::SpeedsDisagree { sigmas }.into());
     }
     let ratio = fit.molecular.im.abs();
     if ratio > GREATEST_MOLECULAR {
-        return Err(Refusal::MolecularTooGreat { ratio });
+        return Err(Refusal::MolecularTooGreat { ratio }.into());
     }
     Ok(())
 }

@@ -10,9 +10,8 @@ use heapless::Vec;
 use super::change::{Found, MARKS, Mark, Record, Shape};
 use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
-use super::{misalignment, solution};
-use crate::alignment::refusal::Refusal;
-use crate::alignment::slow::SlowMotion;
+use super::{Refusal, misalignment, solution};
+use crate::alignment::{self, SlowMotion};
 use crate::math::Complex;
 use crate::math::regression::Column;
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
@@ -47,10 +46,11 @@ impl Directions<'_> {
     /// from the turns' phasors, rad/s, each marked with the sign of its sense.
     ///
     /// # Errors
-    /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
-    /// [`Refusal::TiltChanged`] where the tilt's direction drifts as an encoder that creeps lets it.
+    /// [`Refusal::DirectionDrifts`], [`alignment::Refusal::HeadingStepped`],
+    /// [`Refusal::SensesDisagree`], and [`Refusal::TiltChanged`] where the tilt's direction drifts as
+    /// an encoder that creeps lets it.
     #[inline(never)]
-    pub fn inflation(&self, marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
+    pub fn inflation(&self, marks: Vec<Mark, MARKS>) -> Result<f64, alignment::Refusal> {
         let Some(record) = self.record(marks) else { return Ok(0.0) };
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
@@ -103,22 +103,22 @@ impl Directions<'_> {
         &self,
         record: &Record,
         [drift, turn, step]: [Option<Found>; 3],
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), alignment::Refusal> {
         let gain = |found: &Option<Found>| found.map_or(0.0, |found| found.gain);
         let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - record.places()];
         if believed[1] > 0.0 && believed[1] >= believed[0] {
             return Err(stepped(record, step));
         }
         if gain(&turn) > BELIEVED {
-            return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) });
+            return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) }.into());
         }
         if believed[0] > 0.0 {
-            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(gain(&drift)) });
+            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(gain(&drift)) }.into());
         }
         if let (Some(drift), Some(creep)) = (drift, self.problem.tilting.creep(self.fit.tilt))
             && (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
         {
-            return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 });
+            return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 }.into());
         }
         Ok(())
     }
@@ -178,14 +178,14 @@ impl Directions<'_> {
 }
 
 /// Refusal of a step.
-fn stepped(record: &Record, step: Option<Found>) -> Refusal {
+fn stepped(record: &Record, step: Option<Found>) -> alignment::Refusal {
     let Some((Shape::Step(after), step)) = step.map(|step| (step.shape, step)) else {
-        return Refusal::DirectionDrifts { sigmas: 0.0 };
+        return Refusal::DirectionDrifts { sigmas: 0.0 }.into();
     };
     if record.is_between_senses(after) {
-        return Refusal::SensesDisagree { sigmas: libm::sqrt(step.gain) };
+        return Refusal::SensesDisagree { sigmas: libm::sqrt(step.gain) }.into();
     }
-    Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
+    alignment::Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
 }
 
 /// Variance that the azimuth lacks where a possible change is neglected, rad²: at the end, or of a

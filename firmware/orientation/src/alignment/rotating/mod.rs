@@ -20,6 +20,7 @@ pub mod misalignment;
 pub mod molecular;
 pub mod part;
 pub mod progress;
+pub mod refusal;
 pub mod session;
 pub mod solution;
 pub mod tilting;
@@ -27,11 +28,11 @@ pub mod turn;
 pub mod turn_accumulator;
 
 pub use progress::Progress;
+pub use refusal::Refusal;
 pub use session::Session;
 
 use self::misalignment::AxisMisalignment;
 use self::turn::SPEEDS;
-use super::refusal::Refusal;
 use super::site::Site;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 

@@ -6,9 +6,10 @@
 //! its dwells scatter far less than that. A gyro that is stuck is diagnosed as such, and so is a
 //! base whose sensors failed before they could observe its sway.
 
+use super::Refusal;
 use super::quality::median_of;
 use super::setting::Setting;
-use crate::alignment::refusal::Refusal;
+use crate::alignment;
 use crate::device::{Device, Trouble};
 use crate::math::regression::{Column, Regression};
 use crate::signal::blocks::BlockStatistics;
@@ -31,17 +32,19 @@ const LEAST_MEANS: f64 = 0.2;
 /// Replaces a refusal for too many disturbed dwells by its common cause, where there is one;
 /// returns any other refusal unchanged.
 #[must_use]
-pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> Refusal {
-    match refusal {
-        Refusal::Disturbed { .. } if is_stuck(dwells) => {
-            Refusal::Device { device: Device::Gyro, trouble: Trouble::Stuck }
+pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> alignment::Refusal {
+    use Refusal::{Disturbed, NoiseNotAsStated, SwayUnmeasured};
+    let cause = match refusal {
+        Disturbed { .. } if is_stuck(dwells) => {
+            return alignment::Refusal::Device { device: Device::Gyro, trouble: Trouble::Stuck };
         }
-        Refusal::Disturbed { .. } if setting.sway.is_unmeasured() => Refusal::SwayUnmeasured,
-        Refusal::Disturbed { .. } => {
-            noise(setting, dwells).map_or(refusal, |ratio| Refusal::NoiseNotAsStated { ratio })
+        Disturbed { .. } if setting.sway.is_unmeasured() => SwayUnmeasured,
+        Disturbed { .. } => {
+            noise(setting, dwells).map_or(refusal, |ratio| NoiseNotAsStated { ratio })
         }
         other => other,
-    }
+    };
+    cause.into()
 }
 
 /// Whether most dwells showed one constant value.

@@ -7,17 +7,13 @@
 
 use heapless::Vec;
 
-use super::cause;
 use super::criterion::{self, Criterion};
 use super::fit::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
-use super::level;
 use super::quality::{self, Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::tilt::Tilt;
-use super::{CAPACITY, different_positions};
-use crate::alignment::Azimuth;
-use crate::alignment::refusal::Refusal;
-use crate::alignment::slow::SlowMotion;
+use super::{CAPACITY, Refusal, cause, different_positions, level};
+use crate::alignment::{self, Azimuth, SlowMotion};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, TURN, wrapped};
@@ -63,7 +59,7 @@ const GRAVITY_TOLERANCE: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
-    pub verdict: Result<Azimuth, Refusal>,
+    pub verdict: Result<Azimuth, alignment::Refusal>,
     /// Tilt of the platform.
     pub tilt: Tilt,
     /// Fit of the dwells, where the positions determine one; its azimuth is valid only together
@@ -82,7 +78,7 @@ impl Default for Conclusion {
     /// Result without dwells: a refusal.
     fn default() -> Self {
         Self {
-            verdict: Err(Refusal::TooFewPositions { positions: 0 }),
+            verdict: Err(Refusal::TooFewPositions { positions: 0 }.into()),
             tilt: Tilt::default(),
             fit: None,
             angle_random_walk: 0.0,
@@ -105,7 +101,7 @@ impl Conclusion {
     pub fn draw(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) {
         let lag = self.begin(setting, dwells);
         self.verdict = match lag {
-            Some(seconds) => Err(Refusal::GyroLags { seconds }),
+            Some(seconds) => Err(Refusal::GyroLags { seconds }.into()),
             None => self.decide(setting, dwells, criterion),
         };
         if let Err(reason) = setting.site.check_latitude() {
@@ -119,9 +115,11 @@ impl Conclusion {
         setting: &Setting,
         dwells: &[Dwell],
         criterion: Criterion,
-    ) -> Result<Azimuth, Refusal> {
+    ) -> Result<Azimuth, alignment::Refusal> {
         self.fit_undisturbed(setting, dwells)?;
-        let Some(fit) = &self.fit else { return Err(Refusal::AzimuthUnobservable) };
+        let Some(fit) = &self.fit else {
+            return Err(Refusal::AzimuthUnobservable.into());
+        };
         self.judge(setting, dwells, fit)?;
         self.azimuth(setting, dwells, fit, criterion)
     }
@@ -155,7 +153,11 @@ impl Conclusion {
     ///
     /// This step and the other steps are not inlined, so that their stack frames do not add up.
     #[inline(never)]
-    fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
+    fn fit_undisturbed(
+        &mut self,
+        setting: &Setting,
+        dwells: &[Dwell],
+    ) -> Result<(), alignment::Refusal> {
         let mut scatter: f64 = 1.0;
         loop {
             let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
@@ -191,12 +193,12 @@ impl Conclusion {
             };
             if let Some(step) = step.filter(is_stepped) {
                 let angle = step.angle / TURN * 360.0;
-                return Err(Refusal::HeadingStepped { angle, after: step.after });
+                return Err(alignment::Refusal::HeadingStepped { angle, after: step.after });
             }
             let (worst, residual) = match worst {
                 Some(worst) if removable => worst,
-                _ if hidden => return Err(Refusal::TrendNotSeparable),
-                Some(_) => return Err(Refusal::ResidualsNotWhite { ratio }),
+                _ if hidden => return Err(Refusal::TrendNotSeparable.into()),
+                Some(_) => return Err(alignment::Refusal::ResidualsNotWhite { ratio }),
                 None => {
                     if let Some(fit) = &mut self.fit {
                         problem.protect(fit, outliers > 0);
@@ -211,7 +213,7 @@ impl Conclusion {
 
     /// Refuses where the inconsistent dwells begin or end the session: then they were not
     /// disturbed, but the heading or the encoder changed.
-    fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), Refusal> {
+    fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), alignment::Refusal> {
         let first = inconsistent(self.disturbances.iter());
         let last = inconsistent(self.disturbances.iter().rev());
         let at = match (first, last) {
@@ -220,7 +222,7 @@ impl Conclusion {
             (_, last) => dwells.len() - last,
         };
         let after = dwells.get(at.max(1) - 1).map_or(0.0, Dwell::end);
-        Err(Refusal::EndDisagrees { dwells: first.max(last), after })
+        Err(Refusal::EndDisagrees { dwells: first.max(last), after }.into())
     }
 
     /// The dwells that take part, with their indices.
@@ -270,11 +272,16 @@ impl Conclusion {
 
     /// Applies every test that an azimuth must pass.
     #[inline(never)]
-    fn judge(&self, setting: &Setting, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
+    fn judge(
+        &self,
+        setting: &Setting,
+        dwells: &[Dwell],
+        fit: &Fit,
+    ) -> Result<(), alignment::Refusal> {
         self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
         if fit.direction.margin < SECOND_MINIMUM {
-            return Err(Refusal::AzimuthUnobservable);
+            return Err(Refusal::AzimuthUnobservable.into());
         }
         setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
         self.judge_single_axis(dwells, fit)?;
@@ -284,49 +291,53 @@ impl Conclusion {
         let is_seen = !fit.model.is_single_axis;
         let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
         if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + tolerance {
-            return Err(Refusal::EarthRateMismatch { ratio, sigma });
+            return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
         }
         Ok(())
     }
 
     /// Refuses an accelerometer that does not measure gravity: one that is dead, inverted or in
     /// other units shows a false tilt.
-    fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
+    fn judge_accelerometer(
+        &self,
+        setting: &Setting,
+        dwells: &[Dwell],
+    ) -> Result<(), alignment::Refusal> {
         let gravity = setting.site.latitude.gravity();
         let kept = self.kept(dwells).map(|(_, dwell)| dwell);
         let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
         let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.site.accelerometer_bias_sigma / gravity;
         if (ratio - 1.0).abs() > tolerance {
-            return Err(Refusal::AccelerometerImplausible { ratio });
+            return Err(alignment::Refusal::AccelerometerImplausible { ratio });
         }
         Ok(())
     }
 
     /// Refuses a tilt that is too large, too uncertain, stepped, or inconsistent with the encoder.
-    fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), alignment::Refusal> {
         setting.site.check_tilt(self.tilt.magnitude())?;
         let (sigma, required) =
             (degrees(fit.budget.accelerometer), degrees(setting.site.required_sigma));
         if sigma > required {
-            return Err(Refusal::TiltTooUncertain { sigma, required });
+            return Err(Refusal::TiltTooUncertain { sigma, required }.into());
         }
         // An encoder slip changes F by the same angle times its magnitude, and the azimuth by at
         // most the slip.
         let matters = |change: &(f64, f64)| change.1 > fit.sigma() * self.tilt.magnitude();
         if let Some((after, change)) = self.tilt.step.filter(matters) {
-            return Err(Refusal::TiltStepped { change: change * 1e3, after });
+            return Err(Refusal::TiltStepped { change: change * 1e3, after }.into());
         }
         let Tilt { counter, scatter, .. } = self.tilt;
         if counter > 0.0 || scatter > FORCE_TOLERANCE {
             let scatter = if counter > 0.0 { counter } else { scatter };
-            return Err(Refusal::AccelerometerDisagrees { scatter: scatter * 1e3 });
+            return Err(alignment::Refusal::AccelerometerDisagrees { scatter: scatter * 1e3 });
         }
         Ok(())
     }
 
     /// Refuses two positions near their own axis, where the error of the azimuth is not normal: the
     /// cosine that they measure is flat there.
-    fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
+    fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Result<(), alignment::Refusal> {
         let mut angles = self.kept(dwells).map(|(_, dwell)| dwell.stage);
         let Some(first) = angles.next().filter(|_| fit.model.is_single_axis) else { return Ok(()) };
         let apart = |angle: Angle| (angle - first).signed_rad();
@@ -335,15 +346,19 @@ impl Conclusion {
         // The difference of two unit vectors is perpendicular to their mean.
         let axis = first.rad() + 0.5 * other + 0.25 * TURN;
         let slope = libm::tan(fit.direction.azimuth + axis).abs();
-        if fit.sigma() > STEEPNESS * slope { Err(Refusal::AzimuthUnobservable) } else { Ok(()) }
+        if fit.sigma() > STEEPNESS * slope {
+            Err(Refusal::AzimuthUnobservable.into())
+        } else {
+            Ok(())
+        }
     }
 
     /// Tests chi-square of the residuals, and the correlation of neighbours.
-    fn judge_residuals(&self, fit: &Fit) -> Result<(), Refusal> {
+    fn judge_residuals(&self, fit: &Fit) -> Result<(), alignment::Refusal> {
         let degrees = fit.degrees as f64;
         let least = WHITENESS_PROBABILITY[usize::from(fit.degrees > FEW_DEGREES)];
         if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < least {
-            return Err(Refusal::ResidualsNotWhite { ratio: excess(fit) });
+            return Err(alignment::Refusal::ResidualsNotWhite { ratio: excess(fit) });
         }
         let kept: Vec<f64, CAPACITY> = (self.residuals.iter().zip(&self.disturbances))
             .filter(|(_, why)| why.is_none())
@@ -353,7 +368,7 @@ impl Conclusion {
         let shared: f64 = kept.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let correlation = shared / power.max(1e-300);
         if correlation * libm::sqrt(kept.len() as f64) > CORRELATION_BOUND {
-            return Err(Refusal::ResidualsCorrelated { correlation });
+            return Err(alignment::Refusal::ResidualsCorrelated { correlation });
         }
         Ok(())
     }
@@ -382,7 +397,7 @@ impl Conclusion {
         dwells: &[Dwell],
         fit: &Fit,
         criterion: Criterion,
-    ) -> Result<Azimuth, Refusal> {
+    ) -> Result<Azimuth, alignment::Refusal> {
         let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
         let problem = self.problem(setting, &kept);
         let azimuth = match criterion {

@@ -7,12 +7,10 @@
 
 use heapless::Vec;
 
-use super::CAPACITY;
-use super::etalon;
 use super::etalon::{Accepted, Limit, Series};
 use super::fit::{Fit, Problem};
+use super::{CAPACITY, Refusal, etalon};
 use crate::alignment::Azimuth;
-use crate::alignment::refusal::Refusal;
 use crate::math::reference_table::Table;
 use crate::math::reference_table::{ONE, STEP};
 use crate::math::sort;

@@ -16,11 +16,13 @@ pub mod level;
 pub mod mount;
 pub mod progress;
 pub mod quality;
+pub mod refusal;
 pub mod session;
 pub mod setting;
 pub mod tilt;
 
 pub use progress::Progress;
+pub use refusal::Refusal;
 pub use session::Session;
 
 use crate::planner::POSITIONS;

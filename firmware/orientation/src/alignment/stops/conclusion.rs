@@ -5,7 +5,6 @@
 //! to solve, run the filter until the start frame is consistent, then test outliers, residuals, the
 //! Earth-rate ratio and the budget.
 
-use super::Setting;
 use super::filter::{BIAS, FORCE, LATITUDE, NOW, PLACE, Row, SCALE, START, placed};
 use super::path::Path;
 use super::place::Place;
@@ -14,10 +13,9 @@ use super::residual::Residual;
 use super::solution::{Belief, Solution, Tally};
 use super::stop::Stop;
 use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
-use crate::alignment::Azimuth;
-use crate::alignment::budget::Budget;
-use crate::alignment::budget::Source;
-use crate::alignment::refusal::Refusal;
+use super::{Refusal, Setting};
+use crate::alignment::budget::{Budget, Source};
+use crate::alignment::{self, Azimuth};
 use crate::earth::EARTH_RATE;
 use crate::math::chi_square_tail;
 use crate::math::rotation::{
@@ -70,7 +68,7 @@ const OBSERVED: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// Azimuth of body x at the end, or the reason for refusing it.
-    pub verdict: Result<Azimuth, Refusal>,
+    pub verdict: Result<Azimuth, alignment::Refusal>,
     /// Details, where there was something to solve; they are valid only together with the verdict.
     pub found: Option<Found>,
 }
@@ -146,7 +144,7 @@ impl Conclusion {
     }
 
     /// Refusal without any details.
-    pub const fn refused(reason: Refusal) -> Self {
+    pub const fn refused(reason: alignment::Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
     }
 }
@@ -169,35 +167,39 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
 
 /// Refuses a latitude without north, lost rotation, missing or short stops, and drives that are too
 /// short.
-fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
+fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), alignment::Refusal> {
     setting.site.check_latitude()?;
     match stop_detector.loss {
-        Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
-        Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
+        Some(Loss::Gap(at, seconds)) => {
+            return Err(Refusal::RotationMissing { at, seconds }.into());
+        }
+        Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }.into()),
         None => {}
     }
     let stops = stop_detector.stops();
     let is_whole = stop_detector.rests == Rests::Whole;
     let seconds = stop_detector.fleeting;
     if seconds > 0.0 && stops.len() < 2 {
-        return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
+        return Err(
+            Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST }.into()
+        );
     }
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
-        return Err(Refusal::NoStop);
+        return Err(Refusal::NoStop.into());
     };
     if !is_whole && stops.len() == 1 {
-        return Err(Refusal::OneStop { from: first.from, to: first.to });
+        return Err(Refusal::OneStop { from: first.from, to: first.to }.into());
     }
     for (index, stop) in stops.iter().enumerate() {
         inspect_stop(setting, stop_detector, index, stop)?;
     }
     let driven = stops.windows(2).map(|pair| pair[1].from - pair[0].to);
     if let Some(seconds) = driven.into_iter().find(|seconds| *seconds < LEAST_DRIVE) {
-        return Err(Refusal::DriveTooShort { seconds, least: LEAST_DRIVE });
+        return Err(Refusal::DriveTooShort { seconds, least: LEAST_DRIVE }.into());
     }
     let seconds = if is_whole { last.seconds() } else { last.middle() - first.middle() };
     if seconds < LEAST_SECONDS {
-        return Err(Refusal::DriveTooShort { seconds, least: LEAST_SECONDS });
+        return Err(Refusal::DriveTooShort { seconds, least: LEAST_SECONDS }.into());
     }
     Ok(())
 }
@@ -208,15 +210,17 @@ fn inspect_stop(
     stop_detector: &StopDetector,
     index: usize,
     stop: &Stop,
-) -> Result<(), Refusal> {
+) -> Result<(), alignment::Refusal> {
     let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
     if rest < LEAST_REST {
-        return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
+        return Err(
+            Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST }.into()
+        );
     }
     let gravity = setting.site.latitude.gravity();
     let ratio = -stop.force.mean()[2] / gravity;
     if ratio < UPRIGHT {
-        return Err(Refusal::AccelerometerImplausible { ratio });
+        return Err(alignment::Refusal::AccelerometerImplausible { ratio });
     }
     let mut limits = setting.sensors().limits(stop.seconds());
     limits.rate += SWAY / stop.seconds();
@@ -224,44 +228,48 @@ fn inspect_stop(
     let criteria = Criteria::of(rate, force, gravity);
     let ratio = stop.disagreement();
     if criteria.is_rest(&limits) {
-        return if ratio <= DISAGREEMENT { Ok(()) } else { Err(Refusal::AxesDisagree { ratio }) };
+        return if ratio <= DISAGREEMENT {
+            Ok(())
+        } else {
+            Err(Refusal::AxesDisagree { ratio }.into())
+        };
     }
     let rate = criteria.rate.abs() / DEGREE_PER_HOUR;
-    Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
+    Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() }.into())
 }
 
 /// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
 /// drive may end rolling; but where most of them deviate, the model is wrong.
-fn agree(found: &Tally, stops: u32) -> Result<(), Refusal> {
+fn agree(found: &Tally, stops: u32) -> Result<(), alignment::Refusal> {
     let drives = stops.saturating_sub(1);
     // A single rest has no other data: the vehicle may be rocked, but not carried round.
     let is_carried = drives == 0 && found.turning_rate > CARRIED;
     if is_carried || drives > 0 && 2 * found.turning > stops {
-        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
+        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops }.into());
     }
     if drives > 0 && 2 * found.unsteady >= drives {
-        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives });
+        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives }.into());
     }
     Ok(())
 }
 
 /// Tests the plausibility of the result.
-fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
+fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), alignment::Refusal> {
     agree(&found.tally, stops)?;
     let (Tally { left_out, chi_square, degrees, .. }, blocks) = (found.tally, found.blocks);
     if left_out * LEFT_OUT > blocks {
-        return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
+        return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks }.into());
     }
     if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
-        return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
+        return Err(alignment::Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
     let correlation = found.tally.correlation();
     if correlation > CORRELATED {
-        return Err(Refusal::ResidualsCorrelated { correlation });
+        return Err(alignment::Refusal::ResidualsCorrelated { correlation });
     }
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
     if (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE {
-        return Err(Refusal::EarthRateMismatch { ratio, sigma });
+        return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
     }
     let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
     let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };

@@ -22,6 +22,7 @@ pub mod path;
 pub mod place;
 pub mod plain;
 pub mod progress;
+pub mod refusal;
 pub mod residual;
 pub mod session;
 pub mod solution;
@@ -29,6 +30,7 @@ pub mod stop;
 pub mod stop_detector;
 
 pub use progress::Progress;
+pub use refusal::Refusal;
 pub use session::Session;
 
 use super::site::Site;

@@ -9,19 +9,14 @@
 
 use heapless::Vec;
 
-use super::Setting;
 use super::conclusion::Conclusion;
 use super::inclination::pitch_and_roll;
-use super::progress::Progress;
 use super::residual::Residual;
 use super::stop::{STOPS, Stop};
 use super::stop_detector::{Rests, StopDetector};
-use crate::alignment::method::{Input, Method, Request};
+use super::{Progress, Setting};
 use crate::alignment::period::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, contradiction};
-use crate::alignment::progress::Listener;
-use crate::alignment::refusal::Refusal;
-use crate::alignment::setup::SetupError;
-use crate::alignment::verdict::{Solution, Verdict};
+use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, Solution, Verdict};
 use crate::device::TRIAD;
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};

@@ -11,18 +11,13 @@ mod procedure;
 
 pub use procedure::{Procedure, check};
 
-use super::Setting;
 use super::conclusion::Conclusion;
 use super::misalignment::AxisMisalignment;
 use super::turn::{Sense, Stretch};
 use super::turn_accumulator::{Mode, TurnAccumulator};
-use crate::alignment::method::{Input, Method, Request};
+use super::{Progress, Refusal, Setting};
 use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
-use crate::alignment::progress::{self, Listener};
-use crate::alignment::refusal::Refusal;
-use crate::alignment::rotating::progress::Progress;
-use crate::alignment::setup::SetupError;
-use crate::alignment::verdict::{Solution, Verdict};
+use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::signal::Sample;
 use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
 
@@ -220,7 +215,7 @@ impl Session {
 
     /// Refusal of a recording whose time stamps up to its first turn contradict the configured
     /// period.
-    fn contradiction(&mut self) -> Option<Refusal> {
+    fn contradiction(&mut self) -> Option<alignment::Refusal> {
         if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
             return None;
         }
@@ -244,7 +239,7 @@ impl Session {
         }
         let (site, force) = (&self.setting.site, self.force());
         if let Some(force) = force {
-            listener(progress::Progress::levelled(force));
+            listener(alignment::Progress::levelled(force));
         }
         let [x, y, _] = force.unwrap_or_default();
         match site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
@@ -314,13 +309,13 @@ impl Session {
     fn end_modulated(&mut self, index: usize, listener: Listener) -> Request {
         let Some(misalignment) = self.misalignments().nth(index) else {
             let wanted = self.speed(index) * DEGREES;
-            return self.conclude(Some(Refusal::PlatformStopped { wanted }));
+            return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         };
         let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
         listener(Progress::Misalignment(angle, sigma).into());
         match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
-            Err(reason) => self.conclude(Some(reason)),
+            Err(reason) => self.conclude(Some(reason.into())),
         }
     }
 
@@ -359,7 +354,7 @@ impl Session {
         }
         if elapsed >= self.end {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
-            return self.conclude(Some(Refusal::PlatformStopped { wanted }));
+            return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         }
         Request::Continue
     }
@@ -415,7 +410,7 @@ impl Session {
     }
 
     /// Ends the session with the turns so far, or at once with a reason.
-    fn conclude(&mut self, reason: Option<Refusal>) -> Request {
+    fn conclude(&mut self, reason: Option<alignment::Refusal>) -> Request {
         let conclusion = self.conclusion.insert(Conclusion::default());
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
@@ -455,7 +450,7 @@ impl Method<Sample> for Session {
         match self.setting.site.check_latitude() {
             Err(reason) => self.conclude(Some(reason)),
             Ok(()) if self.is_misalignment_settled() => Request::Continue,
-            Ok(()) => self.conclude(Some(Refusal::MisalignmentUnknown)),
+            Ok(()) => self.conclude(Some(alignment::Refusal::MisalignmentUnknown)),
         }
     }
 

@@ -4,10 +4,9 @@
 
 use super::{Session, Task};
 use crate::alignment::budget::Source;
-use crate::alignment::method::{Method, Request};
-use crate::alignment::progress::Listener;
-use crate::alignment::refusal::Refusal;
+use crate::alignment::stepwise::Refusal;
 use crate::alignment::stepwise::quality::ExpectedScatter;
+use crate::alignment::{self, Listener, Method, Request};
 use crate::noise::model::GyroNoise;
 use crate::planner::POSITIONS;
 use crate::planner::prediction::{Visit, rate_sigma};
@@ -58,7 +57,7 @@ impl Session {
         let is_final = match self.judge(left) {
             Some(Reach::Met) => self.try_to_conclude(left),
             Some(Reach::Hopeless { sigma, required }) => {
-                self.draw(Some(Refusal::OutOfReach { sigma, required, seconds }));
+                self.draw(Some(Refusal::OutOfReach { sigma, required, seconds }.into()));
                 true
             }
             _ => false,
@@ -95,7 +94,7 @@ impl Session {
         let verdict = self.conclusion.as_ref().map(|conclusion| conclusion.verdict);
         let noise = [Source::Noise, Source::Drift, Source::Temperature];
         match verdict {
-            Some(Err(Refusal::BudgetNotMet { source, .. }))
+            Some(Err(alignment::Refusal::BudgetNotMet { source, .. }))
                 if noise.contains(&source) && self.procedure.schedule.shortest() <= left =>
             {
                 self.conclusion = None;

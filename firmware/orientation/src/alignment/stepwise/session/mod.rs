@@ -25,15 +25,11 @@ use self::survey::Store;
 use self::timing::{SECTIONS, Target, Timing};
 use super::conclusion::Conclusion;
 use super::criterion::Criterion;
-use super::progress::Progress;
 use super::quality::{Disturbance, ExpectedScatter};
 use super::setting::Setting;
-use crate::alignment::method::{Input, Method, Request};
+use super::{Progress, Refusal};
 use crate::alignment::period::contradiction;
-use crate::alignment::progress::{self, Listener};
-use crate::alignment::refusal::Refusal;
-use crate::alignment::setup::SetupError;
-use crate::alignment::verdict::{Solution, Verdict};
+use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
@@ -72,7 +68,7 @@ enum Task {
     /// latest sample.
     Weigh(f64, Instant),
     /// The conclusion, refused where there is a reason that further dwells cannot remove.
-    Conclude(Option<Refusal>),
+    Conclude(Option<alignment::Refusal>),
 }
 
 /// Record of a dwell that was discarded and measured again.
@@ -195,7 +191,7 @@ impl Session {
     fn sample(&mut self, sample: &Sample, listener: Listener) -> Request {
         let begun = *self.begun.get_or_insert(sample.time);
         if sample.time.0.saturating_sub(begun.0) > self.timing.longest {
-            return self.conclude(Some(Refusal::TimeExhausted));
+            return self.conclude(Some(alignment::Refusal::TimeExhausted));
         }
         if let Some(request) = self.follow(sample, listener) {
             return request;
@@ -233,7 +229,7 @@ impl Session {
         else {
             return Request::Continue;
         };
-        listener(progress::Progress::levelled(force));
+        listener(alignment::Progress::levelled(force));
         let ([x, y, _], site) = (force, &self.setting.site);
         if let Err(reason) = site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
             return self.conclude(Some(reason));
@@ -278,7 +274,7 @@ impl Session {
         } else if sample.time.0.saturating_sub(since.0) > self.timing.longest_rotation {
             let [target, actual] =
                 [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
-            return self.conclude(Some(Refusal::StageNotThere { target, actual }));
+            return self.conclude(Some(Refusal::StageNotThere { target, actual }.into()));
         }
         Request::Continue
     }
@@ -308,7 +304,7 @@ impl Session {
     }
 
     /// Refusal of samples whose time stamps contradict the configured period.
-    fn wrong_period(&self) -> Option<Refusal> {
+    fn wrong_period(&self) -> Option<alignment::Refusal> {
         let Procedure { sample_seconds, period_tolerance, .. } = self.procedure;
         let step = self.average.as_ref().and_then(DwellAverage::step)?;
         contradiction(sample_seconds, step, period_tolerance)
@@ -363,7 +359,7 @@ impl Session {
     }
 
     /// Ends the session with the dwells so far, or with a reason that further dwells cannot remove.
-    fn conclude(&mut self, reason: Option<Refusal>) -> Request {
+    fn conclude(&mut self, reason: Option<alignment::Refusal>) -> Request {
         self.compute_later(Task::Conclude(reason))
     }
 
@@ -375,7 +371,7 @@ impl Session {
 
     /// Draws the conclusion.
     #[inline(never)]
-    fn draw(&mut self, reason: Option<Refusal>) {
+    fn draw(&mut self, reason: Option<alignment::Refusal>) {
         let conclusion = self.conclusion.insert(Conclusion::default());
         conclusion.draw(&self.setting, self.store.dwells(), self.procedure.criterion);
         if let Some(reason) = reason {

@@ -6,12 +6,8 @@ use heapless::Vec;
 use super::schedule::{Schedule, StopRule};
 use super::timing::designed;
 use super::{Phase, Session, Task};
-use crate::alignment::method::Request;
-use crate::alignment::progress::Listener;
-use crate::alignment::refusal::Refusal;
-use crate::alignment::setup::SetupError;
-use crate::alignment::stepwise::CAPACITY;
-use crate::alignment::stepwise::progress::Progress;
+use crate::alignment::stepwise::{CAPACITY, Progress, Refusal};
+use crate::alignment::{self, Listener, Request, SetupError};
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::{GyroNoise, StatedNoise};
@@ -116,7 +112,11 @@ impl Session {
 
     /// Fits the noise and makes the plan; a survey with missing samples begins anew.
     #[inline(never)]
-    fn try_to_learn(&mut self, now: Instant, listener: Listener) -> Result<Request, Refusal> {
+    fn try_to_learn(
+        &mut self,
+        now: Instant,
+        listener: Listener,
+    ) -> Result<Request, alignment::Refusal> {
         self.phase = Phase::Survey;
         if self.has_missed_samples() {
             self.store.begin_survey();
