@@ -88,8 +88,7 @@ impl Budget {
     }
 
     /// Root sum of squares of all contributions except noise, rad.
-    #[must_use]
-    pub fn beside_noise(&self) -> f64 {
+    pub(crate) fn beside_noise(&self) -> f64 {
         Self { noise: 0.0, ..*self }.sigma()
     }
 

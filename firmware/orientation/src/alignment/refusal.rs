@@ -4,6 +4,7 @@
 //! remedy helps: level the platform, turn a longer arc, keep still, or check a sensor.
 
 use super::budget::Source;
+use super::verdict::Passed;
 use super::{rotating, stepwise, stops};
 use crate::device::{Device, Trouble};
 use crate::words::Rounded;
@@ -156,6 +157,14 @@ impl Refusal {
             _ => "",
         }
     }
+}
+
+/// Refuses with this reason where a test fails.
+///
+/// # Errors
+/// The reason.
+pub(crate) fn refuse_if(is_failed: bool, reason: impl Into<Refusal>) -> Passed {
+    if is_failed { Err(reason.into()) } else { Ok(()) }
 }
 
 impl From<stepwise::Refusal> for Refusal {

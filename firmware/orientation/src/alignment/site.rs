@@ -1,7 +1,8 @@
 //! Site of an alignment, gyro and requirements, and the checks that every method makes of them.
 
 use super::budget::Source;
-use super::refusal::Refusal;
+use super::refusal::{Refusal, refuse_if};
+use super::verdict::Passed;
 use crate::earth::Latitude;
 use crate::noise::model::{GyroNoise, StatedNoise};
 use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as DEGREES, TURN};
@@ -51,6 +52,10 @@ const KAPPA_OF_NOISE: f64 =
 /// data sheets of micromachined gyros.
 const GREATEST_KAPPA: f64 = 100.0 * DEGREE_PER_HOUR;
 
+/// Additional tolerance of the Earth-rate ratio where the scale is configured as exact: scale
+/// errors that no data sheet excludes and that do not change the azimuth.
+const RATIO_TOLERANCE: f64 = 0.005;
+
 impl Site {
     /// Ideal instrument at a latitude: nothing is uncertain, N is estimated, an azimuth of 10° (1σ)
     /// and a tilt of 15° are accepted.
@@ -72,8 +77,7 @@ impl Site {
     }
 
     /// Standard deviation of either part of κ, 1σ, rad/s per g, for a gyro with this N, rad/√s.
-    #[must_use]
-    pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
+    pub(crate) fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
         if self.g_sensitivity_known {
             self.g_sensitivity_sigma
         } else {
@@ -82,35 +86,35 @@ impl Site {
     }
 
     /// Relative 1σ of the horizontal Earth rate as the gyro measures it: scale factor and latitude.
-    #[must_use]
-    pub fn amplitude_sigma(&self) -> f64 {
+    pub(crate) fn amplitude_sigma(&self) -> f64 {
         let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma;
         let sigma = libm::hypot(self.scale_sigma, latitude);
         if sigma < EXACT_AMPLITUDE { 0.0 } else { sigma }
+    }
+
+    /// Tolerance of the Earth-rate ratio beyond multiples of its σ.
+    pub(crate) fn ratio_tolerance(&self) -> f64 {
+        if self.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE }
     }
 
     /// Refuses a latitude at which too little of the Earth rate is horizontal.
     ///
     /// # Errors
     /// [`Refusal::LatitudeTooHigh`].
-    pub fn check_latitude(&self) -> Result<(), Refusal> {
-        if self.latitude.has_north() {
-            return Ok(());
-        }
-        Err(Refusal::LatitudeTooHigh { latitude: self.latitude.rad() * DEGREES })
+    pub fn check_latitude(&self) -> Passed {
+        let latitude = self.latitude.rad() * DEGREES;
+        refuse_if(!self.latitude.has_north(), Refusal::LatitudeTooHigh { latitude })
     }
 
     /// Refuses a tilt of the platform, given by its sine: the horizontal force over gravity.
     ///
     /// # Errors
     /// [`Refusal::TiltTooGreat`].
-    pub fn check_tilt(&self, sine: f64) -> Result<(), Refusal> {
+    pub fn check_tilt(&self, sine: f64) -> Passed {
         let (tilt, allowed) = (libm::asin(sine.min(1.0)), self.allowed_tilt);
-        if tilt > allowed {
-            let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
-            return Err(Refusal::TiltTooGreat { tilt, allowed });
-        }
-        Ok(())
+        let is_great = tilt > allowed;
+        let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
+        refuse_if(is_great, Refusal::TiltTooGreat { tilt, allowed })
     }
 
     /// Refuses a standard deviation of the azimuth, rad, that is zero, not a number, or greater
@@ -118,11 +122,9 @@ impl Site {
     ///
     /// # Errors
     /// [`Refusal::BudgetNotMet`].
-    pub fn check_sigma(&self, sigma: f64, source: Source) -> Result<(), Refusal> {
-        if sigma > 0.0 && sigma <= self.required_sigma {
-            return Ok(());
-        }
+    pub fn check_sigma(&self, sigma: f64, source: Source) -> Passed {
+        let is_met = sigma > 0.0 && sigma <= self.required_sigma;
         let [sigma, required] = [sigma, self.required_sigma].map(|angle| angle * DEGREES);
-        Err(Refusal::BudgetNotMet { sigma, required, source })
+        refuse_if(!is_met, Refusal::BudgetNotMet { sigma, required, source })
     }
 }

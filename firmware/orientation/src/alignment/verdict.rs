@@ -22,3 +22,6 @@ pub struct Solution {
 
 /// Outcome of an alignment.
 pub type Verdict = Result<Solution, Refusal>;
+
+/// Outcome of a test that an alignment must pass.
+pub type Passed = Result<(), Refusal>;

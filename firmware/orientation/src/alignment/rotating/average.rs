@@ -308,8 +308,7 @@ impl Average {
     }
 
     /// Number of turns of the platform that were joined to one entry.
-    #[must_use]
-    pub fn joined(&self) -> f64 {
+    pub(super) fn joined(&self) -> f64 {
         f64::from(self.turns) / (0.5 * f64::from(self.degrees) + 1.0)
     }
 }
@@ -317,8 +316,7 @@ impl Average {
 /// Part of the platform's steady rate that the gyro shows: the slope of its mean rates over the
 /// speeds of the stretches. It is zero for a sensor without response at zero frequency, and
 /// undetermined (zero) with one sense alone.
-#[must_use]
-pub fn steady_part(stretches: &[Stretch]) -> f64 {
+pub(super) fn steady_part(stretches: &[Stretch]) -> f64 {
     let mut regression = Regression::<2>::default();
     for stretch in stretches {
         let mut rates: Vec<f64, TURNS> =
@@ -331,8 +329,7 @@ pub fn steady_part(stretches: &[Stretch]) -> f64 {
 }
 
 /// Median magnitude of a turn's phasor, rad/s, which disturbed turns hardly affect.
-#[must_use]
-pub fn typical_size(stretch: &Stretch, misalignments: &[AxisMisalignment]) -> f64 {
+pub(super) fn typical_size(stretch: &Stretch, misalignments: &[AxisMisalignment]) -> f64 {
     let turns = Turns::of(stretch, misalignments, 0.0);
     let mut sizes: Vec<f64, TURNS> = turns.phasors.iter().map(|phasor| phasor.size()).collect();
     median(&mut sizes)
@@ -340,8 +337,10 @@ pub fn typical_size(stretch: &Stretch, misalignments: &[AxisMisalignment]) -> f6
 
 /// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², by a
 /// median, which disturbed turns hardly affect, raised for a small sample; zero without neighbours.
-#[must_use]
-pub fn variance_of_neighbours(stretches: &[Stretch], misalignments: &[AxisMisalignment]) -> f64 {
+pub(super) fn variance_of_neighbours(
+    stretches: &[Stretch],
+    misalignments: &[AxisMisalignment],
+) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
     for stretch in stretches {
         let turns = Turns::of(stretch, misalignments, 0.0);

@@ -18,7 +18,6 @@ use crate::math::{Complex, median, sort};
 pub const MARKS: usize = STRETCHES * TURNS;
 
 /// Value of a quantity in one turn that should stay constant.
-#[must_use]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mark {
     /// Middle of the turn, s.
@@ -121,7 +120,6 @@ const FEWEST: f64 = 2.0;
 impl Record {
     /// Record of values with two parts, whose noise follows from differences of neighbours and is
     /// at least `least`.
-    #[must_use]
     pub fn of_phasors(marks: Vec<Mark, MARKS>, odd: [Column; 2], least: f64) -> Self {
         let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2, end: 0.0 };
         record.in_order();
@@ -131,7 +129,6 @@ impl Record {
 
     /// Record of values with one part and this variance for one turn. The value at the end of a
     /// linear change is extrapolated by `lever` seconds beyond the end.
-    #[must_use]
     pub fn of_angles(
         marks: Vec<Mark, MARKS>,
         odd: Column,
@@ -258,19 +255,16 @@ impl Record {
     }
 
     /// Gain in chi-square that chance achieves by choosing among all places of a step.
-    #[must_use]
     pub fn places(&self) -> f64 {
         2.0 * libm::log(self.marks.len().max(1) as f64)
     }
 
     /// Time from the first mark to the last, s.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
     }
 
     /// Weighted middle of all turns, s.
-    #[must_use]
     pub fn middle(&self) -> f64 {
         let turns = |mark: &Mark| f64::from(mark.turns);
         let moment: f64 = self.marks.iter().map(|mark| turns(mark) * f64::from(mark.time)).sum();
@@ -278,20 +272,17 @@ impl Record {
     }
 
     /// Time from the middle of all turns to the end, s.
-    #[must_use]
     pub fn to_end(&self) -> f64 {
         self.end - self.middle()
     }
 
     /// Fit of a constant value.
-    #[must_use]
     pub fn steady(&self) -> Option<Found> {
         self.found(Shape::Steady)
     }
 
     /// Fit of a change, with its gain against a constant value; `None` where the turns do not
     /// determine it.
-    #[must_use]
     pub fn changing(&self, shape: Shape, steady: &Found) -> Option<Found> {
         let found = self.found(shape).filter(|found| found.degrees > 0.0)?;
         let excess = self.excess(&found);
@@ -306,7 +297,6 @@ impl Record {
 
     /// Most likely step: the greatest sum of residuals after it, less the part that the other
     /// columns explain.
-    #[must_use]
     #[inline(never)]
     pub fn likeliest_step(&self) -> Option<Shape> {
         let first = self.solution(Shape::Steady, 0)?;
@@ -341,7 +331,6 @@ impl Record {
     }
 
     /// Step at the reversal of the platform, if it reversed exactly once.
-    #[must_use]
     pub fn change_of_sense(&self) -> Option<Shape> {
         let is_turned = |pair: &&[Mark]| (pair[0].odd > 0.0) != (pair[1].odd > 0.0);
         let mut turned = self.marks.windows(2).filter(is_turned);
@@ -350,7 +339,6 @@ impl Record {
     }
 
     /// Whether a time separates exactly the two senses of rotation.
-    #[must_use]
     pub fn is_between_senses(&self, after: f64) -> bool {
         let is_clockwise = |mark: &Mark| mark.odd > 0.0;
         let is_late = |mark: &Mark| f64::from(mark.time) > after;

@@ -12,7 +12,8 @@ use super::tilting::Tilting;
 use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
 use super::turn_accumulator::TurnAccumulator;
 use super::{Refusal, Setting};
-use crate::alignment::{self, Azimuth, SlowMotion};
+use crate::alignment::refusal::refuse_if;
+use crate::alignment::{self, Azimuth, Passed, SlowMotion};
 use crate::device::Device;
 use crate::math::{Complex, chi_square_tail};
 use crate::noise::model::GyroNoise;
@@ -33,14 +34,12 @@ const SMALL_SLIP: f64 = 4.0;
 /// Part of such a slip by which the azimuth is off, 1σ: it belongs to the turns before or after it.
 const OF_SLIP: f64 = 0.6;
 /// Number of turns at an end of a stretch that may be excluded.
-const FEW_DISAGREEING: u16 = 1;
+const FEW_DISAGREEING: u32 = 1;
 /// Difference that is not chance, in σ.
 const DIFFERENT: f64 = 5.0;
 /// Additional tolerance for the difference of the senses of a flat sensor, relative to the Earth
 /// rate: half of the angle, rad, that the base may have turned between them.
 const SENSES_TOLERANCE: f64 = 0.01;
-/// Tolerance of the Earth-rate ratio beyond five σ.
-const RATIO_TOLERANCE: f64 = 0.005;
 /// Greatest difference of the accelerometer's two axes, relative to the rotating force: scales,
 /// angles and delays.
 const AXES_TOLERANCE: f64 = 0.2;
@@ -133,7 +132,7 @@ impl Conclusion {
 
     /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.
     #[inline(never)]
-    fn couple(&mut self, evidence: &Evidence) -> Result<(), alignment::Refusal> {
+    fn couple(&mut self, evidence: &Evidence) -> Passed {
         let Evidence { setting, turn_accumulator, .. } = evidence;
         let mut noise = *setting.site.noise.model();
         if !setting.site.noise.is_white_known() {
@@ -149,21 +148,18 @@ impl Conclusion {
             noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
         }
         self.angle_random_walk = noise.angle_random_walk;
-        if self.misalignments.is_empty() && !setting.sensor.is_flat {
-            return Err(alignment::Refusal::MisalignmentUnknown);
-        }
-        Ok(self.misalignments.iter().try_for_each(|misalignment| setting.accept(misalignment))?)
+        let is_unknown = self.misalignments.is_empty() && !setting.sensor.is_flat;
+        refuse_if(is_unknown, alignment::Refusal::MisalignmentUnknown)?;
+        self.misalignments.iter().try_for_each(|misalignment| setting.accept(misalignment))
     }
 
     /// Refuses a failed accelerometer and an encoder that slipped.
-    fn judge_followed(turn_accumulator: &TurnAccumulator) -> Result<(), alignment::Refusal> {
+    fn judge_followed(turn_accumulator: &TurnAccumulator) -> Passed {
         if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(alignment::Refusal::Device { device: Device::Accelerometer, trouble });
         }
-        if turn_accumulator.slip != 0.0 {
-            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip * DEGREES }.into());
-        }
-        Ok(())
+        let angle = turn_accumulator.slip * DEGREES;
+        refuse_if(turn_accumulator.slip != 0.0, Refusal::EncoderSlipped { angle })
     }
 
     /// Noise model of the gyro, with the N that is known or was estimated.
@@ -173,11 +169,7 @@ impl Conclusion {
 
     /// Finds the averages of both senses for every speed.
     #[inline(never)]
-    fn pair(
-        &mut self,
-        evidence: &Evidence,
-        marks: &mut Vec<Mark, MARKS>,
-    ) -> Result<(), alignment::Refusal> {
+    fn pair(&mut self, evidence: &Evidence, marks: &mut Vec<Mark, MARKS>) -> Passed {
         let averages = self.averages(evidence, marks);
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
@@ -245,36 +237,28 @@ impl Conclusion {
 
     /// Refuses where too many turns were excluded, or those at an end: then they were not
     /// disturbed, but the heading or the encoder changed.
-    fn judge_left_out(&self, setting: &Setting) -> Result<(), alignment::Refusal> {
+    fn judge_left_out(&self, setting: &Setting) -> Passed {
         let averages = || self.pairs.iter().flat_map(Pair::senses);
         let disturbed: u32 = averages().map(|average| average.left_out).sum();
         let turns: u32 = disturbed + averages().map(|average| average.turns).sum::<u32>();
-        if 4 * disturbed > turns {
-            return Err(Refusal::TurnsDisturbed { disturbed, turns }.into());
-        }
+        refuse_if(4 * disturbed > turns, Refusal::TurnsDisturbed { disturbed, turns })?;
         // A sensor that is not flat may still settle in the first turns of a stretch.
         let from = usize::from(!setting.sensor.is_flat);
         let disagreeing = averages().flat_map(|average| average.ends.into_iter().skip(from));
-        let disagreeing = disagreeing.max().unwrap_or(0);
-        if disagreeing > FEW_DISAGREEING {
-            return Err(Refusal::TurnsDisagree { turns: u32::from(disagreeing) }.into());
-        }
-        Ok(())
+        let turns = u32::from(disagreeing.max().unwrap_or(0));
+        refuse_if(turns > FEW_DISAGREEING, Refusal::TurnsDisagree { turns })
     }
 
     /// Tests chi-square of the turns about their means, and their drift in σ.
-    fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), alignment::Refusal> {
+    fn judge_turns(&self, setting: &Setting, drift: f64) -> Passed {
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.site.noise.is_white_known();
         let is_no_chance = chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY;
-        if is_known && is_no_chance && self.chi_square > GREATEST_SCATTER * degrees {
-            return Err(alignment::Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
-        }
+        let is_great = is_known && is_no_chance && self.chi_square > GREATEST_SCATTER * degrees;
+        let ratio = self.chi_square / degrees;
+        refuse_if(is_great, alignment::Refusal::ResidualsNotWhite { ratio })?;
         let different = if is_known { DIFFERENT } else { different(self.degrees) };
-        if drift > different {
-            return Err(Refusal::DirectionDrifts { sigmas: drift }.into());
-        }
-        Ok(())
+        refuse_if(drift > different, Refusal::DirectionDrifts { sigmas: drift })
     }
 
     /// Factor of σ by which the turns, including the excluded ones, scatter more than their noise;
@@ -326,11 +310,7 @@ impl Conclusion {
 
     /// Solves, and raises σ by the scatter of the turns and by possible changes from turn to turn.
     #[inline(never)]
-    fn solve(
-        &mut self,
-        evidence: &Evidence,
-        marks: Vec<Mark, MARKS>,
-    ) -> Result<(), alignment::Refusal> {
+    fn solve(&mut self, evidence: &Evidence, marks: Vec<Mark, MARKS>) -> Passed {
         let Evidence { setting, tilting, .. } = evidence;
         let problem = self.problem(evidence);
         let mut fit = problem.solve().ok_or(alignment::Refusal::MisalignmentUnknown)?;
@@ -374,36 +354,28 @@ impl Conclusion {
     }
 
     /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
-    fn judge_force(
-        &self,
-        setting: &Setting,
-        fit: &Fit,
-        tilting: &Tilting,
-    ) -> Result<(), alignment::Refusal> {
+    fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Passed {
         let gravity = setting.site.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.site.accelerometer_bias_sigma;
         let (density, degrees) = force_density(&self.pairs);
         let different = different(degrees);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            if average.mean_force.abs() > allowed {
-                let ratio = average.mean_force / gravity;
-                return Err(alignment::Refusal::AccelerometerImplausible { ratio });
-            }
+            let (is_off, ratio) =
+                (average.mean_force.abs() > allowed, average.mean_force / gravity);
+            refuse_if(is_off, alignment::Refusal::AccelerometerImplausible { ratio })?;
             let sigma = libm::sqrt(density / average.seconds) / gravity;
             // The other axis measures the same force a quarter of a turn later.
             let beside = average.across - Complex::new(0.0, 1.0) * average.force;
             let difference = beside.size() / gravity;
             let allowed = different * 2.0 * sigma + AXES_TOLERANCE * average.force.size() / gravity;
-            if average.across != Complex::default() && difference > allowed + TILT_TOLERANCE {
-                return Err(alignment::Refusal::AccelerometerDisagrees {
-                    scatter: difference * 1e3,
-                });
-            }
+            let is_off =
+                average.across != Complex::default() && difference > allowed + TILT_TOLERANCE;
+            let scatter = difference * 1e3;
+            refuse_if(is_off, alignment::Refusal::AccelerometerDisagrees { scatter })?;
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
-            if apart.size() > different * sigma + TILT_TOLERANCE {
-                return Err(Refusal::TiltChanged { change: apart.size() * 1e3 }.into());
-            }
+            let is_changed = apart.size() > different * sigma + TILT_TOLERANCE;
+            refuse_if(is_changed, Refusal::TiltChanged { change: apart.size() * 1e3 })?;
         }
         Ok(())
     }
@@ -440,7 +412,7 @@ fn unequal(clockwise: &Average, counter: &Average) -> alignment::Refusal {
 }
 
 /// Applies every test that a fit must pass by itself.
-fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), alignment::Refusal> {
+fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Passed {
     setting.site.check_tilt(fit.tilt.size())?;
     if setting.sensor.is_flat {
         judge_flat(setting, fit, degrees)
@@ -450,42 +422,32 @@ fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), alignment::Re
 }
 
 /// Tests of a flat sensor: the senses agree, and the Earth rate has the expected magnitude.
-fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), alignment::Refusal> {
+fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Passed {
     let sigmas = libm::sqrt(fit.difference);
     let is_molecular = setting.sensor.molecular_sigma > 0.0;
     let different = different(degrees);
     let tolerance = SENSES_TOLERANCE + different * fit.senses_sigma;
-    if !is_molecular && sigmas > different && fit.molecular.size() > tolerance {
-        return Err(Refusal::SensesDisagree { sigmas }.into());
-    }
+    let is_apart = !is_molecular && sigmas > different && fit.molecular.size() > tolerance;
+    refuse_if(is_apart, Refusal::SensesDisagree { sigmas })?;
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
     let sigma_and_scale = libm::hypot(sigma, setting.site.amplitude_sigma());
-    let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
-    let tolerance = DIFFERENT * sigma_and_scale + tolerance;
+    let tolerance = DIFFERENT * sigma_and_scale + setting.site.ratio_tolerance();
     // A gyro that lags shows a smaller rate; one that is late does not.
-    if ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance) {
-        return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
-    }
-    Ok(())
+    let is_off = ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance);
+    refuse_if(is_off, alignment::Refusal::EarthRateMismatch { ratio, sigma })
 }
 
 /// Tests of a sensor with unknown response: its phase, and the agreement of the speeds.
-fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), alignment::Refusal> {
+fn judge_lagging(setting: &Setting, fit: &Fit) -> Passed {
     let phase =
         fit.phases.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
-    if phase.abs() > GREATEST_PHASE {
-        return Err(Refusal::PhaseAmbiguous { phase: phase * DEGREES }.into());
-    }
+    let degrees = phase * DEGREES;
+    refuse_if(phase.abs() > GREATEST_PHASE, Refusal::PhaseAmbiguous { phase: degrees })?;
     if setting.sensor.molecular_sigma == 0.0 {
         return Ok(());
     }
     let sigmas = fit.disagreement.max(fit.lag_disagreement);
-    if sigmas > DIFFERENT {
-        return Err(Refusal::SpeedsDisagree { sigmas }.into());
-    }
+    refuse_if(sigmas > DIFFERENT, Refusal::SpeedsDisagree { sigmas })?;
     let ratio = fit.molecular.im.abs();
-    if ratio > GREATEST_MOLECULAR {
-        return Err(Refusal::MolecularTooGreat { ratio }.into());
-    }
-    Ok(())
+    refuse_if(ratio > GREATEST_MOLECULAR, Refusal::MolecularTooGreat { ratio })
 }

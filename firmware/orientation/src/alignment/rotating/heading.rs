@@ -11,7 +11,8 @@ use super::change::{Found, MARKS, Mark, Record, Shape};
 use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
 use super::{Refusal, misalignment, solution};
-use crate::alignment::{self, SlowMotion};
+use crate::alignment::refusal::refuse_if;
+use crate::alignment::{self, Passed, SlowMotion};
 use crate::math::Complex;
 use crate::math::regression::Column;
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
@@ -71,7 +72,6 @@ impl Directions<'_> {
     }
 
     /// Observability of a slow rotation of the base about the vertical; `None` without turns.
-    #[must_use]
     pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowMotion> {
         let record = self.record(marks)?;
         let steady = record.steady()?;
@@ -99,28 +99,22 @@ impl Directions<'_> {
 
     /// Refuses a significant drift, change with the sense or step, and a drift that agrees with the
     /// tilt's.
-    fn judge(
-        &self,
-        record: &Record,
-        [drift, turn, step]: [Option<Found>; 3],
-    ) -> Result<(), alignment::Refusal> {
+    fn judge(&self, record: &Record, [drift, turn, step]: [Option<Found>; 3]) -> Passed {
         let gain = |found: &Option<Found>| found.map_or(0.0, |found| found.gain);
         let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - record.places()];
         if believed[1] > 0.0 && believed[1] >= believed[0] {
             return Err(stepped(record, step));
         }
-        if gain(&turn) > BELIEVED {
-            return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) }.into());
-        }
-        if believed[0] > 0.0 {
-            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(gain(&drift)) }.into());
-        }
-        if let (Some(drift), Some(creep)) = (drift, self.problem.tilting.creep(self.fit.tilt))
-            && (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
-        {
-            return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 }.into());
-        }
-        Ok(())
+        let [drifts, turns] = [gain(&drift), gain(&turn)];
+        let sigmas = libm::sqrt(turns);
+        refuse_if(turns > BELIEVED, Refusal::SensesDisagree { sigmas })?;
+        let sigmas = libm::sqrt(drifts);
+        refuse_if(believed[0] > 0.0, Refusal::DirectionDrifts { sigmas })?;
+        let tilting = self.problem.tilting;
+        let is_creep = drift.zip(tilting.creep(self.fit.tilt)).is_some_and(|(drift, creep)| {
+            (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
+        });
+        refuse_if(is_creep, Refusal::TiltChanged { change: tilting.change() * 1e3 })
     }
 
     /// Whether the sensor has a flat response.

@@ -110,8 +110,7 @@ impl AxisMisalignment {
     }
 
     /// Standard deviation of that lag, 1σ, s; infinite without misalignment.
-    #[must_use]
-    pub fn lag_sigma(&self) -> f64 {
+    pub(super) fn lag_sigma(&self) -> f64 {
         self.quadrature_sigma / self.sine.abs()
     }
 
@@ -128,8 +127,7 @@ impl AxisMisalignment {
     }
 
     /// Standard deviations, 1σ, of the in-phase and quadrature parts of that response.
-    #[must_use]
-    pub fn sigmas(&self, frequency: f64) -> [f64; 2] {
+    pub(super) fn sigmas(&self, frequency: f64) -> [f64; 2] {
         [self.sine_sigma, frequency * self.quadrature_sigma]
     }
 

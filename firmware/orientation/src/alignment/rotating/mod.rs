@@ -12,9 +12,9 @@
 //! measured by the accelerometer.
 
 pub mod average;
-pub mod change;
+mod change;
 pub mod conclusion;
-pub mod heading;
+mod heading;
 pub mod level;
 pub mod misalignment;
 pub mod molecular;
@@ -23,7 +23,7 @@ pub mod progress;
 pub mod refusal;
 pub mod session;
 pub mod solution;
-pub mod tilting;
+mod tilting;
 pub mod turn;
 pub mod turn_accumulator;
 
@@ -33,7 +33,9 @@ pub use session::Session;
 
 use self::misalignment::AxisMisalignment;
 use self::turn::SPEEDS;
+use super::refusal::refuse_if;
 use super::site::Site;
+use super::verdict::Passed;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
 /// Kind of sensor on the platform.
@@ -106,12 +108,10 @@ impl Setting {
     ///
     /// # Errors
     /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
-    pub fn accept(&self, misalignment: &AxisMisalignment) -> Result<(), Refusal> {
+    pub fn accept(&self, misalignment: &AxisMisalignment) -> Passed {
         let (angle, allowed) = (misalignment.angle(), self.misalignment_limit);
-        if angle.abs() <= allowed {
-            return Ok(());
-        }
+        let is_allowed = angle.abs() <= allowed;
         let [angle, allowed] = [angle, allowed].map(|angle| angle * DEGREES_PER_RADIAN);
-        Err(Refusal::Misaligned { angle, allowed })
+        refuse_if(!is_allowed, Refusal::Misaligned { angle, allowed })
     }
 }

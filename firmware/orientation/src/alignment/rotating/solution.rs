@@ -87,12 +87,12 @@ impl Pair {
     }
 
     /// Half the sum of both senses' phasors: the part that does not change its sign with the sense.
-    pub fn even(&self) -> Complex {
+    pub(super) fn even(&self) -> Complex {
         (self.clockwise.phasor + self.counter.phasor).scaled(0.5)
     }
 
     /// Half the difference of both senses' phasors: the part that changes its sign with the sense.
-    pub fn odd(&self) -> Complex {
+    pub(super) fn odd(&self) -> Complex {
         (self.clockwise.phasor - self.counter.phasor).scaled(0.5)
     }
 
@@ -119,15 +119,13 @@ impl Pair {
 
 /// Variance of either part of one turn's phasor, (rad/s)², at a speed in rad/s, for a two-sided
 /// spectral density, (rad/s)²/Hz.
-#[must_use]
-pub fn of_turn(speed: f64, density: f64) -> f64 {
+pub(super) fn of_turn(speed: f64, density: f64) -> f64 {
     2.0 * density * speed / TURN
 }
 
 /// Variance of either part of one turn's phasor at a speed in rad/s about those of other turns,
 /// (rad/s)², for a sensor of gain one.
-#[must_use]
-pub fn of_one_turn(noise: &GyroNoise, speed: f64) -> f64 {
+pub(super) fn of_one_turn(noise: &GyroNoise, speed: f64) -> f64 {
     of_turn(speed, noise.density_of_period(speed / TURN))
 }
 
@@ -500,16 +498,14 @@ impl Problem<'_> {
 
 /// Lag of a flat sensor, s: that of the rate-modulated turn, shrunk towards zero by the prior that
 /// a lag is small.
-#[must_use]
-pub fn believed_lag(misalignment: &AxisMisalignment) -> f64 {
+pub(super) fn believed_lag(misalignment: &AxisMisalignment) -> f64 {
     let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, misalignment.lag_sigma());
     misalignment.lag() * known / (known + sigma * sigma)
 }
 
 /// Variance of either part of a force's phasor times the time over which it was measured,
 /// (m/s²)²·s, and the degrees of freedom of this estimate.
-#[must_use]
-pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
+pub(super) fn force_density(pairs: &[Pair]) -> (f64, u32) {
     let (mut sum, mut degrees) = (0.0, 0);
     for average in pairs.iter().flat_map(Pair::senses) {
         sum += average.force_scatter * average.seconds / (0.5 * f64::from(average.degrees) + 1.0);

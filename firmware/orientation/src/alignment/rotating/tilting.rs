@@ -54,7 +54,6 @@ pub struct Tilting {
 impl Tilting {
     /// Tests the forces of all turns, for gravity in m/s² and the response of the gyro's phasor to
     /// tilt, rad/s per g.
-    #[must_use]
     #[inline(never)]
     pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
         let mut marks = marks(stretches, gravity);
@@ -95,7 +94,6 @@ impl Tilting {
     /// Rate of a creeping encoder that would explain the drift of the tilt's direction, rad/s, for
     /// a tilt in g; `None` where no tilting is accepted, or where the tilt's magnitude changes as
     /// well.
-    #[must_use]
     pub fn creep(&self, tilt: Complex) -> Option<f64> {
         let turned = self.rate * tilt.conjugate();
         let is_turning = turned.re.abs() < ALIKE * libm::sqrt(self.variance) * tilt.size();
@@ -104,14 +102,12 @@ impl Tilting {
     }
 
     /// Total change of the tilt, g.
-    #[must_use]
     pub fn change(&self) -> f64 {
         self.rate.size() * self.seconds
     }
 
     /// Angle of an encoder slip that would explain the step, rad, for a tilt in g: the azimuth may
     /// be off by a part of it. Zero without a step.
-    #[must_use]
     pub fn slip(&self, tilt: f64) -> f64 {
         self.step.map_or(0.0, |change| change / tilt.max(f64::MIN_POSITIVE))
     }
@@ -128,7 +124,6 @@ impl Tilting {
     }
 
     /// Azimuth error of the rotation of a tilting base for a scale factor with this 1σ, rad.
-    #[must_use]
     pub fn scale(&self, sigma: f64, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         sigma * (self.turning(lean) * Complex::unit(-azimuth)).im.abs() / horizontal
     }
@@ -140,7 +135,6 @@ impl Tilting {
 
     /// Variance of an azimuth, rad², for the tilting that the forces leave open, for a horizontal
     /// Earth rate in rad/s.
-    #[must_use]
     pub fn inflation(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         if self.probability == 0.0 {
             return self.variance / (horizontal * horizontal);

@@ -51,8 +51,7 @@ const PHASOR: [Column; COLUMNS] = {
 
 /// Mean of a signal and its coefficients of cosine and sine; `None` where the angles do not cover a
 /// turn.
-#[must_use]
-pub fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])> {
+pub(super) fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])> {
     let found = regression.solve(&PHASOR)?.coefficients;
     Some((found[ONE], [found[COSINE] as f32, found[SINE] as f32]))
 }

@@ -159,7 +159,7 @@ impl TurnAccumulator {
 
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
     /// as ε e^{jψ}, rad.
-    pub fn ellipse(&self) -> Complex {
+    pub(super) fn ellipse(&self) -> Complex {
         self.ellipse.scaled(1.0 / f64::from(self.ellipse_turns.max(1)))
     }
 
@@ -171,7 +171,7 @@ impl TurnAccumulator {
 
     /// Begins another rate-modulated stretch, modulated by a spectral line of this half width over
     /// its frequency.
-    pub fn follow_modulated(&mut self, width: f64) {
+    pub(super) fn follow_modulated(&mut self, width: f64) {
         self.follow(Mode::Modulated);
         // With more stretches than speeds, the last one is continued.
         let _ = self.modulated.push(Modulated { width, ..Modulated::default() });
@@ -256,8 +256,7 @@ impl TurnAccumulator {
     }
 
     /// Fault of the accelerometer, if there is one: saturated or stuck.
-    #[must_use]
-    pub fn accelerometer(&self) -> Option<Trouble> {
+    pub(super) fn accelerometer(&self) -> Option<Trouble> {
         if self.clipped > FEW_FORCES {
             Some(Trouble::Saturated)
         } else if self.most_repeated > FEW_FORCES {

@@ -31,7 +31,6 @@ const LEAST_MEANS: f64 = 0.2;
 
 /// Replaces a refusal for too many disturbed dwells by its common cause, where there is one;
 /// returns any other refusal unchanged.
-#[must_use]
 pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> alignment::Refusal {
     use Refusal::{Disturbed, NoiseNotAsStated, SwayUnmeasured};
     let cause = match refusal {

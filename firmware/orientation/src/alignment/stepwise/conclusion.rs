@@ -13,7 +13,8 @@ use super::quality::{self, Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::tilt::Tilt;
 use super::{CAPACITY, Refusal, cause, different_positions, level};
-use crate::alignment::{self, Azimuth, SlowMotion};
+use crate::alignment::refusal::refuse_if;
+use crate::alignment::{self, Azimuth, Passed, SlowMotion};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, TURN, wrapped};
@@ -47,9 +48,6 @@ const FORCE_TOLERANCE: f64 = 3e-3;
 const STEEPNESS: f64 = 0.2;
 /// Limit of the Earth-rate ratio's deviation from one, in its σ.
 const RATIO_BOUND: f64 = 4.0;
-/// Additional tolerance of the Earth-rate ratio where the scale is configured as exact: scale
-/// errors that no data sheet excludes and that do not change the azimuth.
-const RATIO_TOLERANCE: f64 = 0.005;
 /// Relative tolerance of the measured gravity beyond five σ of the accelerometer's bias: scale and
 /// altitude.
 const GRAVITY_TOLERANCE: f64 = 0.05;
@@ -153,11 +151,7 @@ impl Conclusion {
     ///
     /// This step and the other steps are not inlined, so that their stack frames do not add up.
     #[inline(never)]
-    fn fit_undisturbed(
-        &mut self,
-        setting: &Setting,
-        dwells: &[Dwell],
-    ) -> Result<(), alignment::Refusal> {
+    fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Passed {
         let mut scatter: f64 = 1.0;
         loop {
             let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
@@ -213,7 +207,7 @@ impl Conclusion {
 
     /// Refuses where the inconsistent dwells begin or end the session: then they were not
     /// disturbed, but the heading or the encoder changed.
-    fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), alignment::Refusal> {
+    fn judge_ends(&self, dwells: &[Dwell]) -> Passed {
         let first = inconsistent(self.disturbances.iter());
         let last = inconsistent(self.disturbances.iter().rev());
         let at = match (first, last) {
@@ -272,55 +266,38 @@ impl Conclusion {
 
     /// Applies every test that an azimuth must pass.
     #[inline(never)]
-    fn judge(
-        &self,
-        setting: &Setting,
-        dwells: &[Dwell],
-        fit: &Fit,
-    ) -> Result<(), alignment::Refusal> {
+    fn judge(&self, setting: &Setting, dwells: &[Dwell], fit: &Fit) -> Passed {
         self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
-        if fit.direction.margin < SECOND_MINIMUM {
-            return Err(Refusal::AzimuthUnobservable.into());
-        }
+        refuse_if(fit.direction.margin < SECOND_MINIMUM, Refusal::AzimuthUnobservable)?;
         setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
         self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
         // Two positions do not measure the Earth rate but assume it.
         let is_seen = !fit.model.is_single_axis;
-        let tolerance = if setting.site.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
-        if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + tolerance {
-            return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
-        }
-        Ok(())
+        let tolerance = RATIO_BOUND * sigma + setting.site.ratio_tolerance();
+        let is_off = is_seen && (ratio - 1.0).abs() > tolerance;
+        refuse_if(is_off, alignment::Refusal::EarthRateMismatch { ratio, sigma })
     }
 
     /// Refuses an accelerometer that does not measure gravity: one that is dead, inverted or in
     /// other units shows a false tilt.
-    fn judge_accelerometer(
-        &self,
-        setting: &Setting,
-        dwells: &[Dwell],
-    ) -> Result<(), alignment::Refusal> {
+    fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Passed {
         let gravity = setting.site.latitude.gravity();
         let kept = self.kept(dwells).map(|(_, dwell)| dwell);
         let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
         let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.site.accelerometer_bias_sigma / gravity;
-        if (ratio - 1.0).abs() > tolerance {
-            return Err(alignment::Refusal::AccelerometerImplausible { ratio });
-        }
-        Ok(())
+        let is_off = (ratio - 1.0).abs() > tolerance;
+        refuse_if(is_off, alignment::Refusal::AccelerometerImplausible { ratio })
     }
 
     /// Refuses a tilt that is too large, too uncertain, stepped, or inconsistent with the encoder.
-    fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), alignment::Refusal> {
+    fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Passed {
         setting.site.check_tilt(self.tilt.magnitude())?;
         let (sigma, required) =
             (degrees(fit.budget.accelerometer), degrees(setting.site.required_sigma));
-        if sigma > required {
-            return Err(Refusal::TiltTooUncertain { sigma, required }.into());
-        }
+        refuse_if(sigma > required, Refusal::TiltTooUncertain { sigma, required })?;
         // An encoder slip changes F by the same angle times its magnitude, and the azimuth by at
         // most the slip.
         let matters = |change: &(f64, f64)| change.1 > fit.sigma() * self.tilt.magnitude();
@@ -328,16 +305,14 @@ impl Conclusion {
             return Err(Refusal::TiltStepped { change: change * 1e3, after }.into());
         }
         let Tilt { counter, scatter, .. } = self.tilt;
-        if counter > 0.0 || scatter > FORCE_TOLERANCE {
-            let scatter = if counter > 0.0 { counter } else { scatter };
-            return Err(alignment::Refusal::AccelerometerDisagrees { scatter: scatter * 1e3 });
-        }
-        Ok(())
+        let is_off = counter > 0.0 || scatter > FORCE_TOLERANCE;
+        let scatter = if counter > 0.0 { counter } else { scatter } * 1e3;
+        refuse_if(is_off, alignment::Refusal::AccelerometerDisagrees { scatter })
     }
 
     /// Refuses two positions near their own axis, where the error of the azimuth is not normal: the
     /// cosine that they measure is flat there.
-    fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Result<(), alignment::Refusal> {
+    fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Passed {
         let mut angles = self.kept(dwells).map(|(_, dwell)| dwell.stage);
         let Some(first) = angles.next().filter(|_| fit.model.is_single_axis) else { return Ok(()) };
         let apart = |angle: Angle| (angle - first).signed_rad();
@@ -346,20 +321,16 @@ impl Conclusion {
         // The difference of two unit vectors is perpendicular to their mean.
         let axis = first.rad() + 0.5 * other + 0.25 * TURN;
         let slope = libm::tan(fit.direction.azimuth + axis).abs();
-        if fit.sigma() > STEEPNESS * slope {
-            Err(Refusal::AzimuthUnobservable.into())
-        } else {
-            Ok(())
-        }
+        refuse_if(fit.sigma() > STEEPNESS * slope, Refusal::AzimuthUnobservable)
     }
 
     /// Tests chi-square of the residuals, and the correlation of neighbours.
-    fn judge_residuals(&self, fit: &Fit) -> Result<(), alignment::Refusal> {
+    fn judge_residuals(&self, fit: &Fit) -> Passed {
         let degrees = fit.degrees as f64;
         let least = WHITENESS_PROBABILITY[usize::from(fit.degrees > FEW_DEGREES)];
-        if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < least {
-            return Err(alignment::Refusal::ResidualsNotWhite { ratio: excess(fit) });
-        }
+        let is_no_noise = fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < least;
+        let ratio = excess(fit);
+        refuse_if(is_no_noise, alignment::Refusal::ResidualsNotWhite { ratio })?;
         let kept: Vec<f64, CAPACITY> = (self.residuals.iter().zip(&self.disturbances))
             .filter(|(_, why)| why.is_none())
             .map(|(residual, _)| residual.normalised)
@@ -367,10 +338,8 @@ impl Conclusion {
         let power: f64 = kept.iter().map(|r| r * r).sum();
         let shared: f64 = kept.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let correlation = shared / power.max(1e-300);
-        if correlation * libm::sqrt(kept.len() as f64) > CORRELATION_BOUND {
-            return Err(alignment::Refusal::ResidualsCorrelated { correlation });
-        }
-        Ok(())
+        let is_no_chance = correlation * libm::sqrt(kept.len() as f64) > CORRELATION_BOUND;
+        refuse_if(is_no_chance, alignment::Refusal::ResidualsCorrelated { correlation })
     }
 
     /// Fit problem of the dwells that took part.

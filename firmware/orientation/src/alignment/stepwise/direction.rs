@@ -52,8 +52,7 @@ impl Direction {
     }
 
     /// Covariance of the components that the prior knowledge of ρ leaves, in units of `Ω_h`².
-    #[must_use]
-    pub fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
+    pub(super) fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
         let across = [-self.amplitude * sine, self.amplitude * cosine];
         let along = [cosine + vertical[0], sine + vertical[1]];
@@ -99,8 +98,7 @@ struct Profile {
 impl Components {
     /// Direction of the components themselves, without prior knowledge of the Earth rate and the
     /// half; `None` where the covariance is not positive.
-    #[must_use]
-    pub fn free(&self) -> Option<Direction> {
+    pub(super) fn free(&self) -> Option<Direction> {
         Self { half: None, ..*self }.direction(Amplitude::Free)
     }
 

@@ -74,15 +74,14 @@ pub fn tilt<'a>(
     gravity: f64,
     bias_sigma: f64,
 ) -> Tilt {
-    let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let mut forces = Forces::new(mount, dwells, gravity);
+    let mut forces = Forces::new(mount, dwells, gravity, bias_sigma);
     let time = forces.time;
     // On an arc, drifting biases and a tilting base look like an encoder that counts the other way.
-    let alone = forces.countering(bias, [0.0; 2]);
-    let mut tilting = forces.weighted(bias, Beside::Rate);
+    let alone = forces.countering([0.0; 2]);
+    let mut tilting = forces.weighted(Beside::Rate);
     // Drifting biases matter only where they look like a tilting base.
     let is_shown = tilting.as_ref().is_some_and(|tilting| tilting.significance() > SHOWN);
-    let drifting = is_shown.then(|| forces.weighted(bias, Beside::Drift)).flatten();
+    let drifting = is_shown.then(|| forces.weighted(Beside::Drift)).flatten();
     let drifting = drifting.filter(|drifting| drifting.significance() > BELIEVED);
     let explains = |one: &Option<Found>, other: &Option<Found>| match (one, other) {
         (Some(one), Some(other)) => one.explains_more_than(other),
@@ -93,43 +92,43 @@ pub fn tilt<'a>(
     let is_ambiguous = !is_drifting && drifting.is_some() && !explains(&tilting, &drifting);
     if let Some(drifting) = drifting.filter(|_| is_drifting) {
         forces.drift = drifting.beside.value;
-        tilting = forces.weighted(bias, Beside::Rate);
+        tilting = forces.weighted(Beside::Rate);
     }
     let any = forces.fit(ANY_BIAS, SCATTER[0], Beside::Nothing).map_or(0.0, |fit| fit.scatter);
-    let Some(standing) = forces.weighted(bias, Beside::Nothing) else { return Tilt::default() };
+    let Some(standing) = forces.weighted(Beside::Nothing) else { return Tilt::default() };
     let mut tilt = Tilt { bias_rate: forces.drift, ..standing.tilt(time, any) };
     let after = forces.likeliest_step(&standing);
     if let Some(tilting) = tilting {
         tilt = tilting.believed(tilt, is_ambiguous);
     }
-    let step = forces.weighted(bias, Beside::Step(after));
+    let step = forces.weighted(Beside::Step(after));
     // A step is searched for at many places, and is one more hypothesis to accept.
     let is_shown =
         |fit: &Found| fit.significance() * fit.few(FEW) > STEP_BELIEVED * fit.few(STEP_FEW);
     let step = step.filter(|fit| is_shown(fit) && fit.scatter < tilt.left);
     tilt.step = step.map(|fit| (after, fit.beside.size()));
     let alone = alone.filter(|fit| !fit.is_beaten_by(tilt.left));
-    let counter = alone.or_else(|| forces.countering(bias, tilt.rate.value));
+    let counter = alone.or_else(|| forces.countering(tilt.rate.value));
     tilt.counter = counter.map_or(0.0, |fit| fit.beside.size());
     tilt
 }
 
 /// Rate of tilt that the forces show, significant or not; `None` where they cannot determine it.
-#[must_use]
-pub fn tilting<'a>(
+pub(super) fn tilting<'a>(
     mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
     gravity: f64,
     bias_sigma: f64,
 ) -> Option<TiltRate> {
-    let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    Forces::new(mount, dwells, gravity).weighted(bias, Beside::Rate).map(|found| found.beside)
+    Forces::new(mount, dwells, gravity, bias_sigma).weighted(Beside::Rate).map(|found| found.beside)
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
 /// `None` where no dwell has a force.
-#[must_use]
-pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) -> Option<f64> {
+pub(super) fn gravity_ratio<'a>(
+    dwells: impl Iterator<Item = &'a Dwell>,
+    gravity: f64,
+) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for [x, y, z] in dwells.filter_map(|dwell| dwell.force) {
         let size = libm::sqrt(x * x + y * y + z * z);
@@ -158,6 +157,8 @@ enum Beside {
 struct Forces<'m, D> {
     /// Mount of the accelerometer.
     mount: &'m Mount,
+    /// Standard deviation of each accelerometer bias, 1σ, g.
+    bias: f64,
     /// Iterator over the dwells.
     dwells: D,
     /// Local gravity, m/s².
@@ -186,23 +187,24 @@ struct Found {
 
 impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
     /// Forces of these dwells, with rates counted from the end of the last dwell.
-    fn new(mount: &'m Mount, dwells: D, gravity: f64) -> Self {
+    fn new(mount: &'m Mount, dwells: D, gravity: f64, bias_sigma: f64) -> Self {
+        let bias = (bias_sigma / gravity).max(EXACT_BIAS);
         let time = dwells.clone().last().map_or(0.0, Dwell::end);
-        Self { mount, dwells, gravity, time, drift: [0.0; 2] }
+        Self { mount, bias, dwells, gravity, time, drift: [0.0; 2] }
     }
 
     /// Fits a second time, weighted by the scatter of the first fit.
     #[inline(never)]
-    fn weighted(&self, bias_sigma: f64, beside: Beside) -> Option<Found> {
-        let first = self.fit(bias_sigma, SCATTER[0], beside)?;
+    fn weighted(&self, beside: Beside) -> Option<Found> {
+        let first = self.fit(self.bias, SCATTER[0], beside)?;
         let scatter = first.scatter.max(SCATTER[1]) * libm::sqrt(first.few(FEW));
-        Some(self.fit(bias_sigma, scatter, beside).unwrap_or(first))
+        Some(self.fit(self.bias, scatter, beside).unwrap_or(first))
     }
 
     /// Counter-rotating phasor for a base that tilts at this rate, 1/s, where it is significant and
     /// large.
-    fn countering(&self, bias_sigma: f64, rate: [f64; 2]) -> Option<Found> {
-        let found = self.weighted(bias_sigma, Beside::Counter(rate))?;
+    fn countering(&self, rate: [f64; 2]) -> Option<Found> {
+        let found = self.weighted(Beside::Counter(rate))?;
         let counter = found.beside.size();
         let with = libm::hypot(found.phasor[0], found.phasor[1]);
         (found.significance() > BELIEVED && counter > COUNTER * with).then_some(found)

@@ -6,7 +6,7 @@
 //!              └─▶ schedule, survey ─▶ planner
 //! ```
 
-pub mod cause;
+mod cause;
 pub mod conclusion;
 pub mod criterion;
 pub mod direction;

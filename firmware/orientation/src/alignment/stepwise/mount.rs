@@ -51,8 +51,7 @@ impl Mount {
     };
 
     /// Angle by which a dwell has turned the accelerometer from the base's axes, rad.
-    #[must_use]
-    pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
+    pub(super) fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
         if self.is_on_base { 0.0 } else { dwell.stage.rad() }
     }
 }

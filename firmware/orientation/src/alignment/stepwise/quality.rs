@@ -141,8 +141,7 @@ impl ExpectedScatter {
 
     /// White noise N² as the scatter inside the dwells shows it, (rad/s)²·s; equal to that of the
     /// gyro where they scatter as expected.
-    #[must_use]
-    pub fn observed_white(&self, dwells: &[Dwell]) -> f64 {
+    pub(super) fn observed_white(&self, dwells: &[Dwell]) -> f64 {
         let (mut found, mut expected) = (0.0, 0.0);
         for statistics in dwells.iter().filter_map(|dwell| dwell.statistics.as_ref()) {
             found += statistics.scatter;
@@ -266,9 +265,12 @@ const LAG_CURVE: f64 = 0.3;
 /// at the end. A shock to one dwell must neither show as a lag nor hide one: each dwell's slope is
 /// clamped, and both all dwells and the undisturbed ones are tried; without clamping only where all
 /// agree.
-#[must_use]
 #[inline(never)]
-pub fn lag(norm: &ExpectedScatter, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
+pub(super) fn lag(
+    norm: &ExpectedScatter,
+    dwells: &[Dwell],
+    marks: &[Option<Disturbance>],
+) -> Option<f64> {
     let stood = |mark: &Disturbance| !is_moved(mark);
     let slopes = |is_asked, other| slopes(norm, dwells, marks, is_asked, other);
     let of = |is_asked, bound, other| Lag::of(slopes(is_asked, other), bound).believed();

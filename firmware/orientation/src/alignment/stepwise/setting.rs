@@ -63,8 +63,7 @@ impl Setting {
     }
 
     /// Prior knowledge of the horizontal Earth rate.
-    #[must_use]
-    pub fn known_amplitude(&self) -> Amplitude {
+    pub(super) fn known_amplitude(&self) -> Amplitude {
         Amplitude::Known(self.site.amplitude_sigma())
     }
 }

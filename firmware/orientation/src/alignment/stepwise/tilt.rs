@@ -51,8 +51,7 @@ impl Tilt {
     }
 
     /// Rate of the base about its axes forward and right, rad/s, for a rate of F in 1/s.
-    #[must_use]
-    pub fn turning(&self, [real, imaginary]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn turning(&self, [real, imaginary]: [f64; 2]) -> [f64; 2] {
         let upward = self.upward();
         [imaginary / upward, real / upward]
     }
@@ -100,15 +99,13 @@ impl Tilt {
     }
 
     /// Specific force perpendicular to the base plane, up positive, g.
-    #[must_use]
-    pub fn upward(&self) -> f64 {
+    pub(super) fn upward(&self) -> f64 {
         let magnitude = self.magnitude();
         libm::sqrt((1.0 - magnitude * magnitude).max(0.0))
     }
 
     /// Accelerometer biases along its x and y, g, extrapolated to another time, s.
-    #[must_use]
-    pub fn bias_at(&self, time: f64) -> [f64; 2] {
+    pub(super) fn bias_at(&self, time: f64) -> [f64; 2] {
         let [x, y] = self.bias_rate.map(|rate| rate * (time - self.time));
         [self.bias[0] + x, self.bias[1] + y]
     }

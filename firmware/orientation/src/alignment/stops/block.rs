@@ -70,7 +70,6 @@ pub struct Blocks<const N: usize> {
 
 impl<const N: usize> Blocks<N> {
     /// No blocks yet; each lasts `span` seconds as long as there is room.
-    #[must_use]
     pub const fn new(span: f32) -> Self {
         Self { list: Vec::new(), span, swing: 0.0 }
     }
@@ -123,7 +122,6 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Power of the changes of the force from block to block, (m/s²)²·s; zero with too few blocks.
-    #[must_use]
     pub fn scatter(&self) -> f64 {
         let (mut power, mut count) = (0.0, 0.0);
         for [a, b, c] in self.list.array_windows::<3>() {

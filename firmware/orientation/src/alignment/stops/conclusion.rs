@@ -12,10 +12,11 @@ use super::plain::Plain;
 use super::residual::Residual;
 use super::solution::{Belief, Solution, Tally};
 use super::stop::Stop;
-use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
+use super::stop_detector::{Rests, StopDetector, WINDOW};
 use super::{Refusal, Setting};
 use crate::alignment::budget::{Budget, Source};
-use crate::alignment::{self, Azimuth};
+use crate::alignment::refusal::refuse_if;
+use crate::alignment::{self, Azimuth, Passed};
 use crate::earth::EARTH_RATE;
 use crate::math::chi_square_tail;
 use crate::math::rotation::{
@@ -167,41 +168,32 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
 
 /// Refuses a latitude without north, lost rotation, missing or short stops, and drives that are too
 /// short.
-fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), alignment::Refusal> {
+fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
     setting.site.check_latitude()?;
-    match stop_detector.loss {
-        Some(Loss::Gap(at, seconds)) => {
-            return Err(Refusal::RotationMissing { at, seconds }.into());
-        }
-        Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }.into()),
-        None => {}
-    }
-    let stops = stop_detector.stops();
-    let is_whole = stop_detector.rests == Rests::Whole;
-    let seconds = stop_detector.fleeting;
-    if seconds > 0.0 && stops.len() < 2 {
-        return Err(
-            Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST }.into()
-        );
-    }
+    stop_detector.loss.map_or(Ok(()), Err)?;
+    let (stops, is_whole) = (stop_detector.stops(), stop_detector.rests == Rests::Whole);
+    let is_fleeting = stop_detector.fleeting > 0.0 && stops.len() < 2;
+    refuse_if(is_fleeting, too_short(stops.len(), stop_detector.fleeting))?;
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
         return Err(Refusal::NoStop.into());
     };
-    if !is_whole && stops.len() == 1 {
-        return Err(Refusal::OneStop { from: first.from, to: first.to }.into());
-    }
+    let is_alone = !is_whole && stops.len() == 1;
+    refuse_if(is_alone, Refusal::OneStop { from: first.from, to: first.to })?;
     for (index, stop) in stops.iter().enumerate() {
         inspect_stop(setting, stop_detector, index, stop)?;
     }
-    let driven = stops.windows(2).map(|pair| pair[1].from - pair[0].to);
-    if let Some(seconds) = driven.into_iter().find(|seconds| *seconds < LEAST_DRIVE) {
-        return Err(Refusal::DriveTooShort { seconds, least: LEAST_DRIVE }.into());
+    for pair in stops.windows(2) {
+        let (seconds, least) = (pair[1].from - pair[0].to, LEAST_DRIVE);
+        refuse_if(seconds < least, Refusal::DriveTooShort { seconds, least })?;
     }
     let seconds = if is_whole { last.seconds() } else { last.middle() - first.middle() };
-    if seconds < LEAST_SECONDS {
-        return Err(Refusal::DriveTooShort { seconds, least: LEAST_SECONDS }.into());
-    }
-    Ok(())
+    let least = LEAST_SECONDS;
+    refuse_if(seconds < least, Refusal::DriveTooShort { seconds, least })
+}
+
+/// Refusal of the stop with this index, which has so much rest, s.
+fn too_short(index: usize, seconds: f64) -> Refusal {
+    Refusal::StopTooShort { stop: index + 1, seconds, least: LEAST_REST }
 }
 
 /// Checks that a stop is long enough, and that the vehicle stood.
@@ -210,67 +202,50 @@ fn inspect_stop(
     stop_detector: &StopDetector,
     index: usize,
     stop: &Stop,
-) -> Result<(), alignment::Refusal> {
+) -> Passed {
     let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
-    if rest < LEAST_REST {
-        return Err(
-            Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST }.into()
-        );
-    }
+    refuse_if(rest < LEAST_REST, too_short(index, rest))?;
     let gravity = setting.site.latitude.gravity();
     let ratio = -stop.force.mean()[2] / gravity;
-    if ratio < UPRIGHT {
-        return Err(alignment::Refusal::AccelerometerImplausible { ratio });
-    }
+    refuse_if(ratio < UPRIGHT, alignment::Refusal::AccelerometerImplausible { ratio })?;
     let mut limits = setting.sensors().limits(stop.seconds());
     limits.rate += SWAY / stop.seconds();
     let [rate, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| length(&mean));
     let criteria = Criteria::of(rate, force, gravity);
+    let (rate, force) = (criteria.rate.abs() / DEGREE_PER_HOUR, criteria.force.abs());
+    let is_moving = !criteria.is_rest(&limits);
+    refuse_if(is_moving, Refusal::VehicleMoves { stop: index + 1, rate, force })?;
     let ratio = stop.disagreement();
-    if criteria.is_rest(&limits) {
-        return if ratio <= DISAGREEMENT {
-            Ok(())
-        } else {
-            Err(Refusal::AxesDisagree { ratio }.into())
-        };
-    }
-    let rate = criteria.rate.abs() / DEGREE_PER_HOUR;
-    Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() }.into())
+    let is_agreed = ratio <= DISAGREEMENT;
+    refuse_if(!is_agreed, Refusal::AxesDisagree { ratio })
 }
 
 /// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
 /// drive may end rolling; but where most of them deviate, the model is wrong.
-fn agree(found: &Tally, stops: u32) -> Result<(), alignment::Refusal> {
+fn agree(found: &Tally, stops: u32) -> Passed {
     let drives = stops.saturating_sub(1);
     // A single rest has no other data: the vehicle may be rocked, but not carried round.
     let is_carried = drives == 0 && found.turning_rate > CARRIED;
-    if is_carried || drives > 0 && 2 * found.turning > stops {
-        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops }.into());
-    }
-    if drives > 0 && 2 * found.unsteady >= drives {
-        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives }.into());
-    }
-    Ok(())
+    let is_turning = is_carried || drives > 0 && 2 * found.turning > stops;
+    refuse_if(is_turning, Refusal::EarthNotFelt { stops: found.turning, of: stops })?;
+    let is_unsteady = drives > 0 && 2 * found.unsteady >= drives;
+    refuse_if(is_unsteady, Refusal::DrivesDisagree { drives: found.unsteady, of: drives })
 }
 
 /// Tests the plausibility of the result.
-fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), alignment::Refusal> {
+fn judge(setting: &Setting, found: &Found, stops: u32) -> Passed {
     agree(&found.tally, stops)?;
-    let (Tally { left_out, chi_square, degrees, .. }, blocks) = (found.tally, found.blocks);
-    if left_out * LEFT_OUT > blocks {
-        return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks }.into());
-    }
-    if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
-        return Err(alignment::Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
-    }
+    let (Tally { left_out, chi_square, degrees, .. }, of) = (found.tally, found.blocks);
+    refuse_if(left_out * LEFT_OUT > of, Refusal::RestDisturbed { disturbed: left_out, of })?;
+    let is_no_noise = chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY;
+    let ratio = chi_square / degrees;
+    refuse_if(is_no_noise, alignment::Refusal::ResidualsNotWhite { ratio })?;
     let correlation = found.tally.correlation();
-    if correlation > CORRELATED {
-        return Err(alignment::Refusal::ResidualsCorrelated { correlation });
-    }
+    let is_correlated = correlation > CORRELATED;
+    refuse_if(is_correlated, alignment::Refusal::ResidualsCorrelated { correlation })?;
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
-    if (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE {
-        return Err(alignment::Refusal::EarthRateMismatch { ratio, sigma });
-    }
+    let is_off = (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE;
+    refuse_if(is_off, alignment::Refusal::EarthRateMismatch { ratio, sigma })?;
     let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
     let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
     setting.site.check_sigma(found.azimuth.sigma, source)

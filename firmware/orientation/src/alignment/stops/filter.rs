@@ -85,7 +85,7 @@ impl Filter {
 
     /// Propagates φ over an interval: `bias` and `scale` are the changes of its sensitivities, and
     /// `noise` is the variance that the gyros' noise adds, rad².
-    pub fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
+    pub(super) fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
         let rows = core::array::from_fn(|axis| {
             let mut row = placed(BIAS, &bias[axis]);
             row[SCALE..SCALE + 3].copy_from_slice(&scale[axis]);
@@ -125,7 +125,7 @@ impl Filter {
     }
 
     /// Adds a random walk of this variance, (rad/s)², to the biases.
-    pub fn walk(&mut self, variance: f64) {
+    pub(super) fn walk(&mut self, variance: f64) {
         for axis in BIAS..BIAS + 3 {
             self.covariance[axis][axis] += variance;
         }
@@ -148,7 +148,7 @@ impl Filter {
     }
 
     /// Resets states to zero with this 1σ, and removes their correlations.
-    pub fn reset(&mut self, states: core::ops::Range<usize>, sigma: f64) {
+    pub(super) fn reset(&mut self, states: core::ops::Range<usize>, sigma: f64) {
         for state in states {
             self.state[state] = 0.0;
             self.covariance[state] = [0.0; STATES];
@@ -160,7 +160,7 @@ impl Filter {
     }
 
     /// Adds process noise of this 1σ, m, to the displacement.
-    pub fn add_process_noise(&mut self, sigma: f64) {
+    pub(super) fn add_process_noise(&mut self, sigma: f64) {
         for state in PLACE..PLACE + 2 {
             self.covariance[state][state] += sigma * sigma;
         }
@@ -176,9 +176,8 @@ impl Filter {
 
     /// Normalised innovation squared of at most three measurements: chi-square distributed with as
     /// many degrees of freedom. Infinite where the innovation covariance is not positive.
-    #[must_use]
     #[inline(never)]
-    pub fn normalised_innovation_squared(&self, measurements: &[Measurement]) -> f64 {
+    pub(super) fn normalised_innovation_squared(&self, measurements: &[Measurement]) -> f64 {
         let mut whole = [[0.0; 3]; 3];
         let mut beyond = [0.0; 3];
         for (index, measurement) in measurements.iter().enumerate() {
@@ -199,8 +198,7 @@ impl Filter {
     }
 
     /// Innovation of a measurement: measured less predicted value.
-    #[must_use]
-    pub fn beyond(&self, measurement: &Measurement) -> f64 {
+    pub(super) fn beyond(&self, measurement: &Measurement) -> f64 {
         measurement.value - product(&self.state, &measurement.row)
     }
 
@@ -232,20 +230,17 @@ impl Filter {
     }
 
     /// Variance of a combination of the states.
-    #[must_use]
-    pub fn variance(&self, row: &Row) -> f64 {
+    pub(super) fn variance(&self, row: &Row) -> f64 {
         row.iter().zip(&self.covariance).map(|(part, line)| part * product(line, row)).sum()
     }
 
     /// Covariance of a combination with each of the states.
-    #[must_use]
-    pub fn covariances(&self, row: &Row) -> Row {
+    pub(super) fn covariances(&self, row: &Row) -> Row {
         core::array::from_fn(|state| product(&self.covariance[state], row))
     }
 
     /// Three successive states, beginning with `first`.
-    #[must_use]
-    pub fn three(&self, first: usize) -> Vector {
+    pub(super) fn three(&self, first: usize) -> Vector {
         core::array::from_fn(|axis| self.state[first + axis])
     }
 }
@@ -258,8 +253,7 @@ fn product(a: &Row, b: &Row) -> f64 {
 
 /// Row of a measurement that shows three successive states, the first at this index, by these
 /// factors.
-#[must_use]
-pub fn placed(first: usize, factors: &Vector) -> Row {
+pub(super) fn placed(first: usize, factors: &Vector) -> Row {
     let mut row = [0.0; STATES];
     row[first..first + 3].copy_from_slice(factors);
     row
@@ -267,8 +261,7 @@ pub fn placed(first: usize, factors: &Vector) -> Row {
 
 /// Row of a measurement of the specific force along a direction perpendicular to the predicted one,
 /// both on the start frame; `attitude` is that of the body.
-#[must_use]
-pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Row {
+pub(super) fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Row {
     // Identity used: (φ × f)·p = φ·(f × p).
     let mut row = placed(NOW, &cross(predicted, direction));
     let columns: Vector = core::array::from_fn(|axis| {
@@ -281,8 +274,7 @@ pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Ro
 /// Row by which the velocity integral of a drive comes to depend on φ and the accelerometer biases
 /// on one axis, within `seconds` of a specific force; all on the start frame, `attitude` is that of
 /// the body.
-#[must_use]
-pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64) -> Row {
+pub(super) fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64) -> Row {
     let mut direction = [0.0; 3];
     direction[axis] = seconds;
     force_row(force, &direction, attitude)
@@ -290,8 +282,7 @@ pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64)
 
 /// Row of a measurement of the increase of φ over a stop during which the Earth turned by `earth`,
 /// on one axis.
-#[must_use]
-pub fn rest_row(earth: &Matrix, axis: usize) -> Row {
+pub(super) fn rest_row(earth: &Matrix, axis: usize) -> Row {
     let mut row = [0.0; STATES];
     row[NOW + axis] = 1.0;
     for column in 0..3 {

@@ -8,7 +8,7 @@
 
 use crate::math::brent::{self, Minimum};
 use crate::math::quick_root;
-use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned, unit};
+use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned};
 use crate::math::turn::{high, sine_and_cosine};
 use crate::units::{TURN, wrapped};
 
@@ -116,17 +116,8 @@ impl Inclination {
 
     /// Sines of the angles by which the up vector turned between the stops, as levelled and as
     /// predicted.
-    #[must_use]
-    pub fn turns(&self) -> [f64; 2] {
+    pub(super) fn turns(&self) -> [f64; 2] {
         [self.levelled, self.predicted].map(|[x, y, _]| libm::hypot(x, y))
-    }
-
-    /// Horizontal unit vector in the direction in which the up vector turned from the first stop to
-    /// the last, on the first stop's level axes.
-    #[must_use]
-    pub fn direction(&self) -> Vector {
-        let [x, y, _] = self.levelled;
-        unit(&[x, y, 0.0])
     }
 }
 

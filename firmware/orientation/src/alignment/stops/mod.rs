@@ -13,19 +13,19 @@
 //! resolution is set by the gyros: an uncompensated bias B makes an azimuth error of up to B/`Ω_h`,
 //! which stops at different headings remove, because they make the biases observable.
 
-pub mod block;
+mod block;
 pub mod conclusion;
 pub mod filter;
 pub mod inclination;
-pub mod lever;
-pub mod path;
+mod lever;
+mod path;
 pub mod place;
 pub mod plain;
 pub mod progress;
 pub mod refusal;
 pub mod residual;
 pub mod session;
-pub mod solution;
+mod solution;
 pub mod stop;
 pub mod stop_detector;
 

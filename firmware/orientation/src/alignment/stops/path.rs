@@ -39,13 +39,11 @@ pub struct Path<'a> {
 
 impl Path<'_> {
     /// Position of a stop, north and east of the first, m; zero where it was not reported.
-    #[must_use]
     pub fn displaced(&self, stop: usize) -> [f64; 2] {
         self.stops.get(stop).and_then(|stop| stop.displacement).unwrap_or_default()
     }
 
     /// Standard deviation of the last stop's position, 1σ, m; zero with a single stop.
-    #[must_use]
     pub fn displacement_sigma(&self, setting: &Setting) -> f64 {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else { return 0.0 };
         if self.stops.len() < 2 {
@@ -56,7 +54,6 @@ impl Path<'_> {
     }
 
     /// Position between two stops, m, for a straight drive at constant speed.
-    #[must_use]
     pub fn underway(&self, stop: usize, at: f64) -> [f64; 2] {
         let [Some(before), Some(after)] = [self.stops.get(stop), self.stops.get(stop + 1)] else {
             return self.displaced(stop);
@@ -68,7 +65,6 @@ impl Path<'_> {
 
     /// Sensitivity of the up vector at the last stop to scale errors of the gyros, for rotation
     /// about this axis.
-    #[must_use]
     pub fn turned_about(&self, about: &Vector) -> Vector {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else {
             return [0.0; 3];
@@ -78,7 +74,6 @@ impl Path<'_> {
     }
 
     /// Power of the force noise, (m/s²)²·s: the accelerometers' noise, and sway.
-    #[must_use]
     pub fn density(&self) -> f64 {
         let stood: f64 = self.stops.iter().map(Stop::seconds).sum();
         let of_ends = OF_ENDS * self.blocks.swing / stood.max(1.0);
@@ -86,7 +81,6 @@ impl Path<'_> {
     }
 
     /// Power of the accelerometers' noise alone, (m/s²)²·s.
-    #[must_use]
     pub fn least_density(&self) -> f64 {
         self.stated_density.max(LEAST_DENSITY)
     }

@@ -125,7 +125,6 @@ pub struct Tally {
 
 impl Tally {
     /// Correlation of neighbouring blocks' innovations; zero with too few degrees of freedom.
-    #[must_use]
     pub fn correlation(&self) -> f64 {
         let [products, squares] = self.neighbours;
         if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
@@ -171,7 +170,6 @@ struct Run<'a> {
 
 impl Solution {
     /// Solution before any run, with an approximate start frame.
-    #[must_use]
     pub fn new(frame: Matrix) -> Self {
         let (filter, tally) = (Filter::EMPTY, Tally::default());
         Self { filter, frame, tally, steady: 0.0, roughness: 1.0, colour: 1.0, widening: 1.0 }

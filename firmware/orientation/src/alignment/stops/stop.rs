@@ -110,8 +110,7 @@ impl Stop {
     }
 
     /// Mean square of the angles of back-and-forth motion within a second, rad².
-    #[must_use]
-    pub fn swinging(&self) -> Vector {
+    pub(super) fn swinging(&self) -> Vector {
         self.swung.map(|sum| f64::from(sum) / self.turned.count.max(1.0))
     }
 
@@ -134,8 +133,7 @@ impl Stop {
 
     /// Ratio of the power of the force changes after rotation by the gyros' angles to that before,
     /// the greater of both axes; zero without sufficient sway.
-    #[must_use]
-    pub fn disagreement(&self) -> f64 {
+    pub(super) fn disagreement(&self) -> f64 {
         let ([felt, stays], count) = self.changes;
         let least = LEAST_CHANGE * LEAST_CHANGE * count as f32;
         let ratio = |axis: usize| {
@@ -176,8 +174,7 @@ pub struct Second {
 impl Second {
     /// Velocity at the end per metre of lever arm along each axis of the body, as columns, on the
     /// start's axes, 1/s.
-    #[must_use]
-    pub fn swing(&self) -> Rough {
+    pub(super) fn swing(&self) -> Rough {
         let [x, y, z] = self.rate;
         let columns = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]];
         self.end.attitude.rough_matrix().map(|row| columns.map(|column| dot(&row, &column)))
@@ -190,8 +187,7 @@ impl Second {
     }
 
     /// Mean specific force on the start's axes, m/s²; `None` where it is not usable.
-    #[must_use]
-    pub fn block_force(&self) -> Option<[f32; 3]> {
+    pub(super) fn block_force(&self) -> Option<[f32; 3]> {
         (self.force.is_some() && !self.is_blown).then_some(self.start_force)
     }
 }

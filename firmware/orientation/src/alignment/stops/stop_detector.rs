@@ -8,6 +8,7 @@
 
 use heapless::{Deque, Vec};
 
+use super::Refusal;
 use super::block::{AT_REST, Block, Blocks, DRIVEN};
 use super::lever::Lever;
 use super::stop::{STOPS, Second, Stop};
@@ -42,15 +43,6 @@ pub enum Rests {
     Stated(Vec<[f64; 2], STOPS>),
     /// The whole recording is one stop.
     Whole,
-}
-
-/// Loss of rotation in the samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Loss {
-    /// Samples were missing: time, s, and length of the gap, s.
-    Gap(f64, f64),
-    /// A gyro stood at the limit of its range: time, s.
-    Saturated(f64),
 }
 
 /// The second in progress.
@@ -101,8 +93,8 @@ pub struct StopDetector {
     pub(super) blocks: Blocks<AT_REST>,
     /// Averages of the drives, each with the number of the stop before it.
     pub(super) drives: Blocks<DRIVEN>,
-    /// First event that made the carried attitude invalid.
-    pub(crate) loss: Option<Loss>,
+    /// Loss of rotation that first made the carried attitude invalid.
+    pub(super) loss: Option<Refusal>,
 }
 
 impl StopDetector {
@@ -157,7 +149,7 @@ impl StopDetector {
         self.watch(sample.time);
         // A rotation at its limit is large, so the strapdown has updated its attitude.
         if self.strapdown.push(sample) && sample.turned.iter().any(|turned| turned.is_saturated()) {
-            self.lose(Loss::Saturated(sample.time.seconds()));
+            self.lose(Refusal::RotationClipped { at: sample.time.seconds() });
         }
         let is_over = sample.time.0.saturating_sub(self.progress.since.0) >= SECOND
             || self.is_edge(sample.time);
@@ -181,14 +173,15 @@ impl StopDetector {
     fn watch(&mut self, now: Instant) {
         let elapsed = now.0.saturating_sub(self.last.0);
         if elapsed > self.gap {
-            self.lose(Loss::Gap(self.last.seconds(), elapsed as f64 * 1e-6));
+            let (at, seconds) = (self.last.seconds(), elapsed as f64 * 1e-6);
+            self.lose(Refusal::RotationMissing { at, seconds });
         }
         self.last = now;
     }
 
     /// Stores the first loss.
     #[cold]
-    fn lose(&mut self, loss: Loss) {
+    fn lose(&mut self, loss: Refusal) {
         self.loss.get_or_insert(loss);
     }
 
@@ -360,8 +353,7 @@ impl StopDetector {
     }
 
     /// Criteria of the last ten seconds, and their limits.
-    #[must_use]
-    pub fn criteria(&self) -> Option<(Criteria, Limits)> {
+    pub(super) fn criteria(&self) -> Option<(Criteria, Limits)> {
         self.criteria.map(|criteria| (criteria, self.limits))
     }
 
@@ -372,39 +364,36 @@ impl StopDetector {
     }
 
     /// Sets the position of the last stop, north and east of the first, m.
-    pub fn displace(&mut self, displacement: [f64; 2]) {
+    pub(super) fn displace(&mut self, displacement: [f64; 2]) {
         if let Some(stop) = self.stops.last_mut() {
             stop.displacement = Some(displacement);
         }
     }
 
     /// Joins the blocks at rest in pairs, for a sway with a period shorter than two blocks.
-    pub fn coarsen(&mut self) {
+    pub(super) fn coarsen(&mut self) {
         self.blocks.halve();
     }
 
     /// Time from the beginning of the first sample to the end of the last one, s; zero without
     /// samples.
-    #[must_use]
-    pub fn elapsed(&self) -> f64 {
+    pub(super) fn elapsed(&self) -> f64 {
         let begun = self.begun.unwrap_or(self.last);
         self.last.0.saturating_sub(begun.0) as f64 * 1e-6
     }
 
     /// Beginning of the first sample, s.
-    #[must_use]
-    pub fn start(&self) -> f64 {
+    pub(super) fn start(&self) -> f64 {
         self.begun.map_or(0.0, Instant::seconds)
     }
 
     /// Brings attitude and sensitivities to the end of the last sample.
-    pub fn update(&mut self) {
+    pub(super) fn update(&mut self) {
         self.strapdown.update(self.last);
     }
 
     /// Time of the latest update, s, with attitude and sensitivities then.
-    #[must_use]
-    pub fn now(&self) -> (f64, Carried) {
+    pub(super) fn now(&self) -> (f64, Carried) {
         (self.last.seconds(), self.strapdown.carried)
     }
 }

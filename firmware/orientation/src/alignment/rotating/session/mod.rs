@@ -315,7 +315,7 @@ impl Session {
         listener(Progress::Misalignment(angle, sigma).into());
         match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
-            Err(reason) => self.conclude(Some(reason.into())),
+            Err(reason) => self.conclude(Some(reason)),
         }
     }
 

@@ -6,7 +6,7 @@
 //! remains possible, σ covers it by solution separation, as in integrity monitoring: the distance
 //! of its azimuth from the one given, plus an allowance for what may remain unseen.
 
-use super::{Fit, Model, Problem, ROUNDS, Row, Trial};
+use super::{Fit, Model, Problem, ROUNDS, Row, Trial, taper_of};
 use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
 use crate::math::chi_square_tail;
@@ -369,8 +369,7 @@ impl Problem<'_> {
         let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
         let mut rounds = 0;
         loop {
-            let regression =
-                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+            let regression = self.coloured(&bent);
             let trial = self.trial(&regression, model)?;
             let (known, turn) = match model.hypothesis {
                 Hypothesis::Stepped { .. } => (&mut bent.turn, trial.coefficient),
@@ -394,7 +393,7 @@ impl Problem<'_> {
     fn likeliest_step(&self, model: &Model, fit: &Fit) -> Option<f64> {
         let bent = fit.bent(Hypothesis::Steady);
         let noise = self.setting.site.noise.model().white_part();
-        let regression = self.regression(&noise, Dwell::taper_factor, &bent);
+        let regression = self.regression(&noise, taper_of, &bent);
         let solution = regression.solve(&model.columns())?;
         let (mut power, mut score, mut shared) = (0.0, 0.0, Row::default());
         let mut best = (0.0, 0.0);

@@ -146,7 +146,7 @@ impl Problem<'_> {
     #[must_use]
     #[inline(never)]
     pub fn fit(&self) -> Option<Found> {
-        let regression = self.steady();
+        let regression = self.coloured(&Bent::default());
         let model = self.choose(&regression)?;
         let mut found = self.fit_model(&regression, &model, &Bent::default())?;
         // On an arc, and with few dwells, the hypotheses cannot be distinguished.
@@ -168,9 +168,9 @@ impl Problem<'_> {
         model.is_some_and(|model| model.amplitude == Amplitude::Free)
     }
 
-    /// Regression for a base that stands.
-    pub(super) fn steady(&self) -> Regression<COLUMNS> {
-        self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &Bent::default())
+    /// Regression of the dwells for the configured noise.
+    fn coloured(&self, bent: &Bent) -> Regression<COLUMNS> {
+        self.regression(self.setting.site.noise.model(), taper_of, bent)
     }
 
     /// Fits with a hypothesis iteratively: its columns follow the azimuth and the rate, which it
@@ -179,16 +179,14 @@ impl Problem<'_> {
     fn fit_under(&self, model: &Model, steady: &Fit) -> Option<Found> {
         let mut bent = Bent { hypothesis: model.hypothesis, ..steady.bent };
         for _ in 0..ROUNDS {
-            let regression =
-                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+            let regression = self.coloured(&bent);
             let trial = self.trial(&regression, model)?;
             bent.along = trial.direction.along();
             if model.hypothesis == Hypothesis::Yawing {
                 bent.rate += trial.coefficient;
             }
         }
-        let regression =
-            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+        let regression = self.coloured(&bent);
         let found = self.fit_model(&regression, &self.freed(&regression, model)?, &bent)?;
         let Fit { step, protection, .. } = *steady;
         Some((Fit { step, protection, ..found.0 }, found.1))
@@ -256,18 +254,13 @@ impl Problem<'_> {
     pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
         let horizontal = self.setting.site.latitude.horizontal_rate();
         let bent = fit.bent(fit.model.hypothesis);
-        self.whiten(
-            self.setting.site.noise.model(),
-            Dwell::taper_factor,
-            &bent,
-            &mut |row, white| {
-                let rate = remainder(row, &fit.coefficients) * horizontal;
-                let normalised = remainder(white, &fit.coefficients);
-                let leverage = leverage(white, covariance);
-                let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
-                each(Residual { rate, normalised, studentised });
-            },
-        );
+        self.whiten(self.setting.site.noise.model(), taper_of, &bent, &mut |row, white| {
+            let rate = remainder(row, &fit.coefficients) * horizontal;
+            let normalised = remainder(white, &fit.coefficients);
+            let leverage = leverage(white, covariance);
+            let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
+            each(Residual { rate, normalised, studentised });
+        });
     }
 
     /// Row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and the
@@ -441,11 +434,9 @@ impl Fit {
     }
 }
 
-impl Dwell {
-    /// Taper factor of the dwell, as a function that can be replaced by one.
-    fn taper_factor(&self) -> f64 {
-        self.taper
-    }
+/// Taper factor of a dwell, as a function that can be replaced by one.
+fn taper_of(dwell: &Dwell) -> f64 {
+    dwell.taper
 }
 
 /// Reduces the coefficients' covariance to that of components that, as far as noise goes, may only

@@ -6,7 +6,6 @@ use crate::alignment::stepwise::direction::quadratic;
 use crate::alignment::stepwise::level;
 use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::regression::COLUMNS;
-use crate::signal::dwell::Dwell;
 
 /// Rotation rate so slow that the azimuth follows it linearly, rad/h.
 const SLOW: f64 = 1e-4;
@@ -14,19 +13,18 @@ const SLOW: f64 = 1e-4;
 impl Problem<'_> {
     /// Slow rotation of the base about the vertical beside the result of [`Self::fit`]; `None`
     /// where the fit has already estimated such a rotation.
-    #[must_use]
-    pub fn slow_turn(&self, fit: &Fit) -> Option<SlowMotion> {
+    pub(crate) fn slow_turn(&self, fit: &Fit) -> Option<SlowMotion> {
         if fit.model.hypothesis == Hypothesis::Yawing {
             return None;
         }
         let azimuth = |rate: f64| {
             let bent = Bent { rate, ..fit.bent(fit.model.hypothesis) };
-            let regression =
-                self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+            let regression = self.coloured(&bent);
             Some(self.trial(&regression, &fit.model)?.direction.azimuth)
         };
         let lever = (azimuth(SLOW)? - azimuth(-SLOW)?) / (2.0 * SLOW) * 3600.0;
-        let is_shown = self.dwells.len() >= FEWEST && self.is_circle(&self.steady());
+        let is_shown =
+            self.dwells.len() >= FEWEST && self.is_circle(&self.coloured(&Bent::default()));
         let sigma = if is_shown { self.rate_sigma(fit) } else { None };
         Some(SlowMotion { sigma: sigma.unwrap_or(f64::INFINITY), lever })
     }
@@ -36,8 +34,7 @@ impl Problem<'_> {
     fn rate_sigma(&self, fit: &Fit) -> Option<f64> {
         let model = Model { hypothesis: Hypothesis::Yawing, ..fit.model };
         let bent = fit.bent(Hypothesis::Yawing);
-        let regression =
-            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+        let regression = self.coloured(&bent);
         let solution = regression.solve(&model.columns())?;
         let variance = solution.covariance[COLUMNS - 2][COLUMNS - 2];
         Some(libm::sqrt(variance) * fit.excess / 3600.0)
@@ -45,8 +42,7 @@ impl Problem<'_> {
 
     /// Slow tilting of the base in the forces of these dwells; `None` where a tilt rate is already
     /// compensated.
-    #[must_use]
-    pub fn slow_tilting(&self, fit: &Fit) -> Option<SlowMotion> {
+    pub(crate) fn slow_tilting(&self, fit: &Fit) -> Option<SlowMotion> {
         if self.tilt.rate != TiltRate::default() {
             return None;
         }

@@ -2,7 +2,7 @@
 //! tilt and κ.
 
 use super::hypothesis::{MISSED, OBSERVABLE, WRONG, separation};
-use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, block};
+use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, block, taper_of};
 use crate::alignment::budget::Budget;
 use crate::alignment::stepwise::direction::{Direction, dot, product, quadratic};
 use crate::alignment::stepwise::setting::Amplitude;
@@ -10,7 +10,6 @@ use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::chi_square_tail;
 use crate::math::regression::{COLUMNS, Column, Regression};
 use crate::noise::model::GyroNoise;
-use crate::signal::dwell::Dwell;
 
 /// Probability of the residuals below which their excess over the stated noise raises σ: with few
 /// degrees of freedom, where the factor would be large, and with more.
@@ -46,11 +45,7 @@ impl Problem<'_> {
         let of = |regression: &Regression<COLUMNS>, model: &Model| {
             regression.solve(&model.columns()).map(|solution| through(&block(&solution.covariance)))
         };
-        let white = self.regression(
-            &self.setting.site.noise.model().white_part(),
-            Dwell::taper_factor,
-            bent,
-        );
+        let white = self.regression(&self.setting.site.noise.model().white_part(), taper_of, bent);
         let cold = Model { temperature: Column::Absent, ..*model };
         let all = of(coloured, model)?;
         let drifting = of(coloured, &cold)?.min(all);
@@ -172,8 +167,7 @@ impl Problem<'_> {
             return None;
         }
         let bent = fit.bent(fit.model.hypothesis);
-        let regression =
-            self.regression(self.setting.site.noise.model(), Dwell::taper_factor, &bent);
+        let regression = self.coloured(&bent);
         let free = Model { amplitude: Amplitude::Free, ..fit.model };
         self.trial(&regression, &free)
     }
@@ -182,7 +176,7 @@ impl Problem<'_> {
     /// unconfigured drift.
     fn drifting(&self, fit: &Fit) -> Option<Trial> {
         // On an arc any drift looks like the Earth rate.
-        if !self.is_circle(&self.steady()) {
+        if !self.is_circle(&self.coloured(&Bent::default())) {
             return None;
         }
         let (model, bent) = if fit.model.hypothesis == Hypothesis::Steady {
@@ -200,7 +194,7 @@ impl Problem<'_> {
         for _ in 0..DRIFT_ROUNDS {
             let walk = libm::sqrt(stated.rate_random_walk * stated.rate_random_walk + power);
             let noise = GyroNoise { rate_random_walk: walk, ..stated };
-            let trial = self.trial(&self.regression(&noise, Dwell::taper_factor, &bent), &model)?;
+            let trial = self.trial(&self.regression(&noise, taper_of, &bent), &model)?;
             let is_enough = trial.chi_square <= trial.degrees as f64;
             if is_enough {
                 found = Some(trial);

@@ -128,8 +128,7 @@ impl Schedule {
 
     /// Number of positions when the session continues after this many dwells: whole passes, at most
     /// [`POSITIONS`].
-    #[must_use]
-    pub fn len_beyond(&self, dwells: usize) -> usize {
+    pub(super) fn len_beyond(&self, dwells: usize) -> usize {
         let length = self.len();
         let pass = match self {
             Self::Planned(_) => Order::Quadrature.length(),
@@ -141,8 +140,7 @@ impl Schedule {
 
     /// Whether this many dwells make up whole passes, so that the accuracy is equal in all
     /// directions and drift has cancelled.
-    #[must_use]
-    pub fn is_balanced(&self, dwells: usize) -> bool {
+    pub(super) fn is_balanced(&self, dwells: usize) -> bool {
         let pass = match self {
             Self::Planned(plan) if plan.order != Order::Pairs => plan.order.length(),
             _ => self.len(),
@@ -215,8 +213,7 @@ impl Schedule {
 
     /// Latest difference δ in the direction of motion, rad/s; `None` where the last two dwells are
     /// not neighbours.
-    #[must_use]
-    pub fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
+    pub(super) fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
         let [.., before, last] = dwells else { return None };
         let turned_back = match self {
             Self::Listed(_) | Self::Planned(_) => false,
