@@ -93,8 +93,7 @@ impl Budget {
     }
 
     /// Largest contribution and its source.
-    #[must_use]
-    pub fn greatest(&self) -> (Source, f64) {
+    pub(crate) fn greatest(&self) -> (Source, f64) {
         let parts = self.parts();
         parts.into_iter().fold(parts[0], |most, part| if part.1 > most.1 { part } else { most })
     }

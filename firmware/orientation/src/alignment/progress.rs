@@ -48,27 +48,8 @@ crate::words! { Progress:
 
 impl Progress {
     /// The platform's inclination by its mean specific force at rest, m/s².
-    #[must_use]
-    pub fn levelled([along, across, down]: [f64; 3]) -> Self {
+    pub(crate) fn levelled([along, across, down]: [f64; 3]) -> Self {
         Self::Levelled([along, across].map(|force| libm::atan2(force, -down)))
-    }
-}
-
-impl From<stepwise::Progress> for Progress {
-    fn from(progress: stepwise::Progress) -> Self {
-        Self::Stepwise(progress)
-    }
-}
-
-impl From<rotating::Progress> for Progress {
-    fn from(progress: rotating::Progress) -> Self {
-        Self::Rotating(progress)
-    }
-}
-
-impl From<stops::Progress> for Progress {
-    fn from(progress: stops::Progress) -> Self {
-        Self::Stops(progress)
     }
 }
 

@@ -250,8 +250,7 @@ impl Average {
     /// Mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
     /// with fewer than two turns. The gyro shows the part `steady` of the platform's steady rate
     /// ([`steady_part`]). Each turn that is used is passed to `each` with its phasor.
-    #[must_use]
-    pub fn of(
+    pub(crate) fn of(
         stretch: &Stretch,
         misalignments: &[AxisMisalignment],
         steady: f64,

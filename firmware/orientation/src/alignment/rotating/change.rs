@@ -15,7 +15,10 @@ use crate::math::regression::{COLUMNS, Column, Regression, Solution};
 use crate::math::{Complex, median, sort};
 
 /// Greatest number of turns of all stretches.
-pub const MARKS: usize = STRETCHES * TURNS;
+const MARKS: usize = STRETCHES * TURNS;
+
+/// Marks of all turns.
+pub type Marks = Vec<Mark, MARKS>;
 
 /// Value of a quantity in one turn that should stay constant.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,12 +62,6 @@ pub enum Shape {
 /// Column of the constant part. The columns of a fit are: constant, part that changes with the
 /// sense, both again for the second speed, change.
 const ONE: usize = 0;
-/// Column of the part that changes with the sense.
-const ODD: usize = 1;
-/// Column of the constant part at the second speed.
-const SECOND: usize = 2;
-/// Column of the part that changes with the sense, at the second speed.
-const SECOND_ODD: usize = 3;
 /// Column of the change.
 const CHANGE: usize = 4;
 
@@ -93,7 +90,7 @@ pub struct Found {
 #[derive(Clone, Debug)]
 pub struct Record {
     /// Marks in the order of time.
-    marks: Vec<Mark, MARKS>,
+    marks: Marks,
     /// Prior knowledge of the part that changes with the sense, for each part of the value.
     odd: [Column; 2],
     /// Variance of either part of one turn's value, and whether it is known independently of these
@@ -120,7 +117,7 @@ const FEWEST: f64 = 2.0;
 impl Record {
     /// Record of values with two parts, whose noise follows from differences of neighbours and is
     /// at least `least`.
-    pub fn of_phasors(marks: Vec<Mark, MARKS>, odd: [Column; 2], least: f64) -> Self {
+    pub fn of_phasors(marks: Marks, odd: [Column; 2], least: f64) -> Self {
         let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2, end: 0.0 };
         record.in_order();
         record.variance = record.of_neighbours().max(least * least);
@@ -130,7 +127,7 @@ impl Record {
     /// Record of values with one part and this variance for one turn. The value at the end of a
     /// linear change is extrapolated by `lever` seconds beyond the end.
     pub fn of_angles(
-        marks: Vec<Mark, MARKS>,
+        marks: Marks,
         odd: Column,
         (variance, is_known): (f64, bool),
         lever: f64,
@@ -172,32 +169,21 @@ impl Record {
     fn row(&self, mark: &Mark, shape: Shape) -> [f64; COLUMNS] {
         let (time, odd) = (f64::from(mark.time), f64::from(mark.odd));
         let second = f64::from(u8::from(mark.is_second));
-        let mut row = [0.0; COLUMNS];
-        row[ONE] = 1.0;
-        row[ODD] = odd;
-        row[SECOND] = second;
-        row[SECOND_ODD] = second * odd;
-        row[CHANGE] = match shape {
+        let change = match shape {
             Shape::Steady => 0.0,
             Shape::Rate => time - self.end,
             Shape::Step(after) => -f64::from(u8::from(time < after)),
         };
-        row
+        [1.0, odd, second, second * odd, change, 0.0, 0.0]
     }
 
     /// Selection of the columns for one part of the value.
     fn model(&self, shape: Shape, part: usize) -> [Column; COLUMNS] {
-        let is_two = self.marks.iter().any(|mark| mark.is_second);
+        let (is_two, odd) = (self.marks.iter().any(|mark| mark.is_second), self.odd[part]);
         // With two speeds nothing is assumed in common where the difference of the senses is free.
-        let second =
-            if is_two && self.odd[part] == Column::Free { Column::Free } else { Column::Absent };
-        let mut model = [Column::Absent; COLUMNS];
-        model[ONE] = Column::Free;
-        model[ODD] = self.odd[part];
-        model[SECOND] = second;
-        model[SECOND_ODD] = second;
-        model[CHANGE] = if shape == Shape::Steady { Column::Absent } else { Column::Free };
-        model
+        let second = if is_two && odd == Column::Free { Column::Free } else { Column::Absent };
+        let change = if shape == Shape::Steady { Column::Absent } else { Column::Free };
+        [Column::Free, odd, second, second, change, Column::Absent, Column::Absent]
     }
 
     /// Fit of one part of the value.

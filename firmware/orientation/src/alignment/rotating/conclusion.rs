@@ -4,7 +4,7 @@
 use heapless::Vec;
 
 use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
-use super::change::{MARKS, Mark};
+use super::change::{Mark, Marks};
 use super::heading::Directions;
 use super::misalignment::AxisMisalignment;
 use super::solution::{Fit, Pair, Problem, force_density, of_one_turn, of_turn};
@@ -169,7 +169,7 @@ impl Conclusion {
 
     /// Finds the averages of both senses for every speed.
     #[inline(never)]
-    fn pair(&mut self, evidence: &Evidence, marks: &mut Vec<Mark, MARKS>) -> Passed {
+    fn pair(&mut self, evidence: &Evidence, marks: &mut Marks) -> Passed {
         let averages = self.averages(evidence, marks);
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
@@ -202,11 +202,7 @@ impl Conclusion {
 
     /// Means of the stretches, without disturbed turns; the phasors of the others are added to
     /// `marks` with the sign of their sense.
-    fn averages(
-        &self,
-        evidence: &Evidence,
-        marks: &mut Vec<Mark, MARKS>,
-    ) -> Vec<Average, STRETCHES> {
+    fn averages(&self, evidence: &Evidence, marks: &mut Marks) -> Vec<Average, STRETCHES> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
         let (stretches, misalignments) = (turn_accumulator.stretches(), &self.misalignments);
         let horizontal = setting.site.latitude.horizontal_rate();
@@ -310,7 +306,7 @@ impl Conclusion {
 
     /// Solves, and raises σ by the scatter of the turns and by possible changes from turn to turn.
     #[inline(never)]
-    fn solve(&mut self, evidence: &Evidence, marks: Vec<Mark, MARKS>) -> Passed {
+    fn solve(&mut self, evidence: &Evidence, marks: Marks) -> Passed {
         let Evidence { setting, tilting, .. } = evidence;
         let problem = self.problem(evidence);
         let mut fit = problem.solve().ok_or(alignment::Refusal::MisalignmentUnknown)?;

@@ -5,9 +5,7 @@
 //! causes it was. Otherwise σ is inflated by the effect of a change on the azimuth, times its
 //! probability.
 
-use heapless::Vec;
-
-use super::change::{Found, MARKS, Mark, Record, Shape};
+use super::change::{Found, Mark, Marks, Record, Shape};
 use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
 use super::{Refusal, misalignment, solution};
@@ -51,7 +49,7 @@ impl Directions<'_> {
     /// [`Refusal::SensesDisagree`], and [`Refusal::TiltChanged`] where the tilt's direction drifts as
     /// an encoder that creeps lets it.
     #[inline(never)]
-    pub fn inflation(&self, marks: Vec<Mark, MARKS>) -> Result<f64, alignment::Refusal> {
+    pub fn inflation(&self, marks: Marks) -> Result<f64, alignment::Refusal> {
         let Some(record) = self.record(marks) else { return Ok(0.0) };
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
@@ -72,7 +70,7 @@ impl Directions<'_> {
     }
 
     /// Observability of a slow rotation of the base about the vertical; `None` without turns.
-    pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowMotion> {
+    pub fn slow_turn(&self, marks: Marks) -> Option<SlowMotion> {
         let record = self.record(marks)?;
         let steady = record.steady()?;
         let drift = record.changing(Shape::Rate, &steady);
@@ -81,7 +79,7 @@ impl Directions<'_> {
     }
 
     /// Directions of the turns, rad, relative to that of the Earth rate.
-    fn record(&self, mut marks: Vec<Mark, MARKS>) -> Option<Record> {
+    fn record(&self, mut marks: Marks) -> Option<Record> {
         let first = self.problem.pairs.first()?;
         let variance = self.angle_variance(first);
         for mark in &mut marks {

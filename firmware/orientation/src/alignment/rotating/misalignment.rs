@@ -155,9 +155,9 @@ impl AxisMisalignment {
 
     /// Whether every number is finite and in its range.
     fn is_possible(&self) -> bool {
-        let numbers = [self.sine, self.quadrature, self.sine_sigma, self.quadrature_sigma];
-        let are_finite = numbers.iter().all(|number| number.is_finite());
-        are_finite && self.sine.abs() <= 1.0 && self.frequency > 0.0 && self.frequency.is_finite()
+        let Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, .. } = *self;
+        let numbers = [sine, quadrature, sine_sigma, quadrature_sigma, frequency];
+        numbers.iter().all(|number| number.is_finite()) && sine.abs() <= 1.0 && frequency > 0.0
     }
 }
 

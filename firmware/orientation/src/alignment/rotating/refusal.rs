@@ -126,8 +126,7 @@ crate::words! { Refusal:
 
 impl Refusal {
     /// Usual remedy, with which the sentence ends; empty where it names none.
-    #[must_use]
-    pub const fn remedy(&self) -> &'static str {
+    pub(crate) const fn remedy(&self) -> &'static str {
         match self {
             Self::TurnsDisturbed { .. } => ": keep the base still, let the sensor settle",
             _ => "",

@@ -224,8 +224,7 @@ impl Problem<'_> {
     }
 
     /// Solves for the azimuth; `None` without a pair, or without a solution on the horizon.
-    #[must_use]
-    pub fn solve(&self) -> Option<Fit> {
+    pub(crate) fn solve(&self) -> Option<Fit> {
         let first = self.pairs.first()?;
         let (tilt, tilt_sigma) = self.tilt();
         let lean = Lean::of(tilt);
@@ -245,8 +244,7 @@ impl Problem<'_> {
     }
 
     /// Horizontal and vertical Earth rate that the misaligned axis can measure, rad/s.
-    #[must_use]
-    pub fn earth(&self) -> [f64; 2] {
+    pub(crate) fn earth(&self) -> [f64; 2] {
         let latitude = self.setting.site.latitude;
         let along = self.misalignments.first().map_or(1.0, |found| libm::cos(found.angle()));
         [latitude.horizontal_rate() * along, latitude.vertical_rate()]
@@ -457,8 +455,7 @@ impl Problem<'_> {
                 self.tilting.scale(site.scale_sigma, &fit.lean, turned.angle, horizontal),
                 turned.rounded,
             ),
-            temperature: 0.0,
-            displacement: 0.0,
+            ..Budget::default()
         }
     }
 

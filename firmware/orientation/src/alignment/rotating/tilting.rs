@@ -3,7 +3,7 @@
 
 use heapless::Vec;
 
-use super::change::{MARKS, Mark, Record, Shape};
+use super::change::{Mark, Marks, Record, Shape};
 use super::level::Lean;
 use super::turn::Stretch;
 use crate::math::Complex;
@@ -154,7 +154,7 @@ fn direction(marks: &[Mark]) -> Complex {
 }
 
 /// Force phasors of all turns over gravity, g.
-fn marks(stretches: &[Stretch], gravity: f64) -> Vec<Mark, MARKS> {
+fn marks(stretches: &[Stretch], gravity: f64) -> Marks {
     let mut marks = Vec::new();
     for stretch in stretches {
         for turn in stretch.turns() {

@@ -59,8 +59,7 @@ pub(super) fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])
 impl Turn {
     /// Turn from the sums of a whole turn of `seconds` that began at `since` µs in its stretch, and
     /// the regressions of its forces; `None` where either does not cover a turn.
-    #[must_use]
-    pub fn of(
+    pub(crate) fn of(
         sums: &Sums,
         reference: &Block,
         since: u64,
@@ -121,8 +120,7 @@ pub enum Sense {
 
 impl Sense {
     /// Sense of a rate; zero counts as clockwise.
-    #[must_use]
-    pub fn of(rate: f64) -> Self {
+    pub(crate) fn of(rate: f64) -> Self {
         if rate < 0.0 { Self::CounterClockwise } else { Self::Clockwise }
     }
 
@@ -184,12 +182,6 @@ impl Stretch {
     pub fn speed(&self) -> f64 {
         let sum: f64 = self.turns.iter().map(|turn| f64::from(turn.speed)).sum();
         (sum / self.turns.len().max(1) as f64).abs()
-    }
-
-    /// Total time of the turns, s.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.turns.iter().map(|turn| f64::from(turn.seconds)).sum()
     }
 
     /// Adds one turn. Where there is no room, neighbours are joined, and each entry stands for

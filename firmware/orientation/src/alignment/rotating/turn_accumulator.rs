@@ -257,13 +257,8 @@ impl TurnAccumulator {
 
     /// Fault of the accelerometer, if there is one: saturated or stuck.
     pub(super) fn accelerometer(&self) -> Option<Trouble> {
-        if self.clipped > FEW_FORCES {
-            Some(Trouble::Saturated)
-        } else if self.most_repeated > FEW_FORCES {
-            Some(Trouble::Stuck)
-        } else {
-            None
-        }
+        let stuck = (self.most_repeated > FEW_FORCES).then_some(Trouble::Stuck);
+        if self.clipped > FEW_FORCES { Some(Trouble::Saturated) } else { stuck }
     }
 
     /// Processes the block before the latest one, whose neighbours are both known.

@@ -7,7 +7,7 @@
 //! base whose sensors failed before they could observe its sway.
 
 use super::Refusal;
-use super::quality::median_of;
+use super::quality::{median_of, statistics};
 use super::setting::Setting;
 use crate::alignment;
 use crate::device::{Device, Trouble};
@@ -55,7 +55,7 @@ fn is_stuck(dwells: &[Dwell]) -> bool {
 /// Factor of the configured noise power by which the dwells scatter; `None` where they do not
 /// scatter alike and white.
 fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
-    let quiet = || dwells.iter().filter_map(|dwell| dwell.statistics.as_ref());
+    let quiet = || statistics(dwells);
     let ratios = || quiet().map(|statistics| power(statistics) / stated(setting, statistics));
     let usual = median_of(ratios());
     let is_alike = |ratio: &f64| (usual / ALIKE..usual * ALIKE).contains(ratio);

@@ -141,10 +141,9 @@ impl Conclusion {
 
     /// Tilt from the dwells that are not excluded.
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
-        let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
         let (gravity, bias) =
             (setting.site.latitude.gravity(), setting.site.accelerometer_bias_sigma);
-        self.tilt = level::tilt(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
+        self.tilt = level::tilt(&setting.mount, self.kept(dwells), gravity, bias);
     }
 
     /// Fits, and excludes the dwell with the largest residual, until none stands out.
@@ -154,7 +153,7 @@ impl Conclusion {
     fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Passed {
         let mut scatter: f64 = 1.0;
         loop {
-            let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+            let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
             Self::enough(setting, dwells.len(), &kept)
                 .map_err(|why| cause::of(why, setting, dwells))?;
             if !setting.site.noise.is_white_known() {
@@ -163,11 +162,7 @@ impl Conclusion {
             let white = self.angle_random_walk * self.angle_random_walk;
             let tilt = self.tilt;
             let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
-            let nothing = if setting.half.is_some() {
-                Refusal::NotInHalf
-            } else {
-                Refusal::AzimuthUnobservable
-            };
+            let nothing = setting.half.map_or(Refusal::AzimuthUnobservable, |_| Refusal::NotInHalf);
             let found = problem.fit().ok_or(nothing)?;
             self.keep_residuals(&problem, &found);
             let fit = self.fit.insert(found.0);
@@ -219,9 +214,10 @@ impl Conclusion {
         Err(Refusal::EndDisagrees { dwells: first.max(last), after }.into())
     }
 
-    /// The dwells that take part, with their indices.
-    fn kept<'a>(&self, dwells: &'a [Dwell]) -> impl Iterator<Item = (usize, &'a Dwell)> {
-        dwells.iter().enumerate().filter(|(index, _)| self.disturbances[*index].is_none())
+    /// The dwells that take part.
+    fn kept<'a>(&self, dwells: &'a [Dwell]) -> impl Iterator<Item = &'a Dwell> + Clone {
+        let pairs = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
+        pairs.map(|(dwell, _)| dwell)
     }
 
     /// Checks that enough dwells at enough different positions are left.
@@ -285,8 +281,8 @@ impl Conclusion {
     /// other units shows a false tilt.
     fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Passed {
         let gravity = setting.site.latitude.gravity();
-        let kept = self.kept(dwells).map(|(_, dwell)| dwell);
-        let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
+        let ratio = level::gravity_ratio(self.kept(dwells), gravity);
+        let Some(ratio) = ratio else { return Ok(()) };
         let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.site.accelerometer_bias_sigma / gravity;
         let is_off = (ratio - 1.0).abs() > tolerance;
         refuse_if(is_off, alignment::Refusal::AccelerometerImplausible { ratio })
@@ -313,7 +309,7 @@ impl Conclusion {
     /// Refuses two positions near their own axis, where the error of the azimuth is not normal: the
     /// cosine that they measure is flat there.
     fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Passed {
-        let mut angles = self.kept(dwells).map(|(_, dwell)| dwell.stage);
+        let mut angles = self.kept(dwells).map(|dwell| dwell.stage);
         let Some(first) = angles.next().filter(|_| fit.model.is_single_axis) else { return Ok(()) };
         let apart = |angle: Angle| (angle - first).signed_rad();
         let other =
@@ -353,7 +349,7 @@ impl Conclusion {
     #[must_use]
     pub fn slow_motions(&self, setting: &Setting, dwells: &[Dwell]) -> [Option<SlowMotion>; 2] {
         let Some(fit) = &self.fit else { return [None; 2] };
-        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
         let problem = self.problem(setting, &kept);
         [problem.slow_turn(fit), problem.slow_tilting(fit)]
     }
@@ -367,7 +363,7 @@ impl Conclusion {
         fit: &Fit,
         criterion: Criterion,
     ) -> Result<Azimuth, alignment::Refusal> {
-        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
         let problem = self.problem(setting, &kept);
         let azimuth = match criterion {
             Criterion::MaximumLikelihood => {

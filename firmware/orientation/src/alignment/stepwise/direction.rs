@@ -45,8 +45,7 @@ pub struct Direction {
 
 impl Direction {
     /// Components of the Earth rate north and east along body x, in units of `Ω_h`.
-    #[must_use]
-    pub fn along(&self) -> [f64; 2] {
+    pub(crate) fn along(&self) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
         [self.amplitude * cosine, self.amplitude * sine]
     }
@@ -66,8 +65,7 @@ impl Direction {
     }
 
     /// Components β of this solution: ρ(e + f) − f, for the unit vector e of its azimuth.
-    #[must_use]
-    pub fn components(&self, unit: [f64; 2], vertical: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn components(&self, unit: [f64; 2], vertical: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| self.amplitude * (unit[i] + vertical[i]) - vertical[i])
     }
 }
@@ -238,26 +236,22 @@ fn of_table(k: usize) -> [f64; 2] {
 }
 
 /// Scalar product xᵀy.
-#[must_use]
-pub fn dot(x: [f64; 2], y: [f64; 2]) -> f64 {
+pub(crate) fn dot(x: [f64; 2], y: [f64; 2]) -> f64 {
     x[0] * y[0] + x[1] * y[1]
 }
 
 /// Matrix–vector product M x.
-#[must_use]
-pub fn product(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
+pub(crate) fn product(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
     [dot(matrix[0], x), dot(matrix[1], x)]
 }
 
 /// Quadratic form xᵀM x.
-#[must_use]
-pub fn quadratic(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> f64 {
+pub(crate) fn quadratic(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> f64 {
     dot(x, product(matrix, x))
 }
 
 /// Inverse of a symmetric matrix; `None` where it is not positive definite.
-#[must_use]
-pub fn inverted([[a, b], [_, d]]: &[[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+pub(crate) fn inverted([[a, b], [_, d]]: &[[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     let determinant = a * d - b * b;
     let positive = determinant > 0.0 && *a > 0.0;
     positive.then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])

@@ -84,7 +84,7 @@ pub fn tilt<'a>(
     let drifting = is_shown.then(|| forces.weighted(Beside::Drift)).flatten();
     let drifting = drifting.filter(|drifting| drifting.significance() > BELIEVED);
     let explains = |one: &Option<Found>, other: &Option<Found>| match (one, other) {
-        (Some(one), Some(other)) => one.explains_more_than(other),
+        (Some(one), Some(other)) => other.is_beaten_by(one.scatter),
         (one, None) => one.is_some(),
         (None, Some(_)) => false,
     };
@@ -280,12 +280,9 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
             rows += 2.0;
         }
         let bias = Column::Prior(bias_sigma);
-        let (extra, parameters) = match beside {
-            Beside::Nothing => (Column::Absent, 4.0),
-            Beside::Rate | Beside::Drift | Beside::Counter(_) | Beside::Step(_) => {
-                (Column::Free, 6.0)
-            }
-        };
+        let is_alone = matches!(beside, Beside::Nothing);
+        let (extra, parameters) =
+            if is_alone { (Column::Absent, 4.0) } else { (Column::Free, 6.0) };
         let model = [Column::Free, Column::Free, bias, bias, Column::Absent, extra, extra];
         let solution = regression.solve(&model)?;
         let [real, imaginary, bias_x, bias_y, _, beside_real, beside_imaginary] =
@@ -310,7 +307,7 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
 }
 
 /// Covariance block of two neighbouring columns.
-fn square(covariance: &[[f64; COLUMNS]; COLUMNS], from: usize) -> [[f64; 2]; 2] {
+pub(super) fn square(covariance: &[[f64; COLUMNS]; COLUMNS], from: usize) -> [[f64; 2]; 2] {
     [0, 1].map(|i| [0, 1].map(|j| covariance[from + i][from + j]))
 }
 
@@ -335,11 +332,6 @@ impl Found {
     fn significance(&self) -> f64 {
         let information = inverted(&self.beside.covariance);
         information.map_or(0.0, |information| quadratic(&information, self.beside.value))
-    }
-
-    /// Whether it is clearly more likely than another fit with as many parameters.
-    fn explains_more_than(&self, other: &Self) -> bool {
-        other.is_beaten_by(self.scatter)
     }
 
     /// Whether a fit with this scatter and as many parameters is clearly more likely.

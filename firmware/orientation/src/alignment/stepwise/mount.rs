@@ -162,14 +162,13 @@ pub struct TwoFrame {
     pub inner_zero: f64,
 }
 
-/// One of the two frames.
-#[derive(Clone, Copy)]
-enum Frame {
-    /// Outer frame, about body x.
-    Outer,
-    /// Inner frame, across the outer one.
-    Inner,
-}
+/// Frame angles with one of the two frames turned by an angle, rad.
+type Turning = fn(FrameAngles, f64) -> FrameAngles;
+
+/// Turns the outer frame, about body x.
+const OUTER: Turning = |from, turn| FrameAngles { outer: from.outer + turn, ..from };
+/// Turns the inner frame, across the outer one.
+const INNER: Turning = |from, turn| FrameAngles { inner: from.inner + turn, ..from };
 
 impl TwoFrame {
     /// Sensitive axis at these angles: a unit vector forward, right, down. The rotations are exact,
@@ -205,7 +204,7 @@ impl TwoFrame {
             Station::Forward | Station::Backward => {
                 let way = if station == Station::Forward { QUARTER } else { -QUARTER };
                 let start = self.shown(0.0, way);
-                let found = self.perpendicular(start, Frame::Inner, down);
+                let found = self.perpendicular(start, INNER, down);
                 return found.ok_or(MountError::Unreachable(station)).and_then(within_limits);
             }
             Station::Right => (-QUARTER, 0.0, down),
@@ -215,8 +214,8 @@ impl TwoFrame {
         let mut angles = self.shown(outer, inner);
         for _ in 0..ROUNDS {
             angles = self
-                .perpendicular(angles, Frame::Inner, forward)
-                .and_then(|angles| self.perpendicular(angles, Frame::Outer, across))
+                .perpendicular(angles, INNER, forward)
+                .and_then(|angles| self.perpendicular(angles, OUTER, across))
                 .ok_or(MountError::Unreachable(station))?;
         }
         within_limits(angles)
@@ -232,11 +231,8 @@ impl TwoFrame {
     ///
     /// Over the angle x of a frame any component of the axis is a + b cos x + c sin x, so three
     /// evaluations determine a, b and c.
-    fn perpendicular(&self, from: FrameAngles, frame: Frame, to: [f64; 3]) -> Option<FrameAngles> {
-        let at = |turn: f64| match frame {
-            Frame::Outer => FrameAngles { outer: from.outer + turn, ..from },
-            Frame::Inner => FrameAngles { inner: from.inner + turn, ..from },
-        };
+    fn perpendicular(&self, from: FrameAngles, by: Turning, to: [f64; 3]) -> Option<FrameAngles> {
+        let at = |turn: f64| by(from, turn);
         let component = |turn: f64| dot(&self.sensitive_axis(at(turn)), &to);
         let [here, aside, opposite] = [0.0, QUARTER, 2.0 * QUARTER].map(component);
         let mean = 0.5 * (here + opposite);

@@ -143,7 +143,7 @@ impl ExpectedScatter {
     /// gyro where they scatter as expected.
     pub(super) fn observed_white(&self, dwells: &[Dwell]) -> f64 {
         let (mut found, mut expected) = (0.0, 0.0);
-        for statistics in dwells.iter().filter_map(|dwell| dwell.statistics.as_ref()) {
+        for statistics in statistics(dwells) {
             found += statistics.scatter;
             expected += (statistics.count() - 2.0) * self.block_variance(statistics);
         }
@@ -399,6 +399,11 @@ fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &Tilt) -> 
     [0, 1].map(|i| force[i] / gravity - expected[i] - bias[i])
 }
 
+/// Statistics of the dwells that have them.
+pub(super) fn statistics(dwells: &[Dwell]) -> impl Iterator<Item = &BlockStatistics> {
+    dwells.iter().filter_map(|dwell| dwell.statistics.as_ref())
+}
+
 /// Noise power N² from the median of the dwells' own scatter, (rad/s)²·s; with fewer than three
 /// dwells from their neighbouring blocks, to which a slow disturbance contributes little.
 fn white_median(dwells: &[Dwell]) -> f64 {
@@ -412,7 +417,7 @@ fn white_median(dwells: &[Dwell]) -> f64 {
         };
         variance * statistics.block_seconds
     };
-    median_of(dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(estimate)))
+    median_of(statistics(dwells).map(estimate))
 }
 
 /// Variance of the shared slope for white noise of density one: the median of n values has π/2
@@ -421,17 +426,15 @@ fn slope_density(dwells: &[Dwell]) -> f64 {
     let density = |statistics: &BlockStatistics| {
         statistics.slope_unit() * statistics.slope_unit() / statistics.block_seconds
     };
-    let mut values: heapless::Vec<f64, CAPACITY> =
-        dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(density)).collect();
-    if values.len() < 3 {
+    let count = statistics(dwells).count();
+    if count < 3 {
         return 0.0;
     }
-    core::f64::consts::FRAC_PI_2 / values.len() as f64 * median(&mut values)
+    core::f64::consts::FRAC_PI_2 / count as f64 * median_of(statistics(dwells).map(density))
 }
 
 /// Slope that the dwells share, rad/s²; zero with fewer than three dwells.
 fn slope_median(dwells: &[Dwell]) -> f64 {
-    let mut slopes: heapless::Vec<f64, CAPACITY> =
-        dwells.iter().filter_map(|dwell| dwell.statistics.as_ref().map(|q| q.slope)).collect();
-    if slopes.len() < 3 { 0.0 } else { median(&mut slopes) }
+    let is_shared = statistics(dwells).count() >= 3;
+    if is_shared { median_of(statistics(dwells).map(|one| one.slope)) } else { 0.0 }
 }

@@ -141,8 +141,7 @@ crate::words! { Refusal:
 
 impl Refusal {
     /// Usual remedy, with which the sentence ends; empty where it names none.
-    #[must_use]
-    pub const fn remedy(&self) -> &'static str {
+    pub(crate) const fn remedy(&self) -> &'static str {
         match self {
             Self::AzimuthUnobservable => ": turn the stage over a longer arc",
             Self::TiltTooUncertain { .. } => "; turn a full circle or calibrate the accelerometer",

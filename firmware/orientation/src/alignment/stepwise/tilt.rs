@@ -91,8 +91,7 @@ impl Tilt {
     }
 
     /// Unit vector of the base's downward axis, in the levelled frame.
-    #[must_use]
-    pub fn down(&self) -> [f64; 3] {
+    pub(crate) fn down(&self) -> [f64; 3] {
         let (sine_roll, cosine_roll) = libm::sincos(self.roll());
         let cosine_pitch = libm::sqrt((1.0 - self.real * self.real).max(0.0));
         [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll]
@@ -111,8 +110,7 @@ impl Tilt {
     }
 
     /// Specific force along the sensitive axis and 90° clockwise of it, g, without bias.
-    #[must_use]
-    pub fn force(&self, theta: f64) -> [f64; 2] {
+    pub(crate) fn force(&self, theta: f64) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(theta);
         [self.real * cosine - self.imaginary * sine, -(self.real * sine + self.imaginary * cosine)]
     }

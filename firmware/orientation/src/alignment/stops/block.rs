@@ -38,12 +38,7 @@ impl Block {
     fn joined(&self, other: &Self) -> Self {
         let seconds = self.seconds + other.seconds;
         let [a, b] = [self.seconds / seconds, other.seconds / seconds];
-        let mean = |x: f32, y: f32| a * x + b * y;
-        let rough = |x: &Rough, y: &Rough| {
-            core::array::from_fn(|row| {
-                core::array::from_fn(|column| mean(x[row][column], y[row][column]))
-            })
-        };
+        let rough = |x, y| combined(x, y, |x, y| a * x + b * y);
         Self {
             middle: f64::from(a) * self.middle + f64::from(b) * other.middle,
             seconds,
@@ -53,6 +48,11 @@ impl Block {
             stop: self.stop,
         }
     }
+}
+
+/// Matrix of what becomes of the elements of two matrices.
+pub(super) fn combined(x: &Rough, y: &Rough, of: impl Fn(f32, f32) -> f32) -> Rough {
+    core::array::from_fn(|row| core::array::from_fn(|column| of(x[row][column], y[row][column])))
 }
 
 /// The blocks of all stops, or of all drives, in order.

@@ -11,7 +11,6 @@ use super::place::Place;
 use super::plain::Plain;
 use super::residual::Residual;
 use super::solution::{Belief, Solution, Tally};
-use super::stop::Stop;
 use super::stop_detector::{Rests, StopDetector, WINDOW};
 use super::{Refusal, Setting};
 use crate::alignment::budget::{Budget, Source};
@@ -130,18 +129,17 @@ impl Conclusion {
 
     /// What the solution leaves of a stop of this session; none without a solution, or where it is
     /// not known how far from the first one the vehicle stood.
-    #[must_use]
-    pub fn residual(
+    pub(crate) fn residual(
         &self,
         setting: &Setting,
         stop_detector: &StopDetector,
         stop: usize,
     ) -> Option<Residual> {
-        let Found { start_attitude, biases, .. } = self.found.as_ref()?;
+        let found = self.found.as_ref()?;
         let path = path(setting, stop_detector);
         path.stops.get(stop).filter(|at| stop == 0 || at.displacement.is_some())?;
         let walk = setting.site.noise.model().angle_random_walk;
-        Some(Residual::of(&path, stop, start_attitude, biases, walk))
+        Some(Residual::of(&path, stop, found, walk))
     }
 
     /// Refusal without any details.
@@ -170,17 +168,17 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
 /// short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
     setting.site.check_latitude()?;
-    stop_detector.loss.map_or(Ok(()), Err)?;
+    stop_detector.state.loss.map_or(Ok(()), Err)?;
     let (stops, is_whole) = (stop_detector.stops(), stop_detector.rests == Rests::Whole);
-    let is_fleeting = stop_detector.fleeting > 0.0 && stops.len() < 2;
-    refuse_if(is_fleeting, too_short(stops.len(), stop_detector.fleeting))?;
+    let is_fleeting = stop_detector.state.fleeting > 0.0 && stops.len() < 2;
+    refuse_if(is_fleeting, too_short(stops.len(), stop_detector.state.fleeting))?;
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
         return Err(Refusal::NoStop.into());
     };
     let is_alone = !is_whole && stops.len() == 1;
     refuse_if(is_alone, Refusal::OneStop { from: first.from, to: first.to })?;
-    for (index, stop) in stops.iter().enumerate() {
-        inspect_stop(setting, stop_detector, index, stop)?;
+    for index in 0..stops.len() {
+        inspect_stop(setting, stop_detector, index)?;
     }
     for pair in stops.windows(2) {
         let (seconds, least) = (pair[1].from - pair[0].to, LEAST_DRIVE);
@@ -197,12 +195,8 @@ fn too_short(index: usize, seconds: f64) -> Refusal {
 }
 
 /// Checks that a stop is long enough, and that the vehicle stood.
-fn inspect_stop(
-    setting: &Setting,
-    stop_detector: &StopDetector,
-    index: usize,
-    stop: &Stop,
-) -> Passed {
+fn inspect_stop(setting: &Setting, stop_detector: &StopDetector, index: usize) -> Passed {
+    let stop = &stop_detector.stops()[index];
     let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
     refuse_if(rest < LEAST_REST, too_short(index, rest))?;
     let gravity = setting.site.latitude.gravity();

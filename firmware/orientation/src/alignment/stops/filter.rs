@@ -134,16 +134,10 @@ impl Filter {
     /// Stores φ at the beginning of a stop as the anchor.
     #[inline(never)]
     pub fn anchor(&mut self) {
-        for axis in 0..3 {
-            self.state[ANCHOR + axis] = self.state[NOW + axis];
-        }
-        for axis in 0..3 {
-            self.covariance[ANCHOR + axis] = self.covariance[NOW + axis];
-        }
-        for row in 0..STATES {
-            for axis in 0..3 {
-                self.covariance[row][ANCHOR + axis] = self.covariance[row][NOW + axis];
-            }
+        self.state.copy_within(NOW..NOW + 3, ANCHOR);
+        self.covariance.copy_within(NOW..NOW + 3, ANCHOR);
+        for line in &mut self.covariance {
+            line.copy_within(NOW..NOW + 3, ANCHOR);
         }
     }
 
@@ -217,11 +211,7 @@ impl Filter {
                 }
             }
         }
-        self.mirror();
-    }
-
-    /// Copies the lower triangle, which was computed, to the upper one.
-    fn mirror(&mut self) {
+        // The lower triangle was computed.
         for row in 1..STATES {
             for column in 0..row {
                 self.covariance[column][row] = self.covariance[row][column];
@@ -283,10 +273,7 @@ pub(super) fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, second
 /// Row of a measurement of the increase of φ over a stop during which the Earth turned by `earth`,
 /// on one axis.
 pub(super) fn rest_row(earth: &Matrix, axis: usize) -> Row {
-    let mut row = [0.0; STATES];
+    let mut row = placed(ANCHOR, &earth[axis].map(|part| -part));
     row[NOW + axis] = 1.0;
-    for column in 0..3 {
-        row[ANCHOR + column] = -earth[axis][column];
-    }
     row
 }

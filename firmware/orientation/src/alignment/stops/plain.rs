@@ -95,9 +95,8 @@ fn orthonormal(matrix: &Matrix) -> Matrix {
 impl Plain {
     /// Applies the method to a path with blocks at both of its ends; with the rotation from the
     /// frozen north, east, down of the start to the start frame.
-    #[must_use]
     #[inline(never)]
-    pub fn of(setting: &Setting, path: &Path) -> (Self, Matrix) {
+    pub(crate) fn of(setting: &Setting, path: &Path) -> (Self, Matrix) {
         let (first, last) = ends(path);
         let level = levelled(&turned(&transposed(&first.attitude), &first.up()));
         // Rotation from the start frame to the first stop's level axes.
@@ -131,18 +130,11 @@ fn ends(path: &Path) -> (End, End) {
     let last = path.stops.len().saturating_sub(1);
     let whole = path.stops.first().map_or([0.0; 2], |stop| [stop.from, stop.to]);
     let [early, late] = [END, 1.0 - END].map(|part| whole[0] + part * (whole[1] - whole[0]));
-    let is_single = last == 0;
-    let blocks = path.blocks;
-    (
-        End::of(
-            blocks.of(0).filter(|block| !is_single || block.middle <= early),
-            path.displaced(0),
-        ),
-        End::of(
-            blocks.of(last).filter(|block| !is_single || block.middle >= late),
-            path.displaced(last),
-        ),
-    )
+    let end = |stop: usize, is_in: &dyn Fn(f64) -> bool| {
+        let blocks = path.blocks.of(stop).filter(|block| last > 0 || is_in(block.middle));
+        End::of(blocks, path.displaced(stop))
+    };
+    (end(0, &|middle| middle <= early), end(last, &|middle| middle >= late))
 }
 
 /// Standard deviations, 1σ, of the azimuth, rad, and of the ratio of the up vector's rotation,

@@ -16,6 +16,7 @@ use super::stop::{STOPS, Stop};
 use super::stop_detector::{Rests, StopDetector};
 use super::{Progress, Setting};
 use crate::alignment::period::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, contradiction};
+use crate::alignment::progress::Progress::Stops;
 use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, Solution, Verdict};
 use crate::device::TRIAD;
 use crate::signal::InertialSample;
@@ -96,11 +97,8 @@ impl Procedure {
     pub fn check(&self) -> Result<(), SetupError> {
         let is_period = self.sample_seconds > 0.0 && self.sample_seconds.is_finite();
         let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
-        if is_period && has_stops && self.stop_seconds > 0.0 {
-            Ok(())
-        } else {
-            Err(SetupError::NoStops)
-        }
+        let is_possible = is_period && has_stops && self.stop_seconds > 0.0;
+        is_possible.then_some(()).ok_or(SetupError::NoStops)
     }
 }
 
@@ -144,8 +142,8 @@ impl Session {
 
     /// Session of a procedure that was checked, built at its final place in memory, because it is
     /// too large for a small stack.
-    #[must_use]
     #[inline]
+    #[must_use]
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
         let gravity = setting.site.latitude.gravity();
         let (sensors, period) = (setting.sensors(), procedure.sample_seconds);
@@ -174,12 +172,6 @@ impl Session {
     /// Procedure of the session.
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
-    }
-
-    /// State of the session.
-    #[must_use]
-    pub fn phase(&self) -> Phase {
-        self.phase
     }
 
     /// Stops so far; the last one may still continue.
@@ -237,7 +229,7 @@ impl Session {
             let place = [north - origin[0], east - origin[1]];
             self.placed = index;
             self.stop_detector.displace(place);
-            listener(Progress::Displaced(index + 1, place).into());
+            listener(Stops(Progress::Displaced(index + 1, place)));
         }
     }
 
@@ -246,7 +238,7 @@ impl Session {
         let begun = *self.begun.get_or_insert(now);
         self.report_displacements();
         let count = self.stop_detector.stops().len();
-        let phase = match (self.stop_detector.is_at_rest, count) {
+        let phase = match (self.stop_detector.state.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
             (false, count) => Phase::Driving(count),
@@ -255,7 +247,7 @@ impl Session {
             self.is_reported = false;
             self.enter(phase, now, listener);
         }
-        if self.procedure.stops > 0 && self.stop_detector.loss.is_some() {
+        if self.procedure.stops > 0 && self.stop_detector.state.loss.is_some() {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
@@ -270,10 +262,10 @@ impl Session {
         match (self.phase, phase) {
             (Phase::Driving(_), Phase::Standing(index)) => {
                 let seconds = now.seconds() - self.since.seconds();
-                listener(Progress::Stopped(index + 1, seconds).into());
+                listener(Stops(Progress::Stopped(index + 1, seconds)));
             }
-            (_, Phase::Standing(_)) => listener(Progress::Standing.into()),
-            (_, Phase::Driving(_)) => listener(Progress::Driving.into()),
+            (_, Phase::Standing(_)) => listener(Stops(Progress::Standing)),
+            (_, Phase::Driving(_)) => listener(Stops(Progress::Driving)),
             _ => {}
         }
         (self.phase, self.since) = (phase, now);
@@ -293,7 +285,7 @@ impl Session {
             return self.conclude();
         }
         let level = pitch_and_roll(&stop.force.mean());
-        listener(Progress::MayDrive(count, stop.seconds(), level).into());
+        listener(Stops(Progress::MayDrive(count, stop.seconds(), level)));
         Request::MayDrive
     }
 
@@ -317,7 +309,7 @@ impl Session {
         let Procedure { sample_seconds: stated, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // Missing samples are reported as such instead.
-        let is_whole = self.samples > 0 && self.stop_detector.loss.is_none();
+        let is_whole = self.samples > 0 && self.stop_detector.state.loss.is_none();
         contradiction(stated, found, period_tolerance).filter(|_| is_whole)
     }
 
@@ -327,7 +319,7 @@ impl Session {
         if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
             for ((gyro, bias), sigma) in TRIAD.into_iter().zip(found.biases).zip(found.bias_sigmas)
             {
-                listener(Progress::Bias(gyro, bias, sigma).into());
+                listener(Stops(Progress::Bias(gyro, bias, sigma)));
             }
         }
         self.phase = Phase::Done;
@@ -351,7 +343,7 @@ impl Method<InertialSample> for Session {
             self.restart();
         }
         let (stops, latitude) = (self.procedure.stops, self.setting.site.latitude);
-        listener(Progress::Begun { stops, latitude }.into());
+        listener(Stops(Progress::Begun { stops, latitude }));
         match self.setting.site.check_latitude() {
             Ok(()) => Request::Continue,
             Err(reason) => self.finish(Conclusion::refused(reason), listener),

@@ -90,8 +90,7 @@ impl Stop {
     }
 
     /// Middle of the stop, s.
-    #[must_use]
-    pub fn middle(&self) -> f64 {
+    pub(crate) fn middle(&self) -> f64 {
         0.5 * (self.from + self.to)
     }
 
@@ -181,8 +180,7 @@ impl Second {
     }
 
     /// Length, s.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.to - self.from
     }
 

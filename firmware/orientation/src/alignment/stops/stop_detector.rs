@@ -9,7 +9,7 @@
 use heapless::{Deque, Vec};
 
 use super::Refusal;
-use super::block::{AT_REST, Block, Blocks, DRIVEN};
+use super::block::{AT_REST, Block, Blocks, DRIVEN, combined};
 use super::lever::Lever;
 use super::stop::{STOPS, Second, Stop};
 use crate::math::rotation::{length, scaled, sum};
@@ -54,7 +54,32 @@ struct Progress {
     begin: Carried,
 }
 
-/// State of the stop detection.
+/// State of the stop detection, apart from what is kept of stops and drives.
+#[derive(Clone, Debug, Default)]
+pub(super) struct State {
+    /// Strapdown attitude.
+    strapdown: Strapdown,
+    /// Beginning of the first sample.
+    begun: Option<Instant>,
+    /// End of the latest sample.
+    last: Instant,
+    /// Second in progress.
+    progress: Progress,
+    /// Criteria of the window.
+    criteria: Option<Criteria>,
+    /// Whether the vehicle stands, and the last stop continues.
+    pub(super) is_at_rest: bool,
+    /// Seconds for which the criteria have held without interruption.
+    held: usize,
+    /// Length of the longest halt that was too short for a stop, s; zero without one.
+    pub(super) fleeting: f64,
+    /// Lever arm from the axis of the sway to the sensors.
+    lever: Lever,
+    /// Loss of rotation that first made the carried attitude invalid.
+    pub(super) loss: Option<Refusal>,
+}
+
+/// Detection of the stops.
 #[derive(Clone, Debug)]
 pub struct StopDetector {
     /// Source of the stops.
@@ -67,91 +92,59 @@ pub struct StopDetector {
     gap: u64,
     /// Sample period, µs.
     period: u64,
-    /// Strapdown attitude.
-    strapdown: Strapdown,
-    /// Beginning of the first sample.
-    begun: Option<Instant>,
-    /// End of the latest sample.
-    last: Instant,
-    /// Second in progress.
-    progress: Progress,
+    /// State at the latest sample.
+    pub(super) state: State,
     /// Latest seconds, whose average is tested.
     window: Deque<Second, WINDOW>,
-    /// Criteria of the window.
-    criteria: Option<Criteria>,
-    /// Whether the vehicle stands, and the last stop continues.
-    pub(crate) is_at_rest: bool,
-    /// Seconds for which the criteria have held without interruption.
-    held: usize,
-    /// Length of the longest halt that was too short for a stop, s; zero without one.
-    pub(super) fleeting: f64,
-    /// Lever arm from the axis of the sway to the sensors.
-    lever: Lever,
     /// Stops so far.
     stops: Vec<Stop, STOPS>,
     /// Averages of the time at rest.
     pub(super) blocks: Blocks<AT_REST>,
     /// Averages of the drives, each with the number of the stop before it.
     pub(super) drives: Blocks<DRIVEN>,
-    /// Loss of rotation that first made the carried attitude invalid.
-    pub(super) loss: Option<Refusal>,
 }
 
 impl StopDetector {
     /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
-    #[must_use]
     #[inline]
-    pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
+    pub(crate) fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
         Self {
             rests,
             limits: sensors.limits(WINDOW as f64),
             gravity,
             gap: libm::round(GAP * sample_seconds * 1e6) as u64,
             period: libm::round(sample_seconds * 1e6) as u64,
-            strapdown: Strapdown::default(),
-            begun: None,
-            last: Instant::default(),
-            progress: Progress::default(),
+            state: State::default(),
             window: Deque::new(),
-            criteria: None,
-            is_at_rest: false,
-            held: 0,
-            fleeting: 0.0,
-            lever: Lever::default(),
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
-            loss: None,
         }
     }
 
     /// Discards all stops, in place: the next sample is the first.
     pub fn clear(&mut self) {
-        self.strapdown = Strapdown::default();
-        (self.begun, self.last) = (None, Instant::default());
-        self.progress = Progress::default();
+        self.state = State::default();
         self.window.clear();
-        (self.criteria, self.is_at_rest, self.held) = (None, false, 0);
-        self.fleeting = 0.0;
-        self.lever = Lever::default();
         self.stops.clear();
         self.blocks.clear(REST_SPAN);
         self.drives.clear(DRIVE_SPAN);
-        self.loss = None;
     }
 
     /// Takes a sample; returns whether a second ended with it.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) -> bool {
-        if self.begun.is_none() {
+        if self.state.begun.is_none() {
             self.begin(sample.time);
         }
         self.watch(sample.time);
         // A rotation at its limit is large, so the strapdown has updated its attitude.
-        if self.strapdown.push(sample) && sample.turned.iter().any(|turned| turned.is_saturated()) {
+        if self.state.strapdown.push(sample)
+            && sample.turned.iter().any(|turned| turned.is_saturated())
+        {
             self.lose(Refusal::RotationClipped { at: sample.time.seconds() });
         }
-        let is_over = sample.time.0.saturating_sub(self.progress.since.0) >= SECOND
+        let is_over = sample.time.0.saturating_sub(self.state.progress.since.0) >= SECOND
             || self.is_edge(sample.time);
         if is_over {
             self.second(sample.time);
@@ -163,26 +156,26 @@ impl StopDetector {
     #[cold]
     fn begin(&mut self, first: Instant) {
         let start = Instant(first.0.saturating_sub(self.period));
-        self.begun = Some(start);
-        self.last = start;
-        self.strapdown = Strapdown::since(start);
+        self.state.begun = Some(start);
+        self.state.last = start;
+        self.state.strapdown = Strapdown::since(start);
         self.restart(start);
     }
 
     /// Detects a gap.
     fn watch(&mut self, now: Instant) {
-        let elapsed = now.0.saturating_sub(self.last.0);
+        let elapsed = now.0.saturating_sub(self.state.last.0);
         if elapsed > self.gap {
-            let (at, seconds) = (self.last.seconds(), elapsed as f64 * 1e-6);
+            let (at, seconds) = (self.state.last.seconds(), elapsed as f64 * 1e-6);
             self.lose(Refusal::RotationMissing { at, seconds });
         }
-        self.last = now;
+        self.state.last = now;
     }
 
     /// Stores the first loss.
     #[cold]
     fn lose(&mut self, loss: Refusal) {
-        self.loss.get_or_insert(loss);
+        self.state.loss.get_or_insert(loss);
     }
 
     /// Whether a configured stop begins or ends with this sample.
@@ -198,21 +191,21 @@ impl StopDetector {
 
     /// Begins a second.
     fn restart(&mut self, now: Instant) {
-        let begin = self.strapdown.carried;
-        self.progress = Progress { since: now, begin };
+        let begin = self.state.strapdown.carried;
+        self.state.progress = Progress { since: now, begin };
     }
 
     /// Ends the second, and tests the window.
     #[inline(never)]
     fn second(&mut self, now: Instant) {
-        self.strapdown.update(now);
+        self.state.strapdown.update(now);
         let second = self.whole_second(now);
         if self.window.is_full() {
             self.leave();
         }
         // The oldest second was removed, so the push cannot fail.
         let _ = self.window.push_back(second);
-        self.criteria = self.judge();
+        self.state.criteria = self.judge();
         match &self.rests {
             Rests::Whole => self.stay(Some(0)),
             Rests::Stated(stops) => {
@@ -242,7 +235,7 @@ impl StopDetector {
 
     /// Assigns the latest second to a stop, if it lies in one.
     fn stay(&mut self, stop: Option<usize>) {
-        self.is_at_rest = stop.is_some();
+        self.state.is_at_rest = stop.is_some();
         if let Some(stop) = stop {
             self.rest(self.window.len() - 1, stop);
         }
@@ -250,8 +243,8 @@ impl StopDetector {
 
     /// Averages of the second that ends now.
     fn whole_second(&mut self, now: Instant) -> Second {
-        let Progress { since, begin } = self.progress;
-        let sums = self.strapdown.take();
+        let Progress { since, begin } = self.state.progress;
+        let sums = self.state.strapdown.take();
         let (swung, Sums { turned, force, start_force, count, is_blown, .. }) =
             (sums.swung(), sums);
         let inverse = 1.0 / count.max(1) as f32;
@@ -266,8 +259,8 @@ impl StopDetector {
             is_blown,
             is_rest: false,
             begin,
-            end: self.strapdown.carried,
-            rate: self.strapdown.rate(),
+            end: self.state.strapdown.carried,
+            rate: self.state.strapdown.rate(),
         }
     }
 
@@ -287,11 +280,11 @@ impl StopDetector {
 
     /// Detects the beginning or the end of a stop.
     fn find(&mut self) {
-        let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
-        self.held = if is_rest { self.held + 1 } else { 0 };
-        match (self.is_at_rest, is_rest) {
+        let is_rest = self.state.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
+        self.state.held = if is_rest { self.state.held + 1 } else { 0 };
+        match (self.state.is_at_rest, is_rest) {
             // A rocking vehicle may by chance be back at its attitude of ten seconds before.
-            (false, true) if self.held <= DELAY => {}
+            (false, true) if self.state.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
             (true, false) => self.set_off(),
@@ -307,7 +300,7 @@ impl StopDetector {
         let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
         let stop = self.stops.len() - usize::from(goes_on);
         // Further seconds are added to the last stop, so there must be one for this.
-        self.is_at_rest = stop < STOPS;
+        self.state.is_at_rest = stop < STOPS;
         for index in 0..WINDOW - LATEST {
             let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
             if is_new {
@@ -319,12 +312,12 @@ impl StopDetector {
     /// Ends a stop, and discards it if it was shorter than the criteria's average: a halt at a
     /// crossing.
     fn set_off(&mut self) {
-        self.is_at_rest = false;
+        self.state.is_at_rest = false;
         let Some(last) = self.stops.last().map(Stop::seconds) else { return };
         if last < WINDOW as f64 {
             self.stops.pop();
             self.blocks.discard(self.stops.len());
-            self.fleeting = self.fleeting.max(last);
+            self.state.fleeting = self.state.fleeting.max(last);
         }
     }
 
@@ -336,7 +329,7 @@ impl StopDetector {
         let Some(second) = self.window.iter_mut().nth(index) else { return };
         second.is_rest = true;
         let mut second = *second;
-        let is_relieved = self.lever.relieve(&mut second, begun);
+        let is_relieved = self.state.lever.relieve(&mut second, begun);
         if stop >= self.stops.len() {
             let displacement = self.stops.is_empty().then_some([0.0; 2]);
             let (from, begin) = (second.from, second.begin);
@@ -354,12 +347,11 @@ impl StopDetector {
 
     /// Criteria of the last ten seconds, and their limits.
     pub(super) fn criteria(&self) -> Option<(Criteria, Limits)> {
-        self.criteria.map(|criteria| (criteria, self.limits))
+        self.state.criteria.map(|criteria| (criteria, self.limits))
     }
 
     /// Stops so far; the last one may still continue.
-    #[must_use]
-    pub fn stops(&self) -> &[Stop] {
+    pub(crate) fn stops(&self) -> &[Stop] {
         &self.stops
     }
 
@@ -378,23 +370,23 @@ impl StopDetector {
     /// Time from the beginning of the first sample to the end of the last one, s; zero without
     /// samples.
     pub(super) fn elapsed(&self) -> f64 {
-        let begun = self.begun.unwrap_or(self.last);
-        self.last.0.saturating_sub(begun.0) as f64 * 1e-6
+        let begun = self.state.begun.unwrap_or(self.state.last);
+        self.state.last.0.saturating_sub(begun.0) as f64 * 1e-6
     }
 
     /// Beginning of the first sample, s.
     pub(super) fn start(&self) -> f64 {
-        self.begun.map_or(0.0, Instant::seconds)
+        self.state.begun.map_or(0.0, Instant::seconds)
     }
 
     /// Brings attitude and sensitivities to the end of the last sample.
     pub(super) fn update(&mut self) {
-        self.strapdown.update(self.last);
+        self.state.strapdown.update(self.state.last);
     }
 
     /// Time of the latest update, s, with attitude and sensitivities then.
     pub(super) fn now(&self) -> (f64, Carried) {
-        (self.last.seconds(), self.strapdown.carried)
+        (self.state.last.seconds(), self.state.strapdown.carried)
     }
 }
 
@@ -413,7 +405,5 @@ fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
 
 /// Mean of two matrices.
 fn mean(a: &Rough, b: &Rough) -> Rough {
-    core::array::from_fn(|row| {
-        core::array::from_fn(|column| 0.5 * (a[row][column] + b[row][column]))
-    })
+    combined(a, b, |a, b| 0.5 * (a + b))
 }

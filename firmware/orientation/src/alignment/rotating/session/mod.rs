@@ -17,6 +17,7 @@ use super::turn::{Sense, Stretch};
 use super::turn_accumulator::{Mode, TurnAccumulator};
 use super::{Progress, Refusal, Setting};
 use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
+use crate::alignment::progress::Progress::Rotating;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::signal::Sample;
 use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
@@ -58,11 +59,25 @@ pub struct Session {
     turn_accumulator: TurnAccumulator,
     /// State of the session.
     phase: Phase,
-    /// Beginning of the phase, and time of the latest command.
-    since: Option<Instant>,
+    /// State within the phase.
+    now: Now,
+    /// Time of the latest command.
     commanded: Instant,
     /// Time of the latest sample.
     last: Option<Instant>,
+    /// Distance of two samples that counts as a gap, µs.
+    gap: u64,
+    /// Forces at rest.
+    level: Level,
+    /// Conclusion, once the session is over.
+    conclusion: Option<Conclusion>,
+}
+
+/// State within a phase, which begins anew with each.
+#[derive(Clone, Copy, Debug, Default)]
+struct Now {
+    /// Beginning of the phase.
+    since: Option<Instant>,
     /// Number of samples of this phase.
     samples: u32,
     /// Time in this phase after which the sensor has settled, and after which the phase ends, µs.
@@ -72,14 +87,8 @@ pub struct Session {
     /// rad/s; zero before.
     measured: Option<(Instant, Angle)>,
     rate: f64,
-    /// Distance of two samples that counts as a gap, µs.
-    gap: u64,
     /// Number of turns of this phase.
     turns: u32,
-    /// Forces at rest.
-    level: Level,
-    /// Conclusion, once the session is over.
-    conclusion: Option<Conclusion>,
 }
 
 /// Sums of the forces at rest, µm/s², and the latest temperature.
@@ -110,16 +119,10 @@ impl Session {
             setting,
             turn_accumulator: TurnAccumulator::new(procedure.periods(), mode),
             phase: if is_recorded { Phase::Recorded } else { Phase::Level },
-            since: None,
+            now: Now { end: microseconds(procedure.level_seconds), ..Now::default() },
             commanded: Instant::default(),
             last: None,
-            samples: 0,
-            settled: 0,
-            measured: None,
-            rate: 0.0,
-            end: microseconds(procedure.level_seconds),
             gap: microseconds(GAP * procedure.sample_seconds),
-            turns: 0,
             level: Level::default(),
             conclusion: None,
             procedure,
@@ -145,12 +148,6 @@ impl Session {
         &self.procedure
     }
 
-    /// State of the session.
-    #[must_use]
-    pub fn phase(&self) -> Phase {
-        self.phase
-    }
-
     /// Motion of the platform so far.
     #[must_use]
     pub fn turn_accumulator(&self) -> &TurnAccumulator {
@@ -166,8 +163,7 @@ impl Session {
     }
 
     /// Mean force at rest, m/s²; none without force readings.
-    #[must_use]
-    pub fn force(&self) -> Option<[f64; 3]> {
+    pub(crate) fn force(&self) -> Option<[f64; 3]> {
         let count = f64::from(self.level.count);
         (count > 0.0).then(|| self.level.sums.map(|sum| sum as f64 * 1e-6 / count))
     }
@@ -198,9 +194,9 @@ impl Session {
             self.level.temperature = Some(temperature.celsius() as f32);
         }
         let has_turned = self.turn_accumulator.push(sample, turning);
-        let since = *self.since.get_or_insert(now);
+        let since = *self.now.since.get_or_insert(now);
         let elapsed = now.0.saturating_sub(since.0);
-        self.samples = self.samples.saturating_add(1);
+        self.now.samples = self.now.samples.saturating_add(1);
         if has_turned && let Some(reason) = self.contradiction() {
             return self.conclude(Some(reason));
         }
@@ -216,12 +212,12 @@ impl Session {
     /// Refusal of a recording whose time stamps up to its first turn contradict the configured
     /// period.
     fn contradiction(&mut self) -> Option<alignment::Refusal> {
-        if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
+        if self.phase != Phase::Recorded || core::mem::replace(&mut self.now.turns, 1) > 0 {
             return None;
         }
-        let (since, last) = (self.since?, self.last?);
+        let (since, last) = (self.now.since?, self.last?);
         let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
-        let found = elapsed / f64::from(self.samples.max(2) - 1);
+        let found = elapsed / f64::from(self.now.samples.max(2) - 1);
         let stated = self.procedure.sample_seconds;
         contradiction(stated, found, PERIOD_TOLERANCE)
     }
@@ -234,7 +230,7 @@ impl Session {
             }
             self.level.count += 1;
         }
-        if elapsed < self.end {
+        if elapsed < self.now.end {
             return Request::Continue;
         }
         let (site, force) = (&self.setting.site, self.force());
@@ -255,7 +251,7 @@ impl Session {
         }
         // The first ramp is part of the rate-modulated motion.
         self.enter(Phase::Modulated(index), Mode::Ignore);
-        listener(Progress::Modulated(self.speed(index)).into());
+        listener(Rotating(Progress::Modulated(self.speed(index))));
         Request::Turn(self.speed(index))
     }
 
@@ -268,30 +264,30 @@ impl Session {
         elapsed: u64,
         listener: Listener,
     ) -> Request {
-        if self.rate <= 0.0 {
+        if self.now.rate <= 0.0 {
             self.measure(index, sample, elapsed);
             return Request::Continue;
         }
-        if elapsed >= self.end {
+        if elapsed >= self.now.end {
             return self.end_modulated(index, listener);
         }
         if sample.time.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
             return Request::Continue;
         }
         self.commanded = sample.time;
-        if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.settled {
+        if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.now.settled {
             self.turn_accumulator.follow_modulated(self.procedure.modulation_width());
         }
-        let time = (elapsed as f64 - self.settled as f64) * 1e-6;
-        Request::Turn(self.procedure.modulated_rate(self.speed(index), self.rate, time))
+        let time = (elapsed as f64 - self.now.settled as f64) * 1e-6;
+        Request::Turn(self.procedure.modulated_rate(self.speed(index), self.now.rate, time))
     }
 
     /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
     /// off by some per cent, and the modulation must stay synchronous with the turns.
     fn measure(&mut self, index: usize, sample: &Sample, elapsed: u64) {
-        let Some((since, stage)) = self.measured else {
+        let Some((since, stage)) = self.now.measured else {
             if elapsed >= microseconds(self.procedure.ramp_seconds) {
-                self.measured = Some((sample.time, sample.stage));
+                self.now.measured = Some((sample.time, sample.stage));
             }
             return;
         };
@@ -299,10 +295,10 @@ impl Session {
         if seconds < TURN / self.speed(index) {
             return;
         }
-        self.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
-        self.since = Some(sample.time);
-        self.end = self.settled
-            + microseconds(f64::from(self.procedure.modulated_turns) * TURN / self.rate);
+        self.now.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
+        self.now.since = Some(sample.time);
+        self.now.end = self.now.settled
+            + microseconds(f64::from(self.procedure.modulated_turns) * TURN / self.now.rate);
     }
 
     /// Ends the session where the axis misalignment is too large, or the platform did not turn.
@@ -312,7 +308,7 @@ impl Session {
             return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         };
         let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
-        listener(Progress::Misalignment(angle, sigma).into());
+        listener(Rotating(Progress::Misalignment(angle, sigma)));
         match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
             Err(reason) => self.conclude(Some(reason)),
@@ -327,9 +323,9 @@ impl Session {
 
     /// Waits until platform and sensor have settled.
     fn settle(&mut self, index: usize, sense: Sense, elapsed: u64, listener: Listener) -> Request {
-        if elapsed >= self.end {
+        if elapsed >= self.now.end {
             self.enter(Phase::Even(index, sense), Mode::Even);
-            listener(Progress::Stretch(sense, self.speed(index)).into());
+            listener(Rotating(Progress::Stretch(sense, self.speed(index))));
         }
         Request::Continue
     }
@@ -345,14 +341,14 @@ impl Session {
         // The number of planned turns is computed only with a complete turn: it costs 600
         // instructions.
         if has_turned {
-            self.turns += 1;
+            self.now.turns += 1;
             let (done, of) = self.turns();
-            listener(Progress::Turned(done, of).into());
-            if self.turns >= self.procedure.turns_at(index) {
+            listener(Rotating(Progress::Turned(done, of)));
+            if self.now.turns >= self.procedure.turns_at(index) {
                 return self.go_on(index, sense, listener);
             }
         }
-        if elapsed >= self.end {
+        if elapsed >= self.now.end {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         }
@@ -373,12 +369,8 @@ impl Session {
     /// Enters a phase and restarts its counters.
     fn enter(&mut self, phase: Phase, mode: Mode) {
         self.phase = phase;
-        self.settled = microseconds(self.settle_seconds());
-        self.end = microseconds(self.longest(phase));
-        self.since = None;
-        self.samples = 0;
-        (self.measured, self.rate) = (None, 0.0);
-        self.turns = 0;
+        let settled = microseconds(self.settle_seconds());
+        self.now = Now { settled, end: microseconds(self.longest(phase)), ..Now::default() };
         self.turn_accumulator.follow(mode);
     }
 
@@ -396,11 +388,7 @@ impl Session {
                 ALLOWANCE.0 * turned / self.speed(index) + ALLOWANCE.1
             }
             // The end of a rate-modulated stretch follows from the speed that it measures.
-            Phase::Modulated(_)
-            | Phase::Level
-            | Phase::Recorded
-            | Phase::Conclude
-            | Phase::Done => 0.0,
+            _ => 0.0,
         }
     }
 
@@ -433,10 +421,8 @@ impl Session {
         self.phase = Phase::Level;
         self.turn_accumulator.clear();
         self.level = Level::default();
-        (self.since, self.last, self.conclusion) = (None, None, None);
-        (self.samples, self.settled, self.turns) = (0, 0, 0);
-        (self.measured, self.rate, self.commanded) = (None, 0.0, Instant::default());
-        self.end = microseconds(self.procedure.level_seconds);
+        self.now = Now { end: microseconds(self.procedure.level_seconds), ..Now::default() };
+        (self.commanded, self.last, self.conclusion) = (Instant::default(), None, None);
     }
 }
 
@@ -446,7 +432,7 @@ impl Method<Sample> for Session {
             self.restart();
         }
         let ((_, turns), latitude) = (self.turns(), self.setting.site.latitude);
-        listener(Progress::Begun { turns, latitude }.into());
+        listener(Rotating(Progress::Begun { turns, latitude }));
         match self.setting.site.check_latitude() {
             Err(reason) => self.conclude(Some(reason)),
             Ok(()) if self.is_misalignment_settled() => Request::Continue,
@@ -478,7 +464,7 @@ impl Method<Sample> for Session {
         conclusion.draw(&self.setting, &self.turn_accumulator);
         for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.left_out > 0 {
-                listener(Progress::LeftOut(average.left_out, average.sense).into());
+                listener(Rotating(Progress::LeftOut(average.left_out, average.sense)));
             }
         }
         self.phase = Phase::Done;

@@ -119,9 +119,6 @@ pub fn check(procedure: &Procedure) -> Result<(), SetupError> {
         || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
     let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
     let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
-    if are_speeds && is_modulation_possible && has_turns && has_period {
-        Ok(())
-    } else {
-        Err(SetupError::NoSpeed)
-    }
+    let is_possible = are_speeds && is_modulation_possible && has_turns && has_period;
+    is_possible.then_some(()).ok_or(SetupError::NoSpeed)
 }

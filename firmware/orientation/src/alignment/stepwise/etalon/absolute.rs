@@ -157,13 +157,7 @@ struct Within<'a> {
 impl Judge for Within<'_> {
     fn side(&self, k: i32) -> Side {
         let above = self.piece.at(self.table, k) - self.limit as f64;
-        if above <= -self.rounding {
-            Side::Inside
-        } else if above <= self.rounding {
-            Side::Unsure
-        } else {
-            Side::Outside
-        }
+        Side::of(above, -self.rounding, self.rounding)
     }
 
     fn accepts(&mut self, k: i32) -> bool {

@@ -14,6 +14,17 @@ pub(super) enum Side {
     Outside,
 }
 
+impl Side {
+    /// Side of a value that is certain up to one bound, and possible up to another.
+    pub(super) fn of(value: f64, sure: f64, reach: f64) -> Self {
+        match value {
+            value if value <= sure => Self::Inside,
+            value if value <= reach => Self::Unsure,
+            _ => Self::Outside,
+        }
+    }
+}
+
 /// Comparison of single indices with a limit: by the continuous bound, and exactly.
 pub(super) trait Judge {
     /// The side on which the continuous objective and its error bound put index `k`.

@@ -169,14 +169,7 @@ struct Within<'a> {
 
 impl Judge for Within<'_> {
     fn side(&self, k: i32) -> Side {
-        let value = self.objective.continuous(k);
-        if value <= self.sure {
-            Side::Inside
-        } else if value <= self.reach {
-            Side::Unsure
-        } else {
-            Side::Outside
-        }
+        Side::of(self.objective.continuous(k), self.sure, self.reach)
     }
 
     fn accepts(&mut self, k: i32) -> bool {

@@ -72,8 +72,7 @@ impl Series {
     }
 
     /// Number of positions, 3 to [`CAPACITY`], as a floating-point number.
-    #[must_use]
-    pub fn count(&self) -> f64 {
+    pub(crate) fn count(&self) -> f64 {
         self.values.len() as f64
     }
 }

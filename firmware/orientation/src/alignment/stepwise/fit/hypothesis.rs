@@ -6,11 +6,11 @@
 //! remains possible, σ covers it by solution separation, as in integrity monitoring: the distance
 //! of its azimuth from the one given, plus an allowance for what may remain unseen.
 
-use super::{Fit, Model, Problem, ROUNDS, Row, Trial, taper_of};
+use super::{Equations, Fit, Model, Problem, ROUNDS, Row, Trial, taper_of};
 use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
 use crate::math::chi_square_tail;
-use crate::math::regression::{COLUMNS, Column, Regression};
+use crate::math::regression::Column;
 use crate::signal::dwell::Dwell;
 
 /// Motion or error in addition to the steps of the stage.
@@ -364,7 +364,7 @@ impl Problem<'_> {
 
     /// Regression with a hypothesis and its result; repeated with the exact rotation where the base
     /// turns by more than ∂/∂A describes.
-    fn followed(&self, model: &Model, fit: &Fit) -> Option<(Regression<COLUMNS>, Trial)> {
+    fn followed(&self, model: &Model, fit: &Fit) -> Option<(Equations, Trial)> {
         let mut bent = fit.bent(model.hypothesis);
         let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
         let mut rounds = 0;

@@ -17,6 +17,7 @@ pub use model::Model;
 pub use uncertainty::FEW_DEGREES;
 
 use super::direction::{Components, Direction, dot, inverted, product, quadratic};
+use super::level::square;
 use super::setting::{Amplitude, Setting};
 use super::tilt::Tilt;
 use crate::alignment::budget::Budget;
@@ -25,12 +26,17 @@ use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
-use uncertainty::Covariance;
 
 /// Row of a dwell in the regression: north and east part of the sensitive axis, constant, time
 /// since the first dwell (h), temperature above that of the first dwell (°C), two columns of a
 /// [`Hypothesis`] and, last, the left side.
 type Row = [f64; COLUMNS + 1];
+
+/// Whitened rows of the dwells.
+type Equations = Regression<COLUMNS>;
+
+/// Taper factor of a dwell.
+type Taper = fn(&Dwell) -> f64;
 
 /// Fitted azimuth with its uncertainty and diagnostics.
 #[derive(Clone, Debug)]
@@ -143,9 +149,8 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// Fits the azimuth; `None` where the positions do not determine it.
-    #[must_use]
     #[inline(never)]
-    pub fn fit(&self) -> Option<Found> {
+    pub(crate) fn fit(&self) -> Option<Found> {
         let regression = self.coloured(&Bent::default());
         let model = self.choose(&regression)?;
         let mut found = self.fit_model(&regression, &model, &Bent::default())?;
@@ -163,13 +168,13 @@ impl Problem<'_> {
     }
 
     /// Whether the positions determine the Earth rate, regardless of the cost of a trend.
-    pub(super) fn is_circle(&self, steady: &Regression<COLUMNS>) -> bool {
+    pub(super) fn is_circle(&self, steady: &Equations) -> bool {
         let model = self.freed(steady, &self.base());
         model.is_some_and(|model| model.amplitude == Amplitude::Free)
     }
 
     /// Regression of the dwells for the configured noise.
-    fn coloured(&self, bent: &Bent) -> Regression<COLUMNS> {
+    fn coloured(&self, bent: &Bent) -> Equations {
         self.regression(self.setting.site.noise.model(), taper_of, bent)
     }
 
@@ -194,7 +199,7 @@ impl Problem<'_> {
 
     /// Result of a model; `None` where the dwells do not determine it.
     #[inline(never)]
-    fn trial(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Trial> {
+    fn trial(&self, regression: &Equations, model: &Model) -> Option<Trial> {
         let solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
@@ -213,12 +218,7 @@ impl Problem<'_> {
 
     /// Complete fit of a model.
     #[inline(never)]
-    fn fit_model(
-        &self,
-        regression: &Regression<COLUMNS>,
-        model: &Model,
-        bent: &Bent,
-    ) -> Option<Found> {
+    fn fit_model(&self, regression: &Equations, model: &Model, bent: &Bent) -> Option<Found> {
         let mut solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
@@ -301,7 +301,7 @@ impl Problem<'_> {
         let [a, b, ..] = solution.coefficients;
         let slope = libm::tan(self.setting.site.latitude.rad());
         let vertical = [slope * self.tilt.real, slope * self.tilt.imaginary];
-        let covariance = block(&solution.covariance);
+        let covariance = square(&solution.covariance, 0);
         Components { value: [a, b], covariance, vertical, half: self.setting.half }
     }
 
@@ -367,7 +367,7 @@ impl Problem<'_> {
     fn whiten(
         &self,
         noise: &GyroNoise,
-        taper: fn(&Dwell) -> f64,
+        taper: Taper,
         bent: &Bent,
         each: &mut dyn FnMut(&Row, &Row),
     ) {
@@ -383,12 +383,7 @@ impl Problem<'_> {
     }
 
     /// Regression of the whitened rows.
-    fn regression(
-        &self,
-        noise: &GyroNoise,
-        taper: fn(&Dwell) -> f64,
-        bent: &Bent,
-    ) -> Regression<COLUMNS> {
+    fn regression(&self, noise: &GyroNoise, taper: Taper, bent: &Bent) -> Equations {
         let mut regression = Regression::default();
         self.whiten(noise, taper, bent, &mut |_, &[a, b, c, d, e, f, g, left]| {
             regression.push(&[a, b, c, d, e, f, g], left);
@@ -472,12 +467,6 @@ fn turned([forward, right, down]: [f64; 3], yaw: f64) -> [f64; 3] {
 fn remainder(row: &Row, coefficients: &[f64; COLUMNS]) -> f64 {
     let fitted: f64 = row.iter().zip(coefficients).map(|(x, c)| x * c).sum();
     row[COLUMNS] - fitted
-}
-
-/// Covariance block of the two components.
-fn block(covariance: &[[f64; COLUMNS]; COLUMNS]) -> Covariance {
-    let [[a, b, ..], [c, d, ..], ..] = *covariance;
-    [[a, b], [c, d]]
 }
 
 /// Leverage xᵀ Cov x of a whitened row.

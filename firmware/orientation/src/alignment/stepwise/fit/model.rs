@@ -1,10 +1,10 @@
 //! Selection of the fit's columns: trends where the data require them, and the Earth rate free
 //! where that costs little.
 
-use super::{Hypothesis, Problem, Trial};
+use super::{Equations, Hypothesis, Problem, Trial};
 use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
-use crate::math::regression::{COLUMNS, Column, Regression, Solution};
+use crate::math::regression::{COLUMNS, Column, Solution};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
@@ -82,7 +82,7 @@ impl Problem<'_> {
     /// Selects the columns, and whether the Earth rate stays free; `None` where the positions
     /// determine nothing.
     #[inline(never)]
-    pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
+    pub(super) fn choose(&self, regression: &Equations) -> Option<Model> {
         // Trends are tested with the Earth rate free where that costs little: a wrong scale or
         // latitude is no trend.
         let mut model = self.freed(regression, &self.base())?;
@@ -91,7 +91,7 @@ impl Problem<'_> {
     }
 
     /// Model with the Earth rate free where that costs little, otherwise with its prior.
-    pub(super) fn freed(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Model> {
+    pub(super) fn freed(&self, regression: &Equations, model: &Model) -> Option<Model> {
         let held = Model { amplitude: self.setting.known_amplitude(), ..*model };
         let free = Model { amplitude: Amplitude::Free, ..*model };
         let known = self.trial(regression, &held)?.cost();
@@ -118,7 +118,7 @@ impl Problem<'_> {
 
     /// Adds temperature and time where chi-square requires them and the azimuth can afford them;
     /// one that it cannot afford is stored in [`Model::rejected_trend`].
-    fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
+    fn add_trend(&self, regression: &Equations, model: &mut Model) -> Option<()> {
         let is_warm = self.is_warm();
         for _ in 0..2 {
             let before = self.trial(regression, model)?;

@@ -2,13 +2,15 @@
 //! tilt and κ.
 
 use super::hypothesis::{MISSED, OBSERVABLE, WRONG, separation};
-use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, block, taper_of};
+use super::{
+    Bent, Equations, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, square, taper_of,
+};
 use crate::alignment::budget::Budget;
 use crate::alignment::stepwise::direction::{Direction, dot, product, quadratic};
 use crate::alignment::stepwise::setting::Amplitude;
 use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::chi_square_tail;
-use crate::math::regression::{COLUMNS, Column, Regression};
+use crate::math::regression::Column;
 use crate::noise::model::GyroNoise;
 
 /// Probability of the residuals below which their excess over the stated noise raises σ: with few
@@ -36,14 +38,16 @@ impl Problem<'_> {
     #[inline(never)]
     pub(super) fn budget(
         &self,
-        coloured: &Regression<COLUMNS>,
+        coloured: &Equations,
         model: &Model,
         direction: &Direction,
         bent: &Bent,
     ) -> Option<Budget> {
         let through = |covariance: &Covariance| quadratic(covariance, direction.gain).max(0.0);
-        let of = |regression: &Regression<COLUMNS>, model: &Model| {
-            regression.solve(&model.columns()).map(|solution| through(&block(&solution.covariance)))
+        let of = |regression: &Equations, model: &Model| {
+            regression
+                .solve(&model.columns())
+                .map(|solution| through(&square(&solution.covariance, 0)))
         };
         let white = self.regression(&self.setting.site.noise.model().white_part(), taper_of, bent);
         let cold = Model { temperature: Column::Absent, ..*model };
@@ -228,13 +232,8 @@ impl Fit {
     fn is_anomalous(&self) -> bool {
         self.model.time == Column::Free
             || self.model.hypothesis != Hypothesis::Steady
-            || self.probability() < ANOMALOUS_PROBABILITY
+            || chi_square_tail(self.chi_square, self.degrees as f64) < ANOMALOUS_PROBABILITY
             || (self.ratio - 1.0).abs() > ANOMALOUS_RATIO * self.ratio_sigma
-    }
-
-    /// Probability of the residuals' chi-square.
-    fn probability(&self) -> f64 {
-        chi_square_tail(self.chi_square, self.degrees as f64)
     }
 
     /// Raises the noise contributions to this factor in all, if they are below it.

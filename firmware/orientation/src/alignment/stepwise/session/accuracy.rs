@@ -6,22 +6,12 @@ use super::{Session, Task};
 use crate::alignment::budget::Source;
 use crate::alignment::stepwise::Refusal;
 use crate::alignment::stepwise::quality::ExpectedScatter;
-use crate::alignment::{self, Listener, Method, Request};
+use crate::alignment::{self, Listener, Method, Passed, Request};
 use crate::noise::model::GyroNoise;
 use crate::planner::POSITIONS;
 use crate::planner::prediction::{Visit, rate_sigma};
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
-
-/// How the accuracy that noise predicts compares with the required one.
-enum Reach {
-    /// It is reached.
-    Met,
-    /// The time left may suffice.
-    Open,
-    /// The least 1σ that the time left allows is greater than the required one, both in °.
-    Hopeless { sigma: f64, required: f64 },
-}
 
 impl Session {
     /// Sends the stage to the next position, or concludes: with an azimuth, or because the time
@@ -54,13 +44,13 @@ impl Session {
     #[inline(never)]
     pub(super) fn weigh(&mut self, seconds: f64, now: Instant, listener: Listener) -> Request {
         let left = self.left(seconds, now);
-        let is_final = match self.judge(left) {
-            Some(Reach::Met) => self.try_to_conclude(left),
-            Some(Reach::Hopeless { sigma, required }) => {
-                self.draw(Some(Refusal::OutOfReach { sigma, required, seconds }.into()));
+        let is_final = match self.judge(seconds, left) {
+            Some(Ok(())) => self.try_to_conclude(left),
+            Some(Err(reason)) => {
+                self.draw(Some(reason));
                 true
             }
-            _ => false,
+            None => false,
         };
         if is_final {
             return self.finish(listener);
@@ -71,20 +61,25 @@ impl Session {
         }
     }
 
-    /// How the predicted accuracy compares with the required one; [`None`] where there is no
-    /// prediction.
-    fn judge(&self, left: f64) -> Option<Reach> {
+    /// Whether the accuracy that noise predicts is reached, or out of reach in the time left of
+    /// that allowed, both in s; [`None`] where the time left may suffice, and without a prediction.
+    fn judge(&self, seconds: f64, left: f64) -> Option<Passed> {
         let rate = self.setting.site.latitude.horizontal_rate();
         let noise = self.noise();
         let required = self.setting.site.required_sigma;
         let visits = self.dwells().iter().map(Visit::from);
         if rate_sigma(&noise, self.shortest(), visits)? / rate <= required {
-            return Some(Reach::Met);
+            return Some(Ok(()));
         }
         let least = self.least_rate_sigma(&noise, left)? / rate;
-        let [sigma, bound] = [least, required].map(|angle| angle * DEGREES_PER_RADIAN);
-        let is_hopeless = least > required;
-        Some(if is_hopeless { Reach::Hopeless { sigma, required: bound } } else { Reach::Open })
+        (least > required).then(|| Err(self.out_of_reach(least, seconds).into()))
+    }
+
+    /// Refusal of the required σ, where this one, rad, is the least that the time allowed, s, gives.
+    pub(super) fn out_of_reach(&self, sigma: f64, seconds: f64) -> Refusal {
+        let required = self.setting.site.required_sigma;
+        let [sigma, required] = [sigma, required].map(|angle| angle * DEGREES_PER_RADIAN);
+        Refusal::OutOfReach { sigma, required, seconds }
     }
 
     /// Draws the conclusion; false where noise alone still makes the complete fit too uncertain and

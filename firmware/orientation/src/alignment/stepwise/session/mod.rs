@@ -29,6 +29,7 @@ use super::quality::{Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::{Progress, Refusal};
 use crate::alignment::period::contradiction;
+use crate::alignment::progress::Progress::Stepwise;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
@@ -53,15 +54,15 @@ pub enum Phase {
     Dwell,
     /// The stage has been rotating since this time.
     Rotate(Instant),
-    /// Samples are passed by until the task is computed.
-    Compute,
+    /// Samples are passed by until this is computed.
+    Compute(Task),
     /// The session is over.
     Done,
 }
 
 /// What is to be computed in a call of its own.
-#[derive(Clone, Copy, Debug)]
-enum Task {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
     /// The noise that the survey shows, and the plan that follows; the time of its last sample.
     Learn(Instant),
     /// Whether the accuracy is reached or out of reach, with the time allowed, s, and that of the
@@ -93,8 +94,6 @@ pub struct Session {
     timing: Timing,
     /// State of the session.
     phase: Phase,
-    /// What is to be computed next.
-    task: Task,
     /// Position to which the stage was sent.
     target: Target,
     /// Time of the first sample.
@@ -131,12 +130,6 @@ impl Session {
     /// Procedure of the session.
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
-    }
-
-    /// Mean specific force of the standstill in progress, m/s²; none without force readings.
-    #[must_use]
-    pub fn force(&self) -> Option<[f64; 3]> {
-        self.average.as_ref().and_then(DwellAverage::force)
     }
 
     /// State of the session.
@@ -201,7 +194,7 @@ impl Session {
             Phase::Survey => self.survey(sample),
             Phase::Dwell => self.dwell(sample.time, listener),
             Phase::Rotate(since) => self.rotate(sample, since),
-            Phase::Compute | Phase::Done => Request::Continue,
+            Phase::Compute(_) | Phase::Done => Request::Continue,
         }
     }
 
@@ -235,7 +228,7 @@ impl Session {
             return self.conclude(Some(reason));
         }
         if let Some(survey) = self.procedure.survey.filter(|_| self.surveyed.is_none()) {
-            listener(Progress::Surveying(survey.seconds).into());
+            listener(Stepwise(Progress::Surveying(survey.seconds)));
             self.store.begin_survey();
             self.phase = Phase::Survey;
             self.average = None;
@@ -314,7 +307,7 @@ impl Session {
     fn repeat(&mut self, why: Disturbance, listener: Listener) -> Request {
         self.store.pop();
         self.tries += 1;
-        listener(Progress::Repeated(self.dwells().len() + 1, why).into());
+        listener(Stepwise(Progress::Repeated(self.dwells().len() + 1, why)));
         // A full record omits one more repetition, never a dwell.
         let _ = self.repetitions.push(Repetition { position: self.dwells().len(), why });
         Request::Continue
@@ -322,9 +315,9 @@ impl Session {
 
     /// Reports a completed dwell, and whether it was shorter than planned.
     fn report(&self, dwell: &Dwell, listener: Listener) {
-        listener(Progress::Dwelled(self.dwells().len(), self.planned(), dwell.rate).into());
+        listener(Stepwise(Progress::Dwelled(self.dwells().len(), self.planned(), dwell.rate)));
         if dwell.seconds < WHOLE * self.procedure.schedule.shortest() {
-            listener(Progress::CutShort(dwell.seconds).into());
+            listener(Stepwise(Progress::CutShort(dwell.seconds)));
         }
     }
 
@@ -365,7 +358,7 @@ impl Session {
 
     /// Passes samples by until this is computed.
     fn compute_later(&mut self, task: Task) -> Request {
-        (self.phase, self.task) = (Phase::Compute, task);
+        self.phase = Phase::Compute(task);
         Request::Compute
     }
 
@@ -385,7 +378,7 @@ impl Session {
         let disturbances = self.conclusion.iter().flat_map(|conclusion| &conclusion.disturbances);
         for (number, why) in (1..).zip(disturbances) {
             if let Some(why) = why {
-                listener(Progress::LeftOut(number, *why).into());
+                listener(Stepwise(Progress::LeftOut(number, *why)));
             }
         }
         Request::Done
@@ -399,7 +392,7 @@ impl Method<Sample> for Session {
         }
         let dwell = self.procedure.schedule.shortest();
         let (positions, latitude) = (self.planned(), self.setting.site.latitude);
-        listener(Progress::Begun { positions, dwell, latitude }.into());
+        listener(Stepwise(Progress::Begun { positions, dwell, latitude }));
         match self.setting.site.check_latitude() {
             Ok(()) => Request::Continue,
             Err(reason) => self.conclude(Some(reason)),
@@ -409,7 +402,7 @@ impl Method<Sample> for Session {
     fn take(&mut self, input: Input<'_, Sample>, listener: Listener) -> Request {
         match input {
             _ if self.phase == Phase::Done => Request::Done,
-            _ if self.phase == Phase::Compute => Request::Continue,
+            _ if matches!(self.phase, Phase::Compute(_)) => Request::Continue,
             Input::Sample(sample) => self.sample(sample, listener),
             Input::Sway(sway) => {
                 self.setting.sway = *sway;
@@ -422,8 +415,8 @@ impl Method<Sample> for Session {
     }
 
     fn compute(&mut self, listener: Listener) -> Request {
-        match self.task {
-            _ if self.phase != Phase::Compute => Request::Continue,
+        let Phase::Compute(task) = self.phase else { return Request::Continue };
+        match task {
             Task::Learn(now) => self.learn(now, listener),
             Task::Weigh(seconds, now) => self.weigh(seconds, now, listener),
             Task::Conclude(reason) => {

@@ -5,7 +5,7 @@ use heapless::Vec;
 use super::procedure::Procedure;
 use super::survey::Store;
 use super::timing::{SECTIONS, Target, Timing, designed};
-use super::{Phase, Session, Task};
+use super::{Phase, Session};
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;
@@ -50,7 +50,6 @@ impl From<Prepared> for Session {
             procedure,
             coefficients,
             phase: Phase::Level,
-            task: Task::Conclude(None),
             begun: None,
             average: None,
             repetitions: Vec::new(),

@@ -4,9 +4,8 @@
 use heapless::Vec;
 
 use crate::alignment::stepwise::CAPACITY;
-use crate::planner::POSITIONS;
 use crate::planner::order::Order;
-use crate::planner::{FEWEST, Plan};
+use crate::planner::{FEWEST, POSITIONS, Plan};
 use crate::signal::dwell::Dwell;
 
 /// One position: stage angle and length of the dwell.
@@ -154,8 +153,7 @@ impl Schedule {
 
     /// Position with this index. Beyond the end a planned schedule continues with 0, 180, 90, 270°,
     /// and a list begins anew; `None` for a search, whose positions depend on the dwells.
-    #[must_use]
-    pub fn position(&self, index: usize) -> Option<Position> {
+    pub(crate) fn position(&self, index: usize) -> Option<Position> {
         match self {
             Self::Listed(list) => list.get(index % list.len().max(1)).copied(),
             Self::Planned(plan) => {
@@ -176,8 +174,7 @@ impl Schedule {
     }
 
     /// Length of the shortest dwell, s.
-    #[must_use]
-    pub fn shortest(&self) -> f64 {
+    pub(crate) fn shortest(&self) -> f64 {
         match self {
             Self::Listed(list) => list.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min),
             Self::Planned(plan) => plan.dwell,
@@ -197,8 +194,7 @@ impl Schedule {
 
     /// Position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
     /// `None` at the end.
-    #[must_use]
-    pub fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
+    pub(crate) fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
         match self {
             Self::Listed(_) | Self::Planned(_) => {
                 self.position(dwells.len()).filter(|_| dwells.len() < self.len())
@@ -215,12 +211,8 @@ impl Schedule {
     /// not neighbours.
     pub(super) fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
         let [.., before, last] = dwells else { return None };
-        let turned_back = match self {
-            Self::Listed(_) | Self::Planned(_) => false,
-            Self::TowardMaximum { .. } => {
-                turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2)
-            }
-        };
+        let turned_back = matches!(self, Self::TowardMaximum { .. })
+            && turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2);
         (!turned_back).then_some(last.rate - before.rate)
     }
 }

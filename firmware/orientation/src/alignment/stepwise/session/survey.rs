@@ -6,6 +6,7 @@ use heapless::Vec;
 use super::schedule::{Schedule, StopRule};
 use super::timing::designed;
 use super::{Phase, Session, Task};
+use crate::alignment::progress::Progress::Stepwise;
 use crate::alignment::stepwise::{CAPACITY, Progress, Refusal};
 use crate::alignment::{self, Listener, Request, SetupError};
 use crate::noise::allan::Allan;
@@ -14,7 +15,7 @@ use crate::noise::model::{GyroNoise, StatedNoise};
 use crate::planner::{Conditions, FEWEST, PlanError, for_sigma, for_time};
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, SampleFault};
-use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
+use crate::units::{AngularRate, Instant};
 
 /// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
 const RESERVE: f64 = 0.95;
@@ -129,7 +130,7 @@ impl Session {
         self.setting.site.noise = StatedNoise::Whole(noise);
         self.surveyed = Some(found);
         for (coefficient, estimate) in found.in_field_units() {
-            listener(Progress::Noise(coefficient, estimate).into());
+            listener(Stepwise(Progress::Noise(coefficient, estimate)));
         }
         // The time allowed counts from the end of the survey.
         self.begun = Some(now);
@@ -169,12 +170,9 @@ impl Session {
         };
         let plan = plan.map_err(|error| self.unplanned(error, allowed))?;
         self.procedure.schedule = Schedule::Planned(plan);
-        designed(&self.procedure)
-            .map(|(coefficients, target)| {
-                self.coefficients = coefficients;
-                self.target = target;
-            })
-            .map_err(|_: SetupError| Refusal::NoSchedule { seconds: allowed })
+        (self.coefficients, self.target) = designed(&self.procedure)
+            .map_err(|_: SetupError| Refusal::NoSchedule { seconds: allowed })?;
+        Ok(())
     }
 
     /// Reports the plan.
@@ -182,19 +180,17 @@ impl Session {
         if let Schedule::Planned(plan) = &self.procedure.schedule {
             let sigma = plan.sigma(self.setting.site.latitude);
             let (positions, dwell, seconds) = (plan.positions(), plan.dwell, plan.seconds);
-            listener(Progress::Planned { positions, dwell, seconds, sigma }.into());
+            listener(Stepwise(Progress::Planned { positions, dwell, seconds, sigma }));
         }
     }
 
-    /// Refusal for a planning error, with angles in degrees.
+    /// Refusal for a planning error in the time allowed, s.
     fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
-        let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
         match error {
-            PlanError::OutOfReach(rate) => Refusal::OutOfReach {
-                sigma: degrees(rate / self.setting.site.latitude.horizontal_rate()),
-                required: degrees(self.setting.site.required_sigma),
-                seconds,
-            },
+            PlanError::OutOfReach(rate) => {
+                let sigma = rate / self.setting.site.latitude.horizontal_rate();
+                self.out_of_reach(sigma, seconds)
+            }
             PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },
         }
     }
