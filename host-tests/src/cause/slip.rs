@@ -1,7 +1,7 @@
 //! An encoder that slipped, or a base that was turned, so far that no residual is small: two headings.
 
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::stepwise;
+use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::math::regression::{Column, Regression};
 use orientation::signal::dwell::Dwell;
@@ -29,9 +29,8 @@ pub fn of(session: &Session, refusal: &Refusal) -> Option<String> {
         refusal,
         Refusal::ResidualsNotWhite { .. }
             | Refusal::ResidualsCorrelated { .. }
-            | Refusal::Stepwise(stepwise::Refusal::NoiseNotAsStated { .. })
-            | Refusal::Stepwise(stepwise::Refusal::Disturbed { .. })
             | Refusal::EarthRateMismatch { .. }
+            | Refusal::Stepwise(Stepwise::NoiseNotAsStated { .. } | Stepwise::Disturbed { .. })
     );
     let (dwells, rate) = (session.dwells(), session.setting().site.latitude.horizontal_rate());
     if !is_scattered || dwells.len() < 5 + FREE {

@@ -4,7 +4,7 @@
 use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::stops;
+use orientation::alignment::stops::Refusal as Stops;
 use orientation::device::{Device, Trouble};
 use simulated::fault::{ChipFault, Fault, Platform};
 use simulated::vehicle::VehicleScenario;
@@ -77,13 +77,11 @@ fn end(found: &VehicleRun) -> Option<End> {
             (sigmas.abs() < 3.5).then_some(End::Survived)
         }
         Err(Refusal::Device { device, trouble }) => Some(End::Named(device, trouble)),
-        Err(Refusal::Stops(stops::Refusal::RotationMissing { .. })) => Some(End::Lost),
-        Err(Refusal::Stops(stops::Refusal::RotationClipped { .. })) => Some(End::Clipped),
-        Err(
-            Refusal::Stops(stops::Refusal::NoStop)
-            | Refusal::Stops(stops::Refusal::OneStop { .. })
-            | Refusal::Stops(stops::Refusal::StopTooShort { .. }),
-        ) => Some(End::TooFewStops),
+        Err(Refusal::Stops(Stops::RotationMissing { .. })) => Some(End::Lost),
+        Err(Refusal::Stops(Stops::RotationClipped { .. })) => Some(End::Clipped),
+        Err(Refusal::Stops(Stops::NoStop | Stops::OneStop { .. } | Stops::StopTooShort { .. })) => {
+            Some(End::TooFewStops)
+        }
         Err(_) => None,
     }
 }
@@ -116,8 +114,7 @@ fn one_lost_conversion_of_any_axis_is_reported_as_a_gap_of_its_length() {
     for device in [Device::ForwardGyro, Device::RightGyro, Device::DownGyro] {
         let found = run(Fault::Chip(device, ChipFault::ChecksumOnce));
         assert_eq!(found.run.health.missing, 1, "{device}");
-        let Err(Refusal::Stops(stops::Refusal::RotationMissing { seconds, .. })) = verdict(&found)
-        else {
+        let Err(Refusal::Stops(Stops::RotationMissing { seconds, .. })) = verdict(&found) else {
             panic!("{device}: {:?}", verdict(&found));
         };
         assert!((seconds - 0.02).abs() < 1e-4, "{device}: {seconds} s");
