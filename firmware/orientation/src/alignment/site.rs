@@ -77,7 +77,8 @@ impl Site {
     }
 
     /// Standard deviation of either part of κ, 1σ, rad/s per g, for a gyro with this N, rad/√s.
-    pub(crate) fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
+    #[must_use]
+    pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
         if self.g_sensitivity_known {
             self.g_sensitivity_sigma
         } else {

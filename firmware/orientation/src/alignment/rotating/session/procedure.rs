@@ -71,7 +71,8 @@ impl Procedure {
     /// − a² A)/(b² − a²) of their individual results A and B: with times in proportion to these
     /// weights its noise is least, (b² + a²)/(b² − a²) of that of one speed without a g-sensitivity
     /// (MET 2018).
-    pub(super) fn turns_at(&self, index: usize) -> u32 {
+    #[must_use]
+    pub fn turns_at(&self, index: usize) -> u32 {
         let slowest = self.speeds.iter().copied().fold(f64::INFINITY, f64::min);
         let faster = self.speeds.get(index).map_or(1.0, |speed| speed / slowest);
         libm::round(f64::from(self.turns) * faster * faster * faster).min(1e6) as u32

@@ -251,7 +251,7 @@ impl Problem<'_> {
     }
 
     /// Passes each dwell's residual to `each`, in their order, for the result of [`Self::fit`].
-    pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
+    pub(super) fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
         let horizontal = self.setting.site.latitude.horizontal_rate();
         let bent = fit.bent(fit.model.hypothesis);
         self.whiten(self.setting.site.noise.model(), taper_of, &bent, &mut |row, white| {
