@@ -19,4 +19,4 @@ pub use progress::{Listener, Progress};
 pub use refusal::Refusal;
 pub use setup::SetupError;
 pub use slow::SlowMotion;
-pub use verdict::{Azimuth, Passed, Solution, Verdict};
+pub use verdict::{Azimuth, Judged, Passed, Solution, Verdict};

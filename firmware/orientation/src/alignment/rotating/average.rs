@@ -3,6 +3,7 @@
 
 use heapless::Vec;
 
+use super::change::MEDIAN_OF_NEIGHBOURS;
 use super::misalignment::{self, AxisMisalignment};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, TURNS, Turn};
@@ -12,8 +13,6 @@ use crate::math::{Complex, chi_square_tail, median};
 /// Squared distance of a turn from the mean of the others, in variances of either part, beyond
 /// which it is excluded (exp(−x/2): one sound turn in 40 000).
 const OUTLIER: f64 = 21.0;
-/// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
-const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 
 /// Probability of the scatter of the turns' mean rates about a line, below which the drift counts
 /// as curved.
@@ -89,15 +88,12 @@ impl<'a> Turns<'a> {
         let misalignment = misalignment::nearest(misalignments, frequency);
         let response = misalignment
             .map_or(Complex::default(), |misalignment| misalignment.response(frequency));
-        let (all, phasors) = (stretch.turns(), Vec::new());
-        let slopes = [0.0; TURNS];
-        let mut found = Self { all, steady, phasors, slopes, is_kept: [true; TURNS] };
-        for turn in stretch.turns() {
-            let turning = Complex::of_signal(turn.turning);
-            // The vector holds as many turns as a stretch, so the push cannot fail.
-            let _ = found.phasors.push(Complex::of_signal(turn.rate) - response * turning);
-        }
-        found
+        let all = stretch.turns();
+        let phasor = |turn: &Turn| {
+            Complex::of_signal(turn.rate) - response * Complex::of_signal(turn.turning)
+        };
+        let (phasors, slopes) = (all.iter().map(phasor).collect(), [0.0; TURNS]);
+        Self { all, steady, phasors, slopes, is_kept: [true; TURNS] }
     }
 
     /// Removes the gyro's drift from the phasors, as the turns used show it: a line, or where their

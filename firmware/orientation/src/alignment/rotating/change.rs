@@ -107,8 +107,8 @@ pub struct Record {
 /// of chi-square).
 const FEW: f64 = 11.0;
 /// Median of the squared distance of two neighbours over the variance of either part, for two
-/// parts.
-const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
+/// parts: 2 · 2 ln 2.
+pub(super) const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 /// Least relative information of a step where the other columns explain it.
 const LEAST_INFORMATION: f64 = 1e-6;
 /// Least number of turns on either side of a step.

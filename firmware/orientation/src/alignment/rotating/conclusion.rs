@@ -13,7 +13,7 @@ use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
 use super::turn_accumulator::TurnAccumulator;
 use super::{Refusal, Setting};
 use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Passed, SlowMotion};
+use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion};
 use crate::device::Device;
 use crate::math::{Complex, chi_square_tail};
 use crate::noise::model::GyroNoise;
@@ -59,7 +59,7 @@ const GREATEST_MOLECULAR: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
-    pub verdict: Result<Azimuth, alignment::Refusal>,
+    pub verdict: Judged,
     /// The fit, where both senses were measured; its azimuth is valid only together with the
     /// verdict.
     pub fit: Option<Fit>,
@@ -108,7 +108,7 @@ impl Conclusion {
     }
 
     /// Sequence of checks and computations; the first failure is the refusal.
-    fn decide(&mut self, evidence: &Evidence) -> Result<Azimuth, alignment::Refusal> {
+    fn decide(&mut self, evidence: &Evidence) -> Judged {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
         setting.site.check_latitude()?;
         self.couple(evidence)?;

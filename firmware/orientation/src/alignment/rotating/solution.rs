@@ -349,21 +349,16 @@ impl Problem<'_> {
     /// Solution of a sensor of unknown gain and lag: half of arg Q₊Q₋, then the tilt's part is
     /// subtracted from the angle.
     fn lagging(&self, fit: &mut Fit) -> Option<Turned> {
-        let mut halves: heapless::Vec<Halves, SPEEDS> = heapless::Vec::new();
-        for (pair, phase) in self.pairs.iter().zip(&mut fit.phases) {
-            let half = self.halves(pair);
-            *phase = half.phase;
-            // There are no more pairs than speeds, so the push cannot fail.
-            let _ = halves.push(half);
-        }
+        let halves: heapless::Vec<Halves, SPEEDS> =
+            self.pairs.iter().map(|pair| self.halves(pair)).collect();
         let freed: Freed = molecular::freed(&halves, self.setting.sensor.molecular_sigma)?;
         fit.molecular = freed.ratio;
         fit.one_speed = freed.one_speed;
         fit.disagreement = freed.disagreement;
         fit.lag_disagreement = self.lag_disagreement(&halves, &freed, self.misalignment_sigma(fit));
         let slowest = self.slowest()?.speed();
-        for (phase, pair) in fit.phases.iter_mut().zip(self.pairs) {
-            *phase += freed.ratio.re * slowest / pair.speed();
+        for ((phase, half), pair) in fit.phases.iter_mut().zip(&halves).zip(self.pairs) {
+            *phase = half.phase + freed.ratio.re * slowest / pair.speed();
         }
         let [horizontal, _] = self.earth();
         let others = self.per_tilt(1.0) * fit.tilt + self.tilting.turning(&fit.lean);

@@ -1,11 +1,9 @@
 //! Slow tilting of the base, from the forces of the turns: the tilting rate adds to the gyro's
 //! signal as the Earth rate does, and 1 °/h of it costs 6° of azimuth at 50° of latitude.
 
-use heapless::Vec;
-
 use super::change::{Mark, Marks, Record, Shape};
 use super::level::Lean;
-use super::turn::Stretch;
+use super::turn::{Stretch, Turn};
 use crate::math::Complex;
 use crate::math::regression::Column;
 use crate::units::DEGREE_PER_HOUR;
@@ -155,13 +153,8 @@ fn direction(marks: &[Mark]) -> Complex {
 
 /// Force phasors of all turns over gravity, g.
 fn marks(stretches: &[Stretch], gravity: f64) -> Marks {
-    let mut marks = Vec::new();
-    for stretch in stretches {
-        for turn in stretch.turns() {
-            let force = Complex::of_signal(turn.force).scaled(1.0 / gravity);
-            // There is room for every turn of every stretch.
-            let _ = marks.push(Mark::of(stretch, turn, force));
-        }
-    }
-    marks
+    let of = |turn: &Turn| Complex::of_signal(turn.force).scaled(1.0 / gravity);
+    let turns = |stretch| Stretch::turns(stretch).iter().map(move |turn| (stretch, turn));
+    let all = stretches.iter().flat_map(turns);
+    all.map(|(stretch, turn)| Mark::of(stretch, turn, of(turn))).collect()
 }

@@ -324,7 +324,11 @@ impl TurnAccumulator {
         if is_even {
             return self.take_even(&part);
         }
-        self.leave(&part);
+        if self.is_before_even() {
+            self.take_modulated(&part);
+        } else {
+            self.reference = None;
+        }
         false
     }
 
@@ -388,15 +392,6 @@ impl TurnAccumulator {
             }
         }
         self.turn = Eighths::default();
-    }
-
-    /// Discards a modulated eighth, or adds it to the rate-modulated stretch.
-    fn leave(&mut self, part: &Part) {
-        if self.is_before_even() {
-            self.take_modulated(part);
-        } else {
-            self.reference = None;
-        }
     }
 
     /// Adds an eighth to the rate-modulated stretch, unless the sensor settles or its rate is

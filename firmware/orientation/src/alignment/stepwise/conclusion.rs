@@ -14,7 +14,7 @@ use super::setting::Setting;
 use super::tilt::Tilt;
 use super::{CAPACITY, Refusal, cause, different_positions, level};
 use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Passed, SlowMotion};
+use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, TURN, wrapped};
@@ -57,7 +57,7 @@ const GRAVITY_TOLERANCE: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
-    pub verdict: Result<Azimuth, alignment::Refusal>,
+    pub verdict: Judged,
     /// Tilt of the platform.
     pub tilt: Tilt,
     /// Fit of the dwells, where the positions determine one; its azimuth is valid only together
@@ -108,16 +108,9 @@ impl Conclusion {
     }
 
     /// Fit, tests and choice of the azimuth, in that order; the first failure is the refusal.
-    fn decide(
-        &mut self,
-        setting: &Setting,
-        dwells: &[Dwell],
-        criterion: Criterion,
-    ) -> Result<Azimuth, alignment::Refusal> {
+    fn decide(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Judged {
         self.fit_undisturbed(setting, dwells)?;
-        let Some(fit) = &self.fit else {
-            return Err(Refusal::AzimuthUnobservable.into());
-        };
+        let fit = self.fit.as_ref().ok_or(Refusal::AzimuthUnobservable)?;
         self.judge(setting, dwells, fit)?;
         self.azimuth(setting, dwells, fit, criterion)
     }
@@ -362,7 +355,7 @@ impl Conclusion {
         dwells: &[Dwell],
         fit: &Fit,
         criterion: Criterion,
-    ) -> Result<Azimuth, alignment::Refusal> {
+    ) -> Judged {
         let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
         let problem = self.problem(setting, &kept);
         let azimuth = match criterion {

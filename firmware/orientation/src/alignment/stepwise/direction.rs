@@ -80,15 +80,13 @@ const SCAN: usize = 64;
 const OTHER_HALF: f64 = 25.0;
 
 /// Chi-square profile J(A) and its parts.
-struct Profile {
+struct Profile<'a> {
+    /// The components, with the half circle to which the azimuth is restricted.
+    components: &'a Components,
     /// Inverse of the components' covariance.
     information: [[f64; 2]; 2],
     /// Product of the information matrix and β + f.
     target: [f64; 2],
-    /// Components f of the vertical Earth rate, in units of `Ω_h`.
-    vertical: [f64; 2],
-    /// Half circle to which the azimuth is restricted.
-    half: Option<Half>,
     /// Prior knowledge of ρ.
     amplitude: Amplitude,
 }
@@ -110,20 +108,20 @@ impl Components {
     }
 }
 
-impl Profile {
+impl<'a> Profile<'a> {
     /// Prepares the profile; `None` where the covariance is not positive.
-    fn new(components: &Components, amplitude: Amplitude) -> Option<Self> {
+    fn new(components: &'a Components, amplitude: Amplitude) -> Option<Self> {
         let information = inverted(&components.covariance)?;
         let [north, east] = components.vertical;
         let target =
             product(&information, [components.value[0] + north, components.value[1] + east]);
-        let Components { vertical, half, .. } = *components;
-        Some(Self { information, target, vertical, half, amplitude })
+        Some(Self { components, information, target, amplitude })
     }
 
     /// Vector that ρ multiplies: the unit vector of an azimuth plus the vertical Earth rate's part.
     fn along(&self, [cosine, sine]: [f64; 2]) -> [f64; 2] {
-        [cosine + self.vertical[0], sine + self.vertical[1]]
+        let [north, east] = self.components.vertical;
+        [cosine + north, sine + east]
     }
 
     /// Chi-square at an azimuth, rad, less that of β itself, and the best ρ there.
@@ -163,7 +161,7 @@ impl Profile {
             let azimuth = self.refine(k as f64 * step, step);
             let value = self.at(azimuth).0;
             least = least.min(value);
-            if self.half.is_some_and(|half| !half.contains(azimuth)) {
+            if self.components.half.is_some_and(|half| !half.contains(azimuth)) {
                 continue;
             }
             if value < best.1 {

@@ -15,7 +15,7 @@ use super::stop_detector::{Rests, StopDetector, WINDOW};
 use super::{Refusal, Setting};
 use crate::alignment::budget::{Budget, Source};
 use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Passed};
+use crate::alignment::{self, Azimuth, Judged, Passed};
 use crate::earth::EARTH_RATE;
 use crate::math::chi_square_tail;
 use crate::math::rotation::{
@@ -68,7 +68,7 @@ const OBSERVED: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// Azimuth of body x at the end, or the reason for refusing it.
-    pub verdict: Result<Azimuth, alignment::Refusal>,
+    pub verdict: Judged,
     /// Details, where there was something to solve; they are valid only together with the verdict.
     pub found: Option<Found>,
 }

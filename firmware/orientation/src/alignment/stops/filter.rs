@@ -8,6 +8,7 @@
 //! Earth alone, so φ differs only by the sway (zero-velocity update of the rotation). The equations
 //! are linear once the start is nearly known, and iteration makes it known.
 
+use crate::alignment::site::Site;
 use crate::math::rotation::{Matrix, Vector, cross, dot};
 use crate::math::{cholesky, cholesky_solve};
 use crate::signal::strapdown::Rough;
@@ -62,10 +63,11 @@ impl Filter {
     /// Filter with all states and covariances zero.
     pub const EMPTY: Self = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
 
-    /// Initialises the filter: φ at the start gets this covariance, rad², the other states these
-    /// 1σ; all estimates are zero.
+    /// Initialises the filter: φ at the start gets this covariance, rad², the biases this 1σ, rad/s,
+    /// and the other states those of the site; all estimates are zero.
     #[inline(never)]
-    pub fn begin(&mut self, start: &Matrix, bias: f64, scale: f64, force: f64, latitude: f64) {
+    pub fn begin(&mut self, start: &Matrix, bias: f64, site: &Site) {
+        let (scale, force) = (site.scale_sigma, site.accelerometer_bias_sigma);
         self.state = [0.0; STATES];
         self.covariance = [[0.0; STATES]; STATES];
         for (row, values) in start.iter().enumerate() {
@@ -80,7 +82,7 @@ impl Filter {
                 self.covariance[state][state] = sigma * sigma;
             }
         }
-        self.covariance[LATITUDE][LATITUDE] = latitude * latitude;
+        self.covariance[LATITUDE][LATITUDE] = site.latitude_sigma * site.latitude_sigma;
     }
 
     /// Propagates φ over an interval: `bias` and `scale` are the changes of its sensitivities, and

@@ -240,13 +240,8 @@ impl Solution {
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let site = &setting.site;
         (self.tally, self.steady) = (Tally::default(), 0.0);
-        self.filter.begin(
-            &start_covariance(&self.frame),
-            self.widening * setting.bias_sigma(),
-            site.scale_sigma,
-            site.accelerometer_bias_sigma,
-            site.latitude_sigma,
-        );
+        let bias_sigma = self.widening * setting.bias_sigma();
+        self.filter.begin(&start_covariance(&self.frame), bias_sigma, site);
         let is_exact = site.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let mut run = Run {

@@ -309,11 +309,8 @@ impl Problem<'_> {
     fn components(&self, solution: &Solution<COLUMNS>) -> Components {
         let mut components = self.noise_components(solution);
         for errors in self.component_errors() {
-            for (i, row) in errors.iter().enumerate() {
-                for (j, error) in row.iter().enumerate() {
-                    components.covariance[i][j] += error;
-                }
-            }
+            let noise = components.covariance;
+            components.covariance = [0, 1].map(|i| [0, 1].map(|j| noise[i][j] + errors[i][j]));
         }
         components
     }

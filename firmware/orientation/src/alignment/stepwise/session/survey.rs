@@ -8,7 +8,7 @@ use super::timing::designed;
 use super::{Phase, Session, Task};
 use crate::alignment::progress::Progress::Stepwise;
 use crate::alignment::stepwise::{CAPACITY, Progress, Refusal};
-use crate::alignment::{self, Listener, Request, SetupError};
+use crate::alignment::{Listener, Request, SetupError};
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::{GyroNoise, StatedNoise};
@@ -105,7 +105,7 @@ impl Session {
         match self.try_to_learn(now, listener) {
             Ok(request) => request,
             Err(reason) => {
-                self.draw(Some(reason));
+                self.draw(Some(reason.into()));
                 self.finish(listener)
             }
         }
@@ -113,11 +113,7 @@ impl Session {
 
     /// Fits the noise and makes the plan; a survey with missing samples begins anew.
     #[inline(never)]
-    fn try_to_learn(
-        &mut self,
-        now: Instant,
-        listener: Listener,
-    ) -> Result<Request, alignment::Refusal> {
+    fn try_to_learn(&mut self, now: Instant, listener: Listener) -> Result<Request, Refusal> {
         self.phase = Phase::Survey;
         if self.has_missed_samples() {
             self.store.begin_survey();
