@@ -6,10 +6,14 @@
 //! cargo run --release --example etalon_exhaustive -- 10000
 //! ```
 
+#[allow(dead_code, reason = "the tests use more of it")]
+#[path = "../tests/support/oracle.rs"]
+mod oracle;
+
 use std::process::ExitCode;
 
 use hal_mock::noise::Generator;
-use host::oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
+use oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
 use rayon::prelude::*;
 
 /// Makes case number `index` of a family.

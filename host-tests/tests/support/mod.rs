@@ -8,6 +8,7 @@
 
 pub mod campaign;
 pub mod files;
+pub mod oracle;
 pub mod program;
 pub mod rig;
 
