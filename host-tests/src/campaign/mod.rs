@@ -86,7 +86,7 @@ fn tenth(runs: usize) -> usize {
 }
 
 /// One result for each seed.
-fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
+fn over<T: Send>(runs: usize, tick: Tick<'_>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let of = |seed| {
         let result = of(seed);
         tick();

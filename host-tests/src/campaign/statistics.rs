@@ -1,5 +1,6 @@
 //! What many errors amount to.
 
+use std::borrow::Borrow;
 use std::fmt::Display;
 
 use orientation::alignment::Azimuth;
@@ -73,22 +74,22 @@ impl Precision {
     }
 
     /// Summarises answers.
-    #[must_use]
-    pub fn of<E: Display>(answers: &[Result<Answer, E>]) -> Self {
-        let given: Vec<Answer> =
-            answers.iter().filter_map(|answer| answer.as_ref().ok().copied()).collect();
-        let column = |of: fn(&Answer) -> f64| given.iter().map(of).collect::<Vec<f64>>();
-        let [errors, sigmas, limits] =
-            [column(|a| a.error), column(|a| a.sigma), column(|a| a.limit)];
+    pub fn of<'a, E: Display + 'a>(
+        answers: impl IntoIterator<Item = &'a Result<Answer, E>, IntoIter: Clone>,
+    ) -> Self {
+        let answers = answers.into_iter();
+        let given = answers.clone().flatten();
+        let column = |of: fn(&Answer) -> f64| given.clone().map(of);
+        let runs = answers.clone().count();
         Self {
-            runs: answers.len(),
-            refused: answers.len() - given.len(),
-            first_reason: answers.iter().find_map(|a| a.as_ref().err()).map(ToString::to_string),
-            rms_deg: rms(&errors),
-            limit_deg: rms(&limits),
-            ratio: rms(&column(|answer| answer.error / answer.limit)),
-            coverage_percent: coverage(&errors, &sigmas),
-            worst_sigmas: given.iter().fold(0.0, |worst, a| worst.max((a.error / a.sigma).abs())),
+            runs,
+            refused: runs - given.clone().count(),
+            first_reason: answers.clone().find_map(|a| a.as_ref().err()).map(ToString::to_string),
+            rms_deg: rms(column(|answer| answer.error)),
+            limit_deg: rms(column(|answer| answer.limit)),
+            ratio: rms(column(|answer| answer.error / answer.limit)),
+            coverage_percent: coverage(given.clone().map(|answer| [answer.error, answer.sigma])),
+            worst_sigmas: column(|answer| (answer.error / answer.sigma).abs()).fold(0.0, f64::max),
         }
     }
 }
@@ -106,45 +107,40 @@ pub struct Spread {
 
 impl Spread {
     /// Summarises pairs of an error and its σ.
-    #[must_use]
-    pub fn of(pairs: &[[f64; 2]]) -> Self {
-        let (errors, sigmas): (Vec<_>, Vec<_>) = pairs.iter().map(|[e, s]| (*e, *s)).unzip();
+    pub fn of(pairs: impl IntoIterator<Item = [f64; 2], IntoIter: Clone>) -> Self {
+        let pairs = pairs.into_iter();
         Self {
-            rms_deg: rms(&errors),
-            sigma_deg: rms(&sigmas),
-            coverage_percent: coverage(&errors, &sigmas),
+            rms_deg: rms(pairs.clone().map(|[error, _]| error)),
+            sigma_deg: rms(pairs.clone().map(|[_, sigma]| sigma)),
+            coverage_percent: coverage(pairs),
         }
     }
 }
 
 /// Root mean square; zero of none.
-#[must_use]
-pub fn rms(values: &[f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
+    let squares = values.into_iter().map(|value| value.borrow() * value.borrow());
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
 }
 
 /// The greatest absolute value; one that is missing is greater than all, of none it is zero.
-#[must_use]
-pub fn greatest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| if value.abs() <= most { most } else { value.abs() })
+pub fn greatest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let greater = |most, value: f64| if value.abs() <= most { most } else { value.abs() };
+    values.into_iter().fold(0.0, greater)
 }
 
 /// The least absolute value; not a number of none.
-#[must_use]
-pub fn least(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).fold(f64::NAN, f64::min)
+pub fn least(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(f64::abs).fold(f64::NAN, f64::min)
 }
 
-/// Per cent of errors within one, two and three of their standard deviations.
-#[must_use]
-pub fn coverage(errors: &[f64], sigmas: &[f64]) -> [f64; 3] {
+/// Per cent of errors, each with its standard deviation, within one, two and three of these.
+pub fn coverage(pairs: impl IntoIterator<Item = [f64; 2], IntoIter: Clone>) -> [f64; 3] {
+    let pairs = pairs.into_iter();
     [1.0, 2.0, 3.0].map(|factor| {
-        let pairs = errors.iter().zip(sigmas);
-        let inside = pairs.filter(|(error, sigma)| error.abs() <= factor * **sigma).count();
-        100.0 * inside as f64 / errors.len().max(1) as f64
+        let inside = pairs.clone().filter(|[error, sigma]| error.abs() <= factor * sigma).count();
+        100.0 * inside as f64 / pairs.clone().count().max(1) as f64
     })
 }
 

@@ -37,7 +37,7 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass(extent: Extent
     let runs = extent.of(RUNS);
     let mut rows = Vec::new();
     for (gyro, gain) in drift::GYROS.into_iter().zip([1.1, 1.5]) {
-        let found = drift::compare(gyro, runs, || ()).expect("there is a plan");
+        let found = drift::compare(gyro, runs, &|| ()).expect("there is a plan");
         for row in [&found.planned, &found.one_pass] {
             let precision = &row.precision;
             // One session in a thousand seems to have a heading that steps. Of four positions, which have one degree
@@ -78,7 +78,7 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass(extent: Extent
 
 fn each_of_the_five_classes_is_met_by_its_gyro(extent: Extent) {
     let runs = extent.of(CLASS_RUNS);
-    let rows = classes::rows(runs, || ());
+    let rows = classes::rows(runs, &|| ());
     assert_eq!(rows.len(), 5);
     let lines = rows.iter().map(|row| {
         assert!(row.is_met, "{row:?}");

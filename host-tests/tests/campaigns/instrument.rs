@@ -25,7 +25,7 @@ fn on_no_platform_a_fault_gives_a_wrong_north_or_roll_comes_to_no_end_or_goes_un
         Extent::Tenth => (&[Platform::Spin][..], 1),
         Extent::Whole => (&Platform::ALL[..], 2),
     };
-    let rows = faults::rows(platforms, 1..=seeds, || ());
+    let rows = faults::rows(platforms, 1..=seeds, &|| ());
     assert_eq!(rows.len(), seeds as usize * faults::count(platforms));
     for platform in platforms {
         assert!(rows.iter().any(|row| row.platform == platform.name() && row.outcome == "ok"));
@@ -37,7 +37,7 @@ fn on_no_platform_a_fault_gives_a_wrong_north_or_roll_comes_to_no_end_or_goes_un
 fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts(extent: Extent) {
     let wanted = extent.of(RUNS);
     let Runs { precision: found, violations, .. } =
-        &instrument::precision(wanted, || ()).expect("all are possible");
+        &instrument::precision(wanted, &|| ()).expect("all are possible");
     let Precision { runs, refused, ratio, coverage_percent, .. } = found;
     assert_eq!((runs, refused, violations), (&wanted, &0, &0), "{found:?}");
     assert!(*ratio <= 1.0 + extent.rms(0.06, wanted), "{found:?}");
@@ -85,7 +85,7 @@ fn every_fault_of_every_chip_is_survived_or_refused_for_its_reason_and_nothing_h
         Extent::Tenth => 1,
         Extent::Whole => 2,
     };
-    let rows = faults::rows(&[Platform::Stage], 1..=seeds, || ());
+    let rows = faults::rows(&[Platform::Stage], 1..=seeds, &|| ());
     assert_eq!(
         rows.len(),
         seeds as usize * (4 * 10 + 3 + 15),

@@ -24,7 +24,7 @@ fn percent(precision: &Precision) -> String {
 
 fn a_flat_gyro_reaches_its_limit_after_every_stage_of_compensation(extent: Extent) {
     let runs = extent.of(RUNS[0]);
-    let found = stages::rows(runs, || {});
+    let found = stages::rows(runs, &|| {});
     each_stage_leaves_what_equations_md_says_of_it(&found);
     the_raw_error_is_greatest_where_the_unevenness_acts_across_the_azimuth(&found);
     let mut rows = Vec::new();
@@ -83,7 +83,7 @@ fn two_speeds_free_a_molecular_electronic_sensor_of_its_g_sensitivity(extent: Ex
         Extent::Tenth => (8, [0.01, 0.012], [0.1, 0.06], 3.5),
     };
     let mut rows = Vec::new();
-    for row in molecular::rows(runs, || {}) {
+    for row in molecular::rows(runs, &|| {}) {
         let precision = &row.precision;
         assert_eq!(precision.refused, 0, "{precision:?}");
         assert!(precision.worst_sigmas < 4.5, "{row:?}");
@@ -119,7 +119,7 @@ fn a_ratio_and_a_lag_are_those_of_the_sensor_that_is_made_of_them() {
 
 #[test]
 fn whatever_goes_wrong_is_refused_and_nothing_is_wrong() {
-    for row in refusals::rows(2, || {}) {
+    for row in refusals::rows(2, &|| {}) {
         println!("{}: {:?}", row.case, row.reason);
         assert_eq!((row.wrong, row.refused), (0, row.runs), "{row:?}");
         assert_ne!(row.reason.as_deref(), Some("the time allowed ran out"), "{row:?}");

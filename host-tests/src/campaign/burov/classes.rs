@@ -14,8 +14,8 @@ use serde::Serialize;
 
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude};
 use crate::campaign::keep::limit::stored_sigma;
-use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision};
+use crate::campaign::{Tick, over};
 use crate::methods::stops::samples::Converter;
 use crate::output::{azimuth_error, degrees};
 
@@ -140,15 +140,15 @@ pub struct Row {
 
 /// The five rows over `runs` runs each.
 #[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    CLASSES.iter().map(|class| class.row(runs, &tick)).collect()
+pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
+    CLASSES.iter().map(|class| class.row(runs, tick)).collect()
 }
 
 /// Number of classes.
 pub const COUNT: usize = CLASSES.len();
 
 impl Class {
-    fn row(&self, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    fn row(&self, runs: usize, tick: Tick<'_>) -> Row {
         let (way, precision) = match self.way {
             Way::Gyrocompassing => self.found(runs, tick),
             Way::HandedOver(sigma) => self.stored(sigma, runs, tick),
@@ -177,7 +177,7 @@ impl Class {
     }
 
     /// North by that schedule.
-    fn found(&self, runs: usize, tick: &(impl Fn() + Sync)) -> (String, Precision) {
+    fn found(&self, runs: usize, tick: Tick<'_>) -> (String, Precision) {
         let Some(plan) = self.plan() else {
             return ("no schedule fits".to_owned(), Precision::of::<Refusal>(&[]));
         };
@@ -188,12 +188,7 @@ impl Class {
     }
 
     /// An azimuth from outside, stored until the time is over.
-    fn stored(
-        &self,
-        sigma_deg: f64,
-        runs: usize,
-        tick: &(impl Fn() + Sync),
-    ) -> (String, Precision) {
+    fn stored(&self, sigma_deg: f64, runs: usize, tick: Tick<'_>) -> (String, Precision) {
         let answers = over(runs, tick, |seed| Ok(self.keep(sigma_deg, seed)));
         (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of::<Refusal>(&answers))
     }

@@ -5,8 +5,8 @@ use orientation::planner::{Conditions, Plan, Rotation, for_time};
 use serde::Serialize;
 
 use super::{Grade, Trial, latitude};
-use crate::campaign::over;
 use crate::campaign::statistics::Precision;
+use crate::campaign::{Tick, over};
 use crate::output::degrees;
 
 /// Total time, s.
@@ -51,19 +51,19 @@ pub struct Comparison {
 
 /// Compares the schedules for a gyro over `runs` runs each; none where there is no plan.
 #[must_use]
-pub fn compare(gyro: Grade, runs: usize, tick: impl Fn() + Sync) -> Option<Comparison> {
+pub fn compare(gyro: Grade, runs: usize, tick: Tick<'_>) -> Option<Comparison> {
     let rotation = Rotation::fixed(ROTATION);
     let conditions = gyro.conditions(rotation);
     let four = Conditions { fewest: 4, ..conditions };
     let planned = for_time(&conditions, SECONDS).ok()?;
     let one_pass = Plan::of(&four, Order::Quadrature, 1, SECONDS)?;
-    let row = |plan| row(&Trial { grade: gyro, plan, rotation }, runs, &tick);
+    let row = |plan| row(&Trial { grade: gyro, plan, rotation }, runs, tick);
     let [planned, one_pass] = [planned, one_pass].map(row);
     let gain = one_pass.precision.rms_deg / planned.precision.rms_deg;
     Some(Comparison { planned, one_pass, gain })
 }
 
-fn row(trial: &Trial, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+fn row(trial: &Trial, runs: usize, tick: Tick<'_>) -> Row {
     let answers = over(runs, tick, |seed| trial.answer(seed));
     let plan = &trial.plan;
     Row {

@@ -20,8 +20,8 @@ mod vehicle;
 use hal_mock::noise::Generator;
 use serde::Serialize;
 
-use super::over;
 use super::statistics::{Answer, Precision};
+use super::{Tick, over};
 
 use self::class::Subject;
 pub use class::{Class, Fault, Pair, WRONG_SIGMAS};
@@ -73,7 +73,7 @@ pub struct HealthyRow {
 }
 
 /// Draws healthy recordings of every platform, so many in all; the last row has all of them.
-pub fn healthy(runs: usize, tick: &(impl Fn() + Sync)) -> Vec<HealthyRow> {
+pub fn healthy(runs: usize, tick: Tick<'_>) -> Vec<HealthyRow> {
     let mut all = Vec::new();
     let mut rows: Vec<HealthyRow> = Vec::new();
     for Platform { name, healthy, .. } in PLATFORMS {
@@ -121,7 +121,7 @@ pub struct Row {
 
 /// Draws a class with seeds 1 to `runs`; `tick` after each.
 #[must_use]
-pub fn row(class: &Class, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+pub fn row(class: &Class, runs: usize, tick: Tick<'_>) -> Row {
     let runs = over(runs, tick, |seed| {
         let [low, high] = class.fault.severity;
         let severity = low * (high / low).powf(Generator::stream(seed, SEVERITY).uniform());

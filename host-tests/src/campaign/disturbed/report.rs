@@ -21,9 +21,9 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where each class passes.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), &tick));
+    let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), tick));
     let healthy = all.unwrap_or_default();
-    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, &tick)).collect();
+    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, tick)).collect();
     let reason = "a class of faults gets past, or is refused without need";
     Done {
         report: report(&healthy, &rows),

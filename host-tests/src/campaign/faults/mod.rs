@@ -11,6 +11,7 @@ use serde::Serialize;
 use simulated::fault::{Fault, Platform};
 
 use self::runs::Ended;
+use super::Tick;
 
 /// Error in σ beyond which an azimuth is a wrong north, and a roll a wrong one.
 pub const WRONG_SIGMAS: f64 = 5.0;
@@ -60,11 +61,7 @@ pub fn count(platforms: &[Platform]) -> usize {
 }
 
 /// Runs every fault of these platforms with every seed; `tick` after each.
-pub fn rows(
-    platforms: &[Platform],
-    seeds: RangeInclusive<u64>,
-    tick: impl Fn() + Sync,
-) -> Vec<Row> {
+pub fn rows(platforms: &[Platform], seeds: RangeInclusive<u64>, tick: Tick<'_>) -> Vec<Row> {
     let faults = platforms.iter().flat_map(|of| Fault::all(*of).map(move |fault| (*of, fault)));
     let cases: Vec<(Platform, Fault, u64)> = faults
         .flat_map(|(platform, fault)| seeds.clone().map(move |seed| (platform, fault, seed)))

@@ -7,8 +7,8 @@ use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
 use simulated::scenario::Scenario;
 
-use super::over;
 use super::statistics::{Answer, Precision};
+use super::{Tick, over};
 use crate::instrument::{RunError, Trial};
 
 /// Greatest latitude that is drawn, °.
@@ -51,12 +51,11 @@ fn scenario(seed: u64) -> Scenario {
 ///
 /// # Errors
 /// What keeps a run from beginning, and a deadlock.
-pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Runs, RunError> {
-    let outcomes = over(runs, &tick, |seed| outcome(&scenario(seed)));
+pub fn precision(runs: usize, tick: Tick<'_>) -> Result<Runs, RunError> {
+    let outcomes = over(runs, tick, |seed| outcome(&scenario(seed)));
     let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let answers: Vec<_> = outcomes.iter().map(|(answer, ..)| *answer).collect();
     Ok(Runs {
-        precision: Precision::of(&answers),
+        precision: Precision::of(outcomes.iter().map(|(answer, ..)| answer)),
         repeated: outcomes.iter().map(|(_, repeated, _)| repeated).sum(),
         violations: outcomes.iter().map(|(.., violations)| violations).sum(),
     })

@@ -10,22 +10,17 @@ pub mod world;
 use serde::Serialize;
 
 use self::limit::stored_sigma;
-use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S};
+use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S, Sheet};
 use super::burov::classes::{CLASSES, Class, Way};
 use super::burov::{BIAS_DEG_H, Grade};
-use super::over;
 use super::statistics::Spread;
+use super::{Tick, over};
 use crate::output::degrees;
 
 /// A class, and what it is fitted with.
 struct Case {
     class: usize,
-    mount: Mount,
-    /// 1σ of the gyro's bias, °/h, and of its scale.
-    bias_deg_h: f64,
-    scale_sigma: f64,
-    /// 1σ of the accelerometers' biases, m/s².
-    force_bias_m_s2: f64,
+    fitting: Fitting,
     /// Whether the row is to be met; else it stands beside one that is.
     is_wanted: bool,
 }
@@ -51,8 +46,6 @@ const CASES: [Case; COUNT] = [
 
 /// How many rows there are.
 pub const COUNT: usize = 7;
-/// Rest before the azimuth is handed over, s.
-const REST_S: f64 = 60.0;
 
 /// The errors so many seconds after the azimuth was handed over.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -111,14 +104,14 @@ pub struct Row {
 /// # Panics
 /// Where the index is not below [`COUNT`].
 #[must_use]
-pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
     let case = &CASES[case];
     let class = &CLASSES[case.class];
-    let (way, azimuth_sigma_deg) = start(class);
-    let fitting = case.fitting(class, azimuth_sigma_deg);
+    let fitting = &case.fitting;
+    let (way, start_sigma_deg) = start(class);
     // No row shares its draws with another.
     let first = (case.class as u64 * 2 + u64::from(case.is_wanted)) << 32;
-    let days = over(runs, tick, |seed| fitting.live(first + seed));
+    let days = over(runs, tick, |seed| fitting.live(start_sigma_deg, first + seed));
     let last = || days.iter().filter_map(|day| day.last());
     let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
     let (azimuth, level) = (azimuths(last()), levels(on_way));
@@ -131,14 +124,14 @@ pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
         wanted_level_deg: class.level_deg,
         gyro: class.gyro,
         grade: class.grade,
-        mount: case.mount.to_string(),
-        force_bias_m_s2: case.force_bias_m_s2,
+        mount: fitting.mount.to_string(),
+        force_bias_m_s2: fitting.force_bias_m_s2,
         way,
         runs,
         lost,
         azimuth,
         azimuth_driving: azimuths(driving),
-        azimuth_limit_deg: limit_deg(&fitting),
+        azimuth_limit_deg: limit_deg(fitting, start_sigma_deg),
         level_at_rest: levels(last()),
         level,
         growth: growth(&days),
@@ -148,14 +141,13 @@ pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
 }
 
 /// Errors of the azimuths.
-fn azimuths<'a>(marks: impl Iterator<Item = &'a Mark>) -> Spread {
-    Spread::of(&marks.filter_map(|mark| mark.azimuth).collect::<Vec<_>>())
+fn azimuths<'a>(marks: impl Iterator<Item = &'a Mark> + Clone) -> Spread {
+    Spread::of(marks.filter_map(|mark| mark.azimuth))
 }
 
 /// Errors of pitch and roll.
-fn levels<'a>(marks: impl Iterator<Item = &'a Mark>) -> Spread {
-    let both = marks.flat_map(|mark| mark.level.map(|error| [error, mark.level_sigma]));
-    Spread::of(&both.collect::<Vec<_>>())
+fn levels<'a>(marks: impl Iterator<Item = &'a Mark> + Clone) -> Spread {
+    Spread::of(marks.flat_map(|mark| mark.level.map(|error| [error, mark.level_sigma])))
 }
 
 impl Case {
@@ -165,19 +157,8 @@ impl Case {
         [bias_deg_h, scale_sigma]: [f64; 2],
         force_bias_m_s2: f64,
     ) -> Self {
-        Self { class, mount, bias_deg_h, scale_sigma, force_bias_m_s2, is_wanted: true }
-    }
-
-    fn fitting(&self, class: &Class, azimuth_sigma_deg: f64) -> Fitting {
-        Fitting {
-            grade: class.grade,
-            bias_deg_h: self.bias_deg_h,
-            scale_sigma: self.scale_sigma,
-            mount: self.mount,
-            force_bias_m_s2: self.force_bias_m_s2,
-            azimuth_sigma_deg,
-            rest_s: REST_S,
-        }
+        let precise = Sheet { grade: CLASSES[class].grade, bias_deg_h, scale_sigma };
+        Self { class, fitting: Fitting { precise, mount, force_bias_m_s2 }, is_wanted: true }
     }
 }
 
@@ -191,9 +172,9 @@ fn start(class: &Class) -> (String, f64) {
 }
 
 /// 1σ of the azimuth after the half hour, °, that the start and the gyro's N, B, K and R leave after its rest.
-fn limit_deg(fitting: &Fitting) -> f64 {
-    let start = fitting.azimuth_sigma_deg.to_radians();
-    degrees(stored_sigma(&fitting.grade.noise(), start, fitting.learnt_s(), STORED_S))
+fn limit_deg(fitting: &Fitting, start_sigma_deg: f64) -> f64 {
+    let (noise, start) = (fitting.precise.grade.noise(), start_sigma_deg.to_radians());
+    degrees(stored_sigma(&noise, start, fitting.learnt_s(), STORED_S))
 }
 
 /// What the errors were minute by minute.

@@ -23,7 +23,7 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where every row that is to be met is.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows: Vec<_> = (0..COUNT).map(|case| row(case, asked.runs, &tick)).collect();
+    let rows: Vec<_> = (0..COUNT).map(|case| row(case, asked.runs, tick)).collect();
     let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
     let refusal = unless(found, "a class does not meet its row; with few runs that may be chance");
     Done { report: report(&rows), refusal, object: json!({ "classes": rows }) }

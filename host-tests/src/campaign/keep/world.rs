@@ -2,12 +2,11 @@
 
 use std::fmt;
 
-use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::{Gyro as Simulated, GyroConfiguration};
 use hal_mock::noise::Generator;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
-use hal_mock::vehicle::{Leg, Vehicle, VehicleConfiguration, VehicleSample};
+use hal_mock::vehicle::{Leg, Stop, Vehicle, VehicleSample};
 use orientation::alignment::Azimuth;
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
@@ -23,6 +22,8 @@ pub const RATE_HZ: f64 = 50.0;
 pub const STORED_S: f64 = 1800.0;
 /// Time from one mark to the next, s.
 pub const MARK_S: f64 = 60.0;
+/// Rest before the azimuth is handed over, s, in which the biases are learnt.
+const REST_S: f64 = 60.0;
 /// Rest at the end, which belongs to the half hour, s.
 const LAST_STOP_S: f64 = 30.0;
 /// Drives of six parts each that are joined to one without a halt.
@@ -91,26 +92,16 @@ fn wind(seed: u64) -> SwayConfiguration {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitting {
     /// The gyro that stores the azimuth.
-    pub grade: Grade,
-    /// 1σ of its bias from start to start, °/h.
-    pub bias_deg_h: f64,
-    /// 1σ of its scale factor.
-    pub scale_sigma: f64,
+    pub precise: Sheet,
     /// How the unit is mounted.
     pub mount: Mount,
     /// 1σ of the biases of the accelerometers, m/s².
     pub force_bias_m_s2: f64,
-    /// 1σ of the azimuth that is handed over, °.
-    pub azimuth_sigma_deg: f64,
-    /// Rest before that, s, in which the biases are learnt.
-    pub rest_s: f64,
 }
 
 /// The errors at one moment of storage, °.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mark {
-    /// Since the azimuth was handed over, s.
-    pub seconds: f64,
     /// Error of the azimuth and its 1σ; none where it was lost.
     pub azimuth: Option<[f64; 2]>,
     /// Errors of pitch and of roll.
@@ -121,12 +112,13 @@ pub struct Mark {
 
 /// A gyro as its data sheet has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Sheet {
-    grade: Grade,
+pub struct Sheet {
+    /// Noise of the gyro.
+    pub grade: Grade,
     /// 1σ of the bias from start to start, °/h.
-    bias_deg_h: f64,
+    pub bias_deg_h: f64,
     /// 1σ of the scale factor.
-    scale_sigma: f64,
+    pub scale_sigma: f64,
 }
 
 impl Pair {
@@ -163,18 +155,11 @@ impl Sheet {
 }
 
 impl Fitting {
-    /// The gyro that stores the azimuth.
-    fn precise(&self) -> Sheet {
-        let Self { grade, bias_deg_h, scale_sigma, .. } = *self;
-        Sheet { grade, bias_deg_h, scale_sigma }
-    }
-
     /// The gyros forward, right, down while the azimuth is stored.
     fn gyros(&self) -> [Sheet; 3] {
-        let precise = self.precise();
         match self.mount {
-            Mount::Strapdown => [precise; 3],
-            Mount::TwoFrame(pair) => [pair.sheet(), pair.sheet(), precise],
+            Mount::Strapdown => [self.precise; 3],
+            Mount::TwoFrame(pair) => [pair.sheet(), pair.sheet(), self.precise],
         }
     }
 
@@ -189,8 +174,8 @@ impl Fitting {
     #[must_use]
     pub fn learnt_s(&self) -> f64 {
         match self.mount {
-            Mount::Strapdown => self.rest_s,
-            Mount::TwoFrame(_) => (1.0 - LEVEL) * self.rest_s,
+            Mount::Strapdown => REST_S,
+            Mount::TwoFrame(_) => (1.0 - LEVEL) * REST_S,
         }
     }
 
@@ -198,54 +183,40 @@ impl Fitting {
     fn day(&self, seed: u64) -> Scenario {
         let drive_s = (STORED_S - LAST_STOP_S) / DRIVES as f64;
         let mut day = Scenario::stops(seed, 1 + DRIVES, LAST_STOP_S, drive_s);
-        let last = day.legs.len() - 1;
-        let mut index = 0;
-        let sway = wind(seed);
-        day.legs.retain_mut(|leg| {
-            if let Leg::Stop(stop) = leg {
-                stop.sway = sway;
+        let (last, sway) = (day.legs.len() - 1, wind(seed));
+        let without_halt = day.legs.into_iter().enumerate().filter_map(|(index, leg)| match leg {
+            Leg::Stop(stop) if index == 0 => {
+                Some(Leg::Stop(Stop { seconds: REST_S, sway, ..stop }))
             }
-            let (is_first, is_last) = (index == 0, index == last);
-            index += 1;
-            match leg {
-                Leg::Stop(stop) if is_first => stop.seconds = self.rest_s,
-                Leg::Stop(_) => return is_last,
-                Leg::Drive(_) => {}
-            }
-            true
+            Leg::Stop(stop) => (index == last).then_some(Leg::Stop(Stop { sway, ..stop })),
+            Leg::Drive(_) => Some(leg),
         });
-        day.vehicle = VehicleConfiguration {
-            latitude_deg: LATITUDE_DEG,
-            rate_hz: RATE_HZ,
-            gyros: self.gyros().map(|sheet| sheet.simulated()),
-            accelerometer: AccelerometerConfiguration {
-                bias_sigma_m_s2: self.force_bias_m_s2,
-                ..day.vehicle.accelerometer
-            },
-            ..day.vehicle
-        };
+        day.legs = without_halt.collect();
+        day.vehicle.latitude_deg = LATITUDE_DEG;
+        day.vehicle.rate_hz = RATE_HZ;
+        day.vehicle.gyros = self.gyros().map(|sheet| sheet.simulated());
+        day.vehicle.accelerometer.bias_sigma_m_s2 = self.force_bias_m_s2;
         day
     }
 
-    /// Lives through a day; a mark each minute of storage.
+    /// Lives through a day; a mark each minute of storage. The azimuth is handed over with this 1σ, °.
     #[must_use]
-    pub fn live(&self, seed: u64) -> Vec<Mark> {
+    pub fn live(&self, start_sigma_deg: f64, seed: u64) -> Vec<Mark> {
         let day = self.day(seed);
         let configuration = day.configuration();
         let mut vehicle = Vehicle::new(&configuration, seed);
         let mut board = Board::new(self, seed);
         let mut marks = Vec::new();
         let mut is_handed = false;
-        let mut next_s = self.rest_s + MARK_S;
+        let mut next_s = REST_S + MARK_S;
         while let Some(sample) = vehicle.next() {
             board.push(&sample);
-            if !is_handed && sample.time_s >= self.rest_s {
+            if !is_handed && sample.time_s >= REST_S {
                 is_handed = true;
-                board.hand_over(self, seed, vehicle.truth().attitude.azimuth_rad);
+                board.hand_over(start_sigma_deg, seed, vehicle.truth().attitude.azimuth_rad);
             }
             if sample.time_s >= next_s - 0.5 / RATE_HZ {
-                let seconds = sample.time_s - self.rest_s;
-                marks.push(board.mark(seconds, &vehicle));
+                marks.push(board.mark(&vehicle));
                 next_s += MARK_S;
             }
         }
@@ -269,11 +240,11 @@ impl Board {
             Mount::TwoFrame(pair) => {
                 let seed = Generator::stream(seed, BESIDE).next_u64();
                 let gyro = Simulated::new(&pair.sheet().simulated(), RATE_HZ, seed);
-                Some((gyro, LEVEL * fitting.rest_s))
+                Some((gyro, LEVEL * REST_S))
             }
         };
         let keeper = Keeper::new(&fitting.setting(latitude()));
-        Self { keeper, path: Converter::default(), coarse, precise: fitting.precise().stated() }
+        Self { keeper, path: Converter::default(), coarse, precise: fitting.precise.stated() }
     }
 
     fn push(&mut self, sample: &VehicleSample) {
@@ -290,13 +261,13 @@ impl Board {
         self.keeper.push(&self.path.sample(time_s, turned_rad, force_m_s2));
     }
 
-    fn hand_over(&mut self, fitting: &Fitting, seed: u64, azimuth: f64) {
-        let sigma = fitting.azimuth_sigma_deg.to_radians();
+    fn hand_over(&mut self, sigma_deg: f64, seed: u64, azimuth: f64) {
+        let sigma = sigma_deg.to_radians();
         let error = sigma * Generator::stream(seed, HANDED).gaussian();
         self.keeper.hand_over(Azimuth { angle: azimuth + error, sigma });
     }
 
-    fn mark(&self, seconds: f64, vehicle: &Vehicle) -> Mark {
+    fn mark(&self, vehicle: &Vehicle) -> Mark {
         let report = self.keeper.report();
         let truth = vehicle.truth().attitude;
         let azimuth = report.azimuth.map(|azimuth| {
@@ -304,6 +275,6 @@ impl Board {
             [error, degrees(azimuth.sigma)]
         });
         let level = [report.pitch - truth.pitch_rad, report.roll - truth.roll_rad].map(degrees);
-        Mark { seconds, azimuth, level, level_sigma: degrees(report.level_sigma) }
+        Mark { azimuth, level, level_sigma: degrees(report.level_sigma) }
     }
 }

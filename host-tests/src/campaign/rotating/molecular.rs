@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use super::world::{Integrating, LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, World};
 use super::{Solved, solve};
-use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
+use crate::campaign::{Tick, over};
 use crate::output::azimuth_error;
 
 /// Both speeds, turns a second.
@@ -82,29 +82,26 @@ struct Run {
 
 /// Runs each ratio at each misalignment with seeds 1 to `runs`; `tick` after each.
 #[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    let at = |misalignment| RATIOS.map(|ratio| row(misalignment, ratio, runs, &tick));
+pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
+    let at = |misalignment| RATIOS.map(|ratio| row(misalignment, ratio, runs, tick));
     MISALIGNMENTS_DEG.into_iter().flat_map(at).collect()
 }
 
-fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: Tick<'_>) -> Row {
     let runs = over(runs, tick, |seed| run(coupling_deg, ratio, seed));
-    let column = |of: fn(&Run) -> f64| runs.iter().map(of).collect::<Vec<f64>>();
-    let [one, predicted] = [column(|run| run.one_speed), column(|run| run.predicted)];
-    let two = column(|run| run.two_speeds);
-    let off = column(|run| run.one_speed - run.predicted);
-    let plain_limit_deg = rms(&column(|run| run.plain_limit));
-    let precision = Precision::of(&runs.iter().map(|run| run.answer).collect::<Vec<_>>());
+    let column = |of: fn(&Run) -> f64| runs.iter().map(of);
+    let plain_limit_deg = rms(column(|run| run.plain_limit));
+    let precision = Precision::of(runs.iter().map(|run| &run.answer));
     Row {
         coupling_deg,
         ratio,
         bound_deg: (0.5 * ratio * ratio).to_degrees(),
-        one_speed_rms_deg: rms(&one),
-        one_speed_greatest_deg: greatest(&one),
-        predicted_rms_deg: rms(&predicted),
-        off_prediction_deg: greatest(&off),
-        two_speeds_rms_deg: rms(&two),
-        two_speeds_greatest_deg: greatest(&two),
+        one_speed_rms_deg: rms(column(|run| run.one_speed)),
+        one_speed_greatest_deg: greatest(column(|run| run.one_speed)),
+        predicted_rms_deg: rms(column(|run| run.predicted)),
+        off_prediction_deg: greatest(column(|run| run.one_speed - run.predicted)),
+        two_speeds_rms_deg: rms(column(|run| run.two_speeds)),
+        two_speeds_greatest_deg: greatest(column(|run| run.two_speeds)),
         noise_ratio: precision.rms_deg / plain_limit_deg,
         plain_limit_deg,
         precision,

@@ -13,8 +13,8 @@ use super::stages::{SECONDS, TURN_HZ};
 use super::world::World;
 use super::{Solved, follow_world};
 use crate::campaign::faults::WRONG_SIGMAS;
-use crate::campaign::over;
 use crate::campaign::statistics::Answer;
+use crate::campaign::{Tick, over};
 
 /// Angle random walk of the gyro, °/√h.
 const WALK: f64 = 0.002;
@@ -47,14 +47,14 @@ pub struct Row {
 
 /// Every case with seeds 1 to `runs`; `tick` after each run.
 #[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    CASES.iter().map(|case| row(case, runs, &tick)).collect()
+pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
+    CASES.iter().map(|case| row(case, runs, tick)).collect()
 }
 
 /// How many cases there are.
 pub const COUNT: usize = CASES.len();
 
-fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+fn row(case: &Case, runs: usize, tick: Tick<'_>) -> Row {
     let solved = over(runs, tick, |seed| {
         let mut world = World { n_deg_sqrt_h: WALK, ..World::drawn(seed, &[TURN_HZ], SECONDS) };
         (case.spoil)(&mut world);

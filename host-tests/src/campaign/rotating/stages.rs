@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::world::{Integrating, World};
 use super::{GOLDEN_ANGLE_DEG, Solved, solve};
-use crate::campaign::over;
-use crate::campaign::statistics::{Precision, rms};
+use crate::campaign::statistics::{Precision, greatest, rms};
+use crate::campaign::{Tick, over};
 use crate::output::azimuth_error;
 
 /// Speed, turns a second: that of papers/004's last figure.
@@ -63,27 +63,24 @@ struct Run {
 
 /// Runs seeds 1 to `runs` with each gyro; `tick` after each.
 #[must_use]
-pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    WALKS.into_iter().map(|n| row(n, runs, &tick)).collect()
+pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
+    WALKS.into_iter().map(|n| row(n, runs, tick)).collect()
 }
 
-fn row(n_deg_sqrt_h: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+fn row(n_deg_sqrt_h: f64, runs: usize, tick: Tick<'_>) -> Row {
     let runs = over(runs, tick, |seed| run(n_deg_sqrt_h, seed));
-    let answers: Vec<_> = runs.iter().map(|run| run.solved.answer).collect();
     let raw = |run: &Run| Some((run.acts_deg, run.errors_deg?[0]));
     Row {
         n_deg_sqrt_h,
         stages: (0..STAGES.len()).map(|index| stage(index, &runs)).collect(),
-        precision: Precision::of(&answers),
+        precision: Precision::of(runs.iter().map(|run| &run.solved.answer)),
         raw: runs.iter().filter_map(raw).collect(),
     }
 }
 
 fn stage(index: usize, runs: &[Run]) -> Stage {
-    let of = |run: &Run| Some(run.errors_deg?[index]);
-    let errors: Vec<f64> = runs.iter().filter_map(of).collect();
-    let greatest_deg = errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
-    Stage { stage: STAGES[index], rms_deg: rms(&errors), greatest_deg }
+    let errors = runs.iter().filter_map(|run| Some(run.errors_deg?[index]));
+    Stage { stage: STAGES[index], rms_deg: rms(errors.clone()), greatest_deg: greatest(errors) }
 }
 
 /// The world of a seed: azimuths fill the circle evenly, the rest is drawn.

@@ -18,15 +18,12 @@ use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
-use orientation::alignment::stepwise::etalon;
-use orientation::alignment::stepwise::etalon::{Accepted, Limit, Series};
+use orientation::alignment::stepwise::etalon::{self, Accepted, Limit, Series};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::math::reference_table as table;
-use orientation::math::reference_table::Table as Etalon;
-use orientation::math::reference_table::{ONE, STEP};
+use orientation::math::reference_table::{ONE, STEP, TURN, Table as Etalon};
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
@@ -35,6 +32,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::statistics::{Answer, Precision, least, rms};
+use super::{Tick, over};
 use crate::methods::stepwise::drive;
 use crate::output::degrees;
 use crate::reference::Filter;
@@ -234,14 +232,12 @@ pub struct AlphaRow {
 ///
 /// # Errors
 /// What keeps a session from beginning.
-pub fn tabulate(turn: Turn, tick: impl Fn() + Sync) -> Result<Table, String> {
-    let realisation = |run: usize| {
-        let samples = samples(turn, AZIMUTHS_DEG[run / TABLE_RUNS], run as u64 + 1);
-        tick();
-        dwells(turn, &samples)
-    };
-    let runs = (0..3 * TABLE_RUNS).into_par_iter();
-    let all = runs.map(realisation).collect::<Result<Vec<_>, String>>()?;
+pub fn tabulate(turn: Turn, tick: Tick<'_>) -> Result<Table, String> {
+    let realisations = over(3 * TABLE_RUNS, tick, |seed| {
+        let azimuth = AZIMUTHS_DEG[(seed as usize - 1) / TABLE_RUNS];
+        dwells(turn, &samples(turn, azimuth, seed))
+    });
+    let all = realisations.into_iter().collect::<Result<Vec<_>, String>>()?;
     let is_arc = turn == Turn::Arc;
     Ok(Table {
         schedule: turn.name(),
@@ -257,20 +253,16 @@ fn row(all: &[Vec<Dwell>], name: &'static str, criterion: Criterion) -> Row {
         solve(dwells, criterion, AZIMUTHS_DEG[run / TABLE_RUNS])
     };
     let solved: Vec<Result<(Answer, f64), Refusal>> = all.par_iter().enumerate().map(of).collect();
-    let answers: Vec<Result<Answer, Refusal>> =
-        solved.iter().map(|run| run.map(|(answer, _)| answer)).collect();
-    let given = || solved.iter().flatten();
-    let errors = |runs: &[Result<Answer, Refusal>]| -> Vec<f64> {
-        runs.iter().flatten().map(|answer| answer.error).collect()
-    };
+    let answers: Vec<_> = solved.iter().map(|run| run.map(|(answer, _)| answer)).collect();
     Row {
         criterion: name,
         precision: Precision::of(&answers),
         least_deg: [0, 1, 2].map(|place: usize| {
-            least(&errors(&answers[place * TABLE_RUNS..(place + 1) * TABLE_RUNS]))
+            let runs = &answers[place * TABLE_RUNS..(place + 1) * TABLE_RUNS];
+            least(runs.iter().flatten().map(|answer| answer.error))
         }),
-        sigma_deg: rms(&given().map(|(answer, _)| answer.sigma).collect::<Vec<_>>()),
-        limit_free_deg: rms(&given().map(|(_, limit_free)| *limit_free).collect::<Vec<_>>()),
+        sigma_deg: rms(answers.iter().flatten().map(|answer| answer.sigma)),
+        limit_free_deg: rms(solved.iter().flatten().map(|(_, limit_free)| limit_free)),
     }
 }
 
@@ -340,8 +332,8 @@ fn covers_quarter(accepted: Accepted) -> bool {
         return accepted == Accepted::Everything;
     };
     let turned = (Turn::Arc.step() / STEP * (POSITIONS - 1) as f64).round() as i32;
-    let from = (0 - turned - first).rem_euclid(table::TURN);
-    from + table::TURN / 4 <= width
+    let from = (0 - turned - first).rem_euclid(TURN);
+    from + TURN / 4 <= width
 }
 
 /// How maximum likelihood does over many azimuths, and what fixed point costs it. Angles in degrees.
@@ -359,7 +351,7 @@ pub struct FixedPoint {
 }
 
 /// Azimuths of the realisations: 28°…29° on the arc, all around on the circle, off the grid.
-fn azimuth_of(turn: Turn, run: usize) -> f64 {
+fn azimuth_of(turn: Turn, run: u64) -> f64 {
     // Steps of the golden section fill the range evenly.
     let fraction = (run as f64 * 0.618_033_988_749_895).fract();
     match turn {
@@ -372,22 +364,20 @@ fn azimuth_of(turn: Turn, run: usize) -> f64 {
 ///
 /// # Errors
 /// What keeps a session from beginning.
-pub fn fixed_point(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<FixedPoint, String> {
-    let pairs: Vec<Result<[Answer; 2], Refusal>> = (0..runs)
-        .into_par_iter()
-        .map(|run| {
-            let azimuth = azimuth_of(turn, run);
-            let samples = samples(turn, azimuth, (1 << 32) + run as u64);
-            let fixed = dwells(turn, &samples)?;
-            let floating = in_floating_point(turn, &samples, &fixed);
-            tick();
-            let [fixed, floating] =
-                [fixed, floating].map(|of| solve(&of, Criterion::MaximumLikelihood, azimuth));
-            Ok(fixed.and_then(|(fixed, _)| floating.map(|(floating, _)| [fixed, floating])))
-        })
-        .collect::<Result<_, String>>()?;
+pub fn fixed_point(turn: Turn, runs: usize, tick: Tick<'_>) -> Result<FixedPoint, String> {
+    let pairs = over(runs, tick, |seed| {
+        let azimuth = azimuth_of(turn, seed - 1);
+        let samples = samples(turn, azimuth, (1 << 32) + seed - 1);
+        let fixed = dwells(turn, &samples)?;
+        let floating = in_floating_point(turn, &samples, &fixed);
+        let [fixed, floating] =
+            [fixed, floating].map(|of| solve(&of, Criterion::MaximumLikelihood, azimuth));
+        Ok(fixed.and_then(|(fixed, _)| floating.map(|(floating, _)| [fixed, floating])))
+    });
+    let pairs = pairs.into_iter().collect::<Result<Vec<Result<_, Refusal>>, String>>()?;
     let [precision, floating] = [0, 1].map(|path: usize| {
-        Precision::of(&pairs.iter().map(|pair| pair.map(|both| both[path])).collect::<Vec<_>>())
+        let answers: Vec<_> = pairs.iter().map(|pair| pair.map(|both| both[path])).collect();
+        Precision::of(&answers)
     });
     Ok(FixedPoint {
         schedule: turn.name(),

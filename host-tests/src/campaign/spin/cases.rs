@@ -2,11 +2,10 @@
 
 use serde::Serialize;
 
-use super::paper::{errors, track};
-use super::world::{Flight, Recorded, SCALE_ERROR, drawn};
-use crate::campaign::over;
+use super::paper::rms_deg;
+use super::world::{Flight, SCALE_ERROR, STEADY, drawn};
 use crate::campaign::statistics::{Spread, rms};
-use crate::methods::spin::METHODS;
+use crate::campaign::{Tick, over};
 use crate::methods::spin::errors::bound_rms;
 use crate::output::degrees;
 
@@ -14,33 +13,33 @@ use crate::output::degrees;
 #[derive(Clone, Copy, Debug)]
 struct Case {
     name: &'static str,
-    seconds: f64,
-    lift_m_s2: &'static [(f64, f64)],
-    noise_m_s2: f64,
-    gyro_n_deg_sqrt_h: f64,
+    /// A flight but for its roll and spin, which are drawn.
+    flight: Flight<'static>,
     /// The last moment without lift, s.
     held_s: Option<f64>,
 }
 
-/// A lift that holds a heavy body and grows a little: that of the recordings.
-const STEADY: &[(f64, f64)] = &[(0.0, 30.0), (1.0, 35.0)];
 /// A lift that is gone for 0.3 s.
 const FADING: &[(f64, f64)] = &[(0.5, 30.0), (0.52, 0.0), (0.82, 0.0), (0.84, 30.0)];
-
-/// Flights with so much noise in the accelerometers.
-const fn noisy(name: &'static str, noise_m_s2: f64) -> Case {
-    Case { name, seconds: 1.0, lift_m_s2: STEADY, noise_m_s2, gyro_n_deg_sqrt_h: 0.0, held_s: None }
-}
+/// A flight with much noise in the accelerometers.
+const NOISY: Flight = Flight { noise_m_s2: 1.5, ..STEADY };
 
 const CASES: [Case; COUNT] = [
-    noisy("noise of 0.01 m/s²", 0.01),
-    noisy("noise of 1.5 m/s²", 1.5),
-    Case { gyro_n_deg_sqrt_h: 10.0, ..noisy("the same, and a gyro of 10 °/√h", 1.5) },
     Case {
-        seconds: 1.2,
-        lift_m_s2: FADING,
+        name: "noise of 0.01 m/s²",
+        flight: Flight { noise_m_s2: 0.01, ..STEADY },
+        held_s: None,
+    },
+    Case { name: "noise of 1.5 m/s²", flight: NOISY, held_s: None },
+    Case {
+        name: "the same, and a gyro of 10 °/√h",
+        flight: Flight { gyro_n_deg_sqrt_h: 10.0, ..NOISY },
+        held_s: None,
+    },
+    Case {
+        name: "noise of 1.5 m/s², no lift for 0.3 s",
+        flight: Flight { seconds: 1.2, lift_m_s2: FADING, ..NOISY },
         held_s: Some(0.82),
-        ..noisy("noise of 1.5 m/s², no lift for 0.3 s", 1.5)
     },
 ];
 
@@ -56,7 +55,7 @@ pub struct Row {
     pub runs: usize,
     /// Flights at whose end the roll was not known.
     pub lost: usize,
-    /// RMS errors after the first 0.1 s, in the order of [`METHODS`].
+    /// RMS errors after the first 0.1 s, in the order of [`METHODS`](crate::methods::spin::METHODS).
     pub rms_deg: [f64; 3],
     /// RMS of the bounds over the same samples.
     pub limit_deg: f64,
@@ -88,10 +87,8 @@ type Sight = [f64; 3];
 
 impl Spot {
     fn of(sights: &[Sight]) -> Self {
-        let pairs: Vec<[f64; 2]> =
-            sights.iter().map(|[error, sigma, _]| [*error, *sigma]).collect();
-        let bounds: Vec<f64> = sights.iter().map(|[.., bound]| *bound).collect();
-        Self { spread: Spread::of(&pairs), limit_deg: rms(&bounds) }
+        let spread = Spread::of(sights.iter().map(|[error, sigma, _]| [*error, *sigma]));
+        Self { spread, limit_deg: rms(sights.iter().map(|[.., bound]| bound)) }
     }
 }
 
@@ -109,52 +106,42 @@ struct One {
 ///
 /// # Panics
 /// Where there is no such case.
-pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
     let case = CASES[case];
     let all = over(runs, tick, |seed| fly(&case, seed));
     let ends: Vec<Sight> = all.iter().filter_map(|one| one.end).collect();
     let held: Vec<Sight> = all.iter().filter_map(|one| one.held).collect();
     let scales: Vec<[f64; 2]> = all.iter().filter_map(|one| one.scale).collect();
-    let of = |value: &dyn Fn(&One) -> f64| rms(&all.iter().map(value).collect::<Vec<f64>>());
-    let of_scale = |index: usize| rms(&scales.iter().map(|scale| scale[index]).collect::<Vec<_>>());
     Row {
         case: case.name,
         runs,
         lost: runs - ends.len(),
-        rms_deg: [0, 1, 2].map(|index: usize| of(&|one| one.rms_deg[index])),
-        limit_deg: of(&|one| one.limit_deg),
+        rms_deg: [0, 1, 2].map(|index: usize| rms(all.iter().map(|one| one.rms_deg[index]))),
+        limit_deg: rms(all.iter().map(|one| one.limit_deg)),
         miscounted: all.iter().filter(|one| one.is_miscounted).count(),
         end: Spot::of(&ends),
         held: case.held_s.map(|_| Spot::of(&held)),
-        scale_rms: of_scale(0),
-        scale_sigma: of_scale(1),
+        scale_rms: rms(scales.iter().map(|[error, _]| error)),
+        scale_sigma: rms(scales.iter().map(|[_, sigma]| sigma)),
     }
 }
 
-fn fly(case: &Case, seed: u64) -> One {
-    let (roll_rad, spin_rad_s) = drawn(seed, case.seconds);
-    let Case { seconds, lift_m_s2, noise_m_s2, gyro_n_deg_sqrt_h, .. } = *case;
-    let spin_rad_s = &spin_rad_s;
-    let flight = Flight { seconds, roll_rad, spin_rad_s, lift_m_s2, noise_m_s2, gyro_n_deg_sqrt_h };
-    seen(case, &flight.fly(seed))
-}
-
 /// What the methods make of a flight.
-fn seen(case: &Case, recorded: &Recorded) -> One {
-    let tracks = METHODS.map(|method| track(method, recorded));
-    let errors = [0, 1, 2].map(|index: usize| errors(&tracks[index], recorded));
-    let bounds = recorded.bounds();
-    let ([.., locked], [.., of_locked]) = (&tracks, &errors);
+fn fly(case: &Case, seed: u64) -> One {
+    let (roll_rad, spin) = drawn(seed, case.flight.seconds);
+    let recorded = Flight { roll_rad, spin_rad_s: &spin, ..case.flight }.fly(seed);
+    let (all, bounds) = (recorded.tracked(), recorded.bounds());
+    let [.., (locked, errors)] = &all;
     let sight = |index: usize| {
         let sigma = locked.sigmas_rad[index];
-        let all = [of_locked.wrapped_rad[index], sigma, bounds[index]];
-        (!sigma.is_nan()).then(|| all.map(degrees))
+        let sight = [errors.wrapped_rad[index], sigma, bounds[index]];
+        (!sigma.is_nan()).then(|| sight.map(degrees))
     };
     let index_at = |time_s: f64| locked.times_s.partition_point(|t| *t <= time_s) - 1;
     One {
-        rms_deg: [0, 1, 2].map(|i: usize| degrees(errors[i].rms_rad.unwrap_or(f64::NAN))),
+        rms_deg: all.each_ref().map(|(_, errors)| rms_deg(errors)),
         limit_deg: degrees(bound_rms(locked, &bounds).unwrap_or(f64::NAN)),
-        is_miscounted: of_locked.turns_lost > 0,
+        is_miscounted: errors.turns_lost > 0,
         end: sight(bounds.len() - 1),
         held: case.held_s.and_then(|time_s| sight(index_at(time_s))),
         scale: locked.end.scale.map(|[scale, sigma]| [scale - SCALE_ERROR, sigma]),

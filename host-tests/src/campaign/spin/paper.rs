@@ -2,14 +2,13 @@
 //! between corrections (Fig. 8); beside them what the same samples give with interpolated extrema and by
 //! phase lock.
 
-use orientation::roll::{Method, Setting};
 use orientation::units::TURN;
 use serde::Serialize;
 
-use super::world::{Flight, RATE_HZ, Recorded, SCALE_ERROR, SCALE_SIGMA};
+use super::world::{Flight, Recorded, SCALE_ERROR, STEADY};
 use crate::methods::spin::errors::Errors;
+use crate::methods::spin::name;
 use crate::methods::spin::track::Track;
-use crate::methods::spin::{METHODS, name};
 use crate::output::degrees;
 
 /// Turns a second: the paper's hundred, and a little more, so that samples fall everywhere on the turn.
@@ -30,7 +29,7 @@ pub struct Paper {
     pub methods: Vec<(&'static str, f64)>,
     /// Scale error that the phase lock found less the true one.
     pub scale_miss: f64,
-    /// Time, s, and error, °, without correction and of each method, in the order of [`METHODS`].
+    /// Time, s, and error, °, without correction and of each method, in the order of [`METHODS`](crate::methods::spin::METHODS).
     #[serde(skip)]
     pub curves: [Vec<(f64, f64)>; 4],
 }
@@ -38,50 +37,27 @@ pub struct Paper {
 /// Flies the paper's second.
 #[must_use]
 pub fn paper() -> Paper {
-    let flight = Flight {
-        seconds: 1.0,
-        roll_rad: 0.4,
-        spin_rad_s: &[(0.0, TURNS_PER_S * TURN)],
-        lift_m_s2: &[(0.0, 30.0), (1.0, 35.0)],
-        noise_m_s2: 0.0,
-        gyro_n_deg_sqrt_h: 0.0,
-    };
-    let recorded = flight.fly(1);
-    let tracks = METHODS.map(|method| track(method, &recorded));
-    let errors = [0, 1, 2].map(|index: usize| errors(&tracks[index], &recorded));
+    let spin_rad_s = &[(0.0, TURNS_PER_S * TURN)];
+    let recorded = Flight { roll_rad: 0.4, spin_rad_s, ..STEADY }.fly(1);
+    let all = recorded.tracked();
     let uncorrected = uncorrected(&recorded);
-    let [extrema, _, locked] = &tracks;
-    let rms = |index: usize| degrees(errors[index].rms_rad.unwrap_or(f64::NAN));
+    let [(extrema, of_extrema), _, (locked, _)] = &all;
+    let [first, second, third] =
+        all.each_ref().map(|(track, errors)| track.over_time(&errors.wrapped_rad));
     let turned = recorded.rolls_rad.last().map_or(f64::NAN, |roll| (roll - 0.4) / TURN);
     Paper {
         uncorrected_deg: uncorrected.last().map_or(f64::NAN, |(_, error)| *error),
-        growth_deg: growth(extrema, &errors[0]),
+        growth_deg: growth(extrema, of_extrema),
         corrections_per_turn: extrema.corrections.len() as f64 / turned,
-        methods: METHODS.iter().enumerate().map(|(i, method)| (name(*method), rms(i))).collect(),
+        methods: all.iter().map(|(track, errors)| (name(track.method), rms_deg(errors))).collect(),
         scale_miss: locked.end.scale.map_or(f64::NAN, |[scale, _]| scale - SCALE_ERROR),
-        curves: [
-            uncorrected,
-            extrema.over_time(&errors[0].wrapped_rad),
-            tracks[1].over_time(&errors[1].wrapped_rad),
-            locked.over_time(&errors[2].wrapped_rad),
-        ],
+        curves: [uncorrected, first, second, third],
     }
 }
 
-/// A method over a flight.
-pub(super) fn track(method: Method, recorded: &Recorded) -> Track {
-    let setting = Setting {
-        angle_random_walk: recorded.noise.angle_random_walk,
-        scale_sigma: SCALE_SIGMA,
-        method,
-        ..Setting::new(1.0 / RATE_HZ)
-    };
-    Track::of(&setting, &recorded.samples)
-}
-
-/// The errors of a track over its own flight.
-pub(super) fn errors(track: &Track, recorded: &Recorded) -> Errors {
-    Errors::between(track, &recorded.rolls_rad)
+/// RMS of the errors after the first 0.1 s, °; not a number of none.
+pub(super) fn rms_deg(errors: &Errors) -> f64 {
+    degrees(errors.rms_rad.unwrap_or(f64::NAN))
 }
 
 /// The error of the gyro's own angle, which starts right.

@@ -23,7 +23,7 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where no roll was lost and no turn miscounted.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows = (0..cases::COUNT).map(|case| cases::row(case, asked.runs, &tick));
+    let rows = (0..cases::COUNT).map(|case| cases::row(case, asked.runs, tick));
     let (paper, rows) = (paper::paper(), rows.collect::<Vec<_>>());
     let found = rows.iter().all(|row| row.lost == 0 && row.miscounted == 0);
     Done {

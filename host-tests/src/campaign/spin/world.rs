@@ -7,8 +7,13 @@ use hal_mock::spin::{SpinConfiguration, SpinSample as Shown, SpinWorld};
 use orientation::signal::SpinSample;
 use orientation::units::DEGREE_PER_SQRT_HOUR;
 
+use orientation::roll::Setting;
+
+use crate::methods::spin::METHODS;
+use crate::methods::spin::errors::Errors;
 use crate::methods::spin::limit::{self, Noise};
 use crate::methods::spin::samples::Converter;
+use crate::methods::spin::track::Track;
 
 /// Samples a second: the paper's.
 pub const RATE_HZ: f64 = 10_000.0;
@@ -33,6 +38,16 @@ pub struct Flight<'a> {
     /// N of the gyros, °/√h.
     pub gyro_n_deg_sqrt_h: f64,
 }
+
+/// A second of a lift that holds a heavy body and grows a little, that of the recordings, without noise; nothing turns.
+pub const STEADY: Flight<'static> = Flight {
+    seconds: 1.0,
+    roll_rad: 0.0,
+    spin_rad_s: &[],
+    lift_m_s2: &[(0.0, 30.0), (1.0, 35.0)],
+    noise_m_s2: 0.0,
+    gyro_n_deg_sqrt_h: 0.0,
+};
 
 /// A flight as it was recorded.
 #[derive(Clone, Debug)]
@@ -94,6 +109,22 @@ impl Recorded {
     #[must_use]
     pub fn bounds(&self) -> Vec<f64> {
         limit::bounds(&self.samples, self.noise, SCALE_SIGMA, |index| self.lifts_m_s2[index])
+    }
+
+    /// What each of the [`METHODS`] makes of it, and the errors of that.
+    #[must_use]
+    pub fn tracked(&self) -> [(Track, Errors); 3] {
+        METHODS.map(|method| {
+            let setting = Setting {
+                angle_random_walk: self.noise.angle_random_walk,
+                scale_sigma: SCALE_SIGMA,
+                method,
+                ..Setting::new(1.0 / RATE_HZ)
+            };
+            let track = Track::of(&setting, &self.samples);
+            let errors = Errors::between(&track, &self.rolls_rad);
+            (track, errors)
+        })
     }
 }
 

@@ -8,8 +8,8 @@ use orientation::alignment::stops::stop_detector::Rests;
 use serde::Serialize;
 
 use super::world::{Day, Known, live};
-use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
+use crate::campaign::{Tick, over};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 
 /// Length of a stop, s.
@@ -88,30 +88,25 @@ struct Run {
 /// # Panics
 /// Where the index is not below [`COUNT`].
 #[must_use]
-pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
     let case = CASES[case];
     let runs = over(runs, tick, |seed| case.run(seed));
-    let plain = |part: usize| -> Vec<f64> {
-        runs.iter().filter_map(|run| Some(run.plain?[part])).collect()
-    };
+    let plain = |part: usize| runs.iter().filter_map(move |run| Some(run.plain?[part]));
     let biases: Vec<[f64; 2]> = runs.iter().filter_map(|run| run.biases).flatten().collect();
-    let of_biases = |part: usize| {
-        let column: Vec<f64> = biases.iter().map(|both| both[part]).collect();
-        (!column.is_empty()).then(|| rms(&column))
-    };
-    let averaging: Vec<f64> = runs.iter().map(|run| run.averaging).collect();
+    let of_biases =
+        |part: usize| (!biases.is_empty()).then(|| rms(biases.iter().map(|both| both[part])));
     let errors = runs.iter().filter_map(|run| Some((run.averaging, run.answer.ok()?.error)));
     Row {
         case: case.name,
         stops: case.stops,
-        averaging_rms_deg: rms(&averaging),
-        plain_rms_deg: rms(&plain(0)),
-        plain_sigma_deg: rms(&plain(1)),
-        brent_difference_deg: greatest(&plain(2)),
-        euler_difference_deg: greatest(&plain(3)),
+        averaging_rms_deg: rms(runs.iter().map(|run| run.averaging)),
+        plain_rms_deg: rms(plain(0)),
+        plain_sigma_deg: rms(plain(1)),
+        brent_difference_deg: greatest(plain(2)),
+        euler_difference_deg: greatest(plain(3)),
         bias_ratio: of_biases(0),
         bias_sigma_dph: of_biases(1),
-        precision: Precision::of(&runs.iter().map(|run| run.answer).collect::<Vec<_>>()),
+        precision: Precision::of(runs.iter().map(|run| &run.answer)),
         errors: errors.collect(),
     }
 }

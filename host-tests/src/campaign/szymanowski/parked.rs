@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::drives::{DRIVE_S, STOP_S};
 use super::world::{Known, live};
-use crate::campaign::over;
 use crate::campaign::statistics::{Precision, rms};
+use crate::campaign::{Tick, over};
 use crate::output::{azimuth_error, degrees};
 
 /// How long a vehicle with good gyros stands, s.
@@ -64,7 +64,7 @@ pub struct Row {
 /// # Panics
 /// Where the index is not below [`COUNT`].
 #[must_use]
-pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
     let case = &CASES[case];
     let days = over(runs, tick, |seed| {
         let known = Known { rests: Rests::Whole, knows_displacement: false };

@@ -23,9 +23,9 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where none was refused.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let drives = (0..drives::COUNT).map(|case| drives::row(case, asked.runs, &tick));
+    let drives = (0..drives::COUNT).map(|case| drives::row(case, asked.runs, tick));
     let drives: Vec<_> = drives.collect();
-    let parked = (0..parked::COUNT).map(|case| parked::row(case, asked.runs, &tick));
+    let parked = (0..parked::COUNT).map(|case| parked::row(case, asked.runs, tick));
     let parked: Vec<_> = parked.collect();
     let standing = parked.iter().map(|row| &row.precision);
     let mut all = drives.iter().map(|row| &row.precision).chain(standing);

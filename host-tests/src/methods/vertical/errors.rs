@@ -52,13 +52,11 @@ impl Errors {
             return None;
         }
         take_offset(&mut off);
-        let tilts: Vec<f64> = off.iter().flat_map(|off| off.tilts_deg).collect();
-        let sigmas: Vec<f64> = off.iter().flat_map(|off| [off.sigma_deg; 2]).collect();
-        let column = |of: fn(&Off) -> f64| off.iter().map(of).collect::<Vec<f64>>();
+        let tilts = off.iter().flat_map(|off| off.tilts_deg.map(|tilt| [tilt, off.sigma_deg]));
         Some(Self {
-            inclination_rmse_deg: rms(&column(|off| off.inclination_deg)),
-            heading_rmse_deg: rms(&column(|off| off.heading_deg)),
-            coverage_percent: coverage(&tilts, &sigmas),
+            inclination_rmse_deg: rms(off.iter().map(|off| off.inclination_deg)),
+            heading_rmse_deg: rms(off.iter().map(|off| off.heading_deg)),
+            coverage_percent: coverage(tilts),
             compared: off.len(),
             off,
         })

@@ -32,9 +32,7 @@ fn healthy_flights_are_answered_and_their_errors_covered(extent: Extent) {
         (1..=healthy(extent, 400) as u64).into_par_iter().map(spin.healthy).collect();
     let given: Vec<_> = answers.iter().flatten().collect();
     assert_eq!(given.len(), answers.len());
-    let errors: Vec<f64> = given.iter().map(|answer| answer.error).collect();
-    let sigmas: Vec<f64> = given.iter().map(|answer| answer.sigma).collect();
-    let percent = coverage(&errors, &sigmas);
+    let percent = coverage(given.iter().map(|answer| [answer.error, answer.sigma]));
     println!("{percent:?} %");
     assert!(covered(extent, [6.3, 3.4, 1.2], given.len())(percent), "{percent:?}");
     assert!(percent[0] < 68.3 + extent.share(9.7, 68.3, given.len()), "{percent:?}");

@@ -33,9 +33,7 @@ fn healthy_vehicles_are_answered_and_their_errors_covered(extent: Extent) {
     let refused: Vec<_> = refused.filter(|reason| !too_large(reason)).collect();
     assert!(refused.len() <= extent.count(3), "{refused:?}");
     let given: Vec<_> = answers.iter().flatten().collect();
-    let errors: Vec<f64> = given.iter().map(|answer| answer.error).collect();
-    let sigmas: Vec<f64> = given.iter().map(|answer| answer.sigma).collect();
-    let percent = coverage(&errors, &sigmas);
+    let percent = coverage(given.iter().map(|answer| [answer.error, answer.sigma]));
     println!("{percent:?} % of {}", given.len());
     assert!(covered(extent, [10.3, 5.4, 2.2], given.len())(percent), "{percent:?}");
     assert!(percent[0] < 68.3 + extent.share(15.7, 68.3, given.len()), "{percent:?}");
