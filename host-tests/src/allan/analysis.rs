@@ -12,7 +12,7 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::AngularRate;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::{Estimator, Record};
+use super::Record;
 use crate::recording::{Body, Header, Kind, Short, Spacing, StaticRow};
 use thiserror::Error;
 
@@ -152,7 +152,9 @@ impl Analysis {
     /// Why the record says nothing.
     pub fn of(rest: &Rest) -> Result<Self, FitError> {
         rest.check()?;
-        let points = points(&rest.record());
+        let record = rest.record();
+        let factors = record.factors().into_iter();
+        let points: Vec<Point> = factors.filter_map(|m| record.strided(m, 1)).collect();
         let period = rest.spacing.period_s;
         let fit = NoiseFit::of_points(&points, period)?;
         // What rounds like this in steps says the step and not the gyro.
@@ -164,20 +166,6 @@ impl Analysis {
         let points = points.iter().map(|point| confident(point, &noise, period)).collect();
         Ok(Self { fit, points })
     }
-}
-
-/// The overlapping Allan variances, as the fit takes them.
-fn points(record: &Record) -> Vec<Point> {
-    let factors = record.factors();
-    let found = factors.iter().filter_map(|&m| record.variance(Estimator::Overlapping, m));
-    found
-        .map(|found| Point {
-            seconds: found.seconds,
-            variance: found.variance,
-            stride: record.period(),
-            terms: found.terms,
-        })
-        .collect()
 }
 
 /// A point with the limits that its degrees of freedom give.

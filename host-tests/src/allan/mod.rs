@@ -1,14 +1,13 @@
-//! The Allan variance and its relatives over a whole record (NIST SP 1065, section 5.2).
+//! The Allan variance over a whole record (NIST SP 1065, section 5.2).
 //!
 //! The board's estimator streams and keeps little; this one has the record in memory, uses every
 //! window in it, and is what the other is compared with. A record is rates at one period, in
 //! segments where samples are missing between them: no difference is taken across a gap.
 
 pub mod analysis;
-mod differences;
 pub mod speed;
 
-use differences::{Sum, modified, second, third, total};
+use orientation::noise::allan::Point;
 
 /// Rates in segments, ready for any averaging time.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,42 +16,6 @@ pub struct Record {
     /// The running integral of each segment in units of one period, from zero: one more than its
     /// samples.
     phases: Vec<Vec<f64>>,
-}
-
-/// The variances that are estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Estimator {
-    /// The Allan variance from adjacent windows.
-    Allan,
-    /// The Allan variance from windows that begin at every sample.
-    Overlapping,
-    /// The modified Allan variance: the windows are averaged before they are squared.
-    Modified,
-    /// The Hadamard variance, blind to a linear drift, from adjacent windows.
-    Hadamard,
-    /// The Hadamard variance from windows that begin at every sample.
-    OverlappingHadamard,
-    /// The total variance: every segment is continued by its reflection at both ends.
-    Total,
-}
-
-/// A variance at one averaging time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Variance {
-    /// Averaging time, s.
-    pub seconds: f64,
-    /// The variance in the square of the rate's unit.
-    pub variance: f64,
-    /// How many squares were averaged, at least 1.
-    pub terms: u64,
-}
-
-impl Variance {
-    /// Allan deviation, the root of the variance, in the rate's unit.
-    #[must_use]
-    pub fn deviation(&self) -> f64 {
-        self.variance.sqrt()
-    }
 }
 
 impl Record {
@@ -65,24 +28,6 @@ impl Record {
         let mean = samples().sum::<f64>() / samples().count().max(1) as f64;
         let phases = segments.iter().map(|rates| integral(rates, mean)).collect();
         Self { period, phases }
-    }
-
-    /// Time between two samples, s.
-    #[must_use]
-    pub fn period(&self) -> f64 {
-        self.period
-    }
-
-    /// How many samples there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.phases.iter().map(|phases| phases.len() - 1).sum()
-    }
-
-    /// Whether there is no sample.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// The samples of the longest segment: a window cannot be longer than half of it.
@@ -99,41 +44,30 @@ impl Record {
         (1..4).chain(octaves).take_while(|factor| factor <= &(self.longest() / 2)).collect()
     }
 
-    /// The variance for an averaging time of `factor` periods; `None` where no window is long
-    /// enough.
+    /// The Allan variance for an averaging time of `factor` periods, in the square of the rate's unit, from windows that
+    /// begin at every `stride`-th sample of their segment; `None` where no window is long enough.
     #[must_use]
-    pub fn variance(&self, estimator: Estimator, factor: usize) -> Option<Variance> {
-        let m = self.fitting(factor)?;
-        match estimator {
-            Estimator::Allan => self.strided(m, m),
-            Estimator::Overlapping => self.strided(m, 1),
-            Estimator::Modified => self.pooled(m, 2.0, |x| modified(x, m)),
-            Estimator::Hadamard => self.pooled(m, 6.0, |x| third(x, m, m)),
-            Estimator::OverlappingHadamard => self.pooled(m, 6.0, |x| third(x, m, 1)),
-            Estimator::Total => self.pooled(m, 2.0, |x| total(x, m)),
+    pub fn strided(&self, factor: usize, stride: usize) -> Option<Point> {
+        if !(1..=self.longest() / 2).contains(&factor) {
+            return None;
         }
+        let of_segments = self.phases.iter().map(|phases| squares(phases, factor, stride.max(1)));
+        let (sum, terms) = of_segments.fold((0.0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
+        let averaged = 2.0 * (factor as f64) * (factor as f64);
+        Some(Point {
+            seconds: factor as f64 * self.period,
+            variance: sum / terms as f64 / averaged,
+            stride: stride as f64 * self.period,
+            terms,
+        })
     }
+}
 
-    /// The Allan variance from windows that begin at every `stride`-th sample of their segment.
-    #[must_use]
-    pub fn strided(&self, factor: usize, stride: usize) -> Option<Variance> {
-        let factor = self.fitting(factor)?;
-        self.pooled(factor, 2.0, |x| second(x, factor, stride.max(1)))
-    }
-
-    /// The factor, where two windows of that many samples fit into a segment.
-    fn fitting(&self, factor: usize) -> Option<usize> {
-        (1..=self.longest() / 2).contains(&factor).then_some(factor)
-    }
-
-    /// The mean square over all segments, over `scale` and the square of the averaging time.
-    fn pooled(&self, factor: usize, scale: f64, sum: impl Fn(&[f64]) -> Sum) -> Option<Variance> {
-        let sum = self.phases.iter().map(|phases| sum(phases)).fold(Sum::default(), Sum::with);
-        let averaged = scale * (factor as f64) * (factor as f64);
-        let variance = sum.squares / sum.terms as f64 / averaged;
-        let seconds = factor as f64 * self.period;
-        (sum.terms > 0).then_some(Variance { seconds, variance, terms: sum.terms })
-    }
+/// The sum of the squared second differences over `m` steps of a phase at every `stride`-th place, and how many they are.
+fn squares(x: &[f64], m: usize, stride: usize) -> (f64, u64) {
+    let starts = (0..x.len().saturating_sub(2 * m)).step_by(stride);
+    let differences = starts.map(|i| x[i + 2 * m] - 2.0 * x[i + m] + x[i]);
+    differences.fold((0.0, 0), |(sum, terms), step| (sum + step * step, terms + 1))
 }
 
 /// The running sum of the rates less the mean, from zero.

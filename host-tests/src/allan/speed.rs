@@ -3,11 +3,11 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use orientation::noise::allan::Allan;
+use orientation::noise::allan::{Allan, Point};
 use orientation::units::AngularRate;
 
+use super::Record;
 use super::analysis::Rest;
-use super::{Estimator, Record};
 
 /// Each is repeated so long, so that a short record is timed as well as a long one.
 const AT_LEAST: Duration = Duration::from_millis(50);
@@ -34,8 +34,8 @@ pub fn compare(rest: &Rest) -> Comparison {
     let streaming = rate(rates.len(), || streamed(&rates));
     let batch = rate(rates.len(), || {
         let record = Record::new(period, [rest.longest()]);
-        let variance = |factor| record.variance(Estimator::Overlapping, factor);
-        record.factors().into_iter().filter_map(variance).collect::<Vec<_>>()
+        let factors = record.factors().into_iter();
+        factors.filter_map(|factor| record.strided(factor, 1)).collect::<Vec<_>>()
     });
     let differences = differences(&rates, period);
     let difference = differences.iter().copied().fold(0.0, f64::max);
@@ -57,7 +57,7 @@ fn differences(rates: &[AngularRate], period: f64) -> Vec<f64> {
     let record = Record::new(period, [exact.as_slice()]);
     let points = streamed(rates);
     let samples = |seconds: f64| (seconds / period).round() as usize;
-    let difference = |point: orientation::noise::allan::Point| {
+    let difference = |point: Point| {
         let same = record.strided(samples(point.seconds), samples(point.stride))?;
         let is_same = same.terms == point.terms;
         Some(if is_same { (same.variance / point.variance - 1.0).abs() } else { f64::INFINITY })
