@@ -36,10 +36,8 @@ pub fn of(session: &Session, refusal: &Refusal) -> Option<String> {
     if !is_scattered || dwells.len() < 5 + FREE {
         return None;
     }
-    let one = {
-        let solution = solved(dwells, dwells.len(), rate)?;
-        solution.chi_square / (dwells.len() - 3) as f64
-    };
+    let (_, chi_square) = solved(dwells, dwells.len(), rate)?;
+    let one = chi_square / (dwells.len() - 3) as f64;
     let places = FEWEST..=dwells.len() - FEWEST;
     let two = places.filter_map(|place| two(dwells, place, rate));
     let Two { left, angle, after } = two.min_by(|a, b| a.left.total_cmp(&b.left))?;
@@ -52,8 +50,9 @@ pub fn of(session: &Session, refusal: &Refusal) -> Option<String> {
     })
 }
 
-/// Cosine and sine of the azimuth before and after a dwell, and the bias, in horizontal Earth rates.
-fn solved(dwells: &[Dwell], place: usize, rate: f64) -> Option<Solved> {
+/// Cosine and sine of the azimuth before and after a dwell, and the bias, in horizontal Earth rates; and what they leave
+/// over.
+fn solved(dwells: &[Dwell], place: usize, rate: f64) -> Option<([f64; 5], f64)> {
     let mut regression = Regression::<5>::default();
     for (index, dwell) in dwells.iter().enumerate() {
         let (sine, cosine) = dwell.stage.rad().sin_cos();
@@ -67,17 +66,12 @@ fn solved(dwells: &[Dwell], place: usize, rate: f64) -> Option<Solved> {
     let after = if place < dwells.len() { Column::Free } else { Column::Absent };
     let model = [Column::Free, Column::Free, after, after, Column::Free];
     let solution = regression.solve(&model)?;
-    Some(Solved { coefficients: solution.coefficients, chi_square: solution.chi_square })
-}
-
-struct Solved {
-    coefficients: [f64; 5],
-    chi_square: f64,
+    Some((solution.coefficients, solution.chi_square))
 }
 
 /// Two headings that meet at a dwell, where both show one Earth rate.
 fn two(dwells: &[Dwell], place: usize, rate: f64) -> Option<Two> {
-    let Solved { coefficients: [a, b, c, d, _], chi_square } = solved(dwells, place, rate)?;
+    let ([a, b, c, d, _], chi_square) = solved(dwells, place, rate)?;
     let (before, after) = (a.hypot(b), c.hypot(d));
     let is_one = (before - after).abs() < ALIKE * before.max(after);
     let turn = wrapped(d.atan2(c) - b.atan2(a));

@@ -175,7 +175,7 @@ fn turns_over(body: &Body) -> f64 {
     angles.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
 }
 
-/// The recording in the units that are tried.
+/// The recording in the units that are tried; none of one that is too long to be copied.
 fn converted(body: &Body, trial: &Trial) -> Option<Body> {
     let [angle, rate, force, of_stage, of_sigma] = trial.factors();
     let stage = |row: &StageRow| StageRow {
@@ -200,15 +200,16 @@ fn converted(body: &Body, trial: &Trial) -> Option<Body> {
         ..*row
     };
     match body {
-        Body::Stage(rows) if rows.len() <= MOST_ROWS => {
-            Some(Body::Stage(rows.iter().map(stage).collect()))
-        }
-        Body::Dwells(rows) => Some(Body::Dwells(rows.iter().map(dwell).collect())),
-        Body::Rotating(rows) if rows.len() <= MOST_ROWS => {
-            Some(Body::Rotating(rows.iter().map(platform).collect()))
-        }
+        Body::Stage(rows) => all(rows, stage).map(Body::Stage),
+        Body::Dwells(rows) => all(rows, dwell).map(Body::Dwells),
+        Body::Rotating(rows) => all(rows, platform).map(Body::Rotating),
         _ => None,
     }
+}
+
+/// Every row converted; none of more rows than are tried again.
+fn all<R>(rows: &[R], converted: impl Fn(&R) -> R) -> Option<Vec<R>> {
+    (rows.len() <= MOST_ROWS).then(|| rows.iter().map(converted).collect())
 }
 
 /// The unit of the forces, where it is none of m/s²: their size is gravity's most of the time.

@@ -6,7 +6,7 @@
 use flate2::Crc;
 
 use super::error::Fault;
-use super::number::number;
+use super::number::{number, pair};
 use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
 use super::range::Range;
 use super::resemblance::resembled;
@@ -232,7 +232,8 @@ impl Collector {
         for (name, range, slot) in &NUMBERS {
             *slot(&mut header) = self.parse(name, |text| Ok(number(text, range)?))?;
         }
-        header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;
+        header.g_sensitivity_deg_h_g =
+            self.parse(PAIR, |text| pair(text, &SIGNED, HeaderProblem::NotAPair))?;
         header.sensor = self.parse("sensor", sensor)?;
         header.session = self.parse(SESSION, |text| self.unchanged(text))?;
         Ok(header)
@@ -278,13 +279,6 @@ impl Collector {
 fn contradiction(line: u64, before: &Entry, value: &str) -> Fault {
     let problem = HeaderProblem::Contradiction(value.to_owned(), before.value.clone(), before.line);
     Fault::key(line, &before.key, problem)
-}
-
-/// Two numbers with a comma.
-fn pair(text: &str) -> Result<[f64; 2], Problem> {
-    let (first, second) =
-        text.split_once(',').ok_or_else(|| HeaderProblem::NotAPair(text.to_owned()))?;
-    Ok([number(first.trim_ascii(), &SIGNED)?, number(second.trim_ascii(), &SIGNED)?])
 }
 
 /// The sensor's name.

@@ -123,6 +123,6 @@ fn decompressed<'r>(mut reader: impl Read + 'r) -> io::Result<Box<dyn Read + 'r>
 }
 
 /// An error of the system.
-fn refused(place: Place, error: &io::Error) -> Fault {
+pub(super) fn refused(place: Place, error: &io::Error) -> Fault {
     Fault::new(place, SourceProblem::Io(error.kind(), error.to_string()))
 }

@@ -30,7 +30,7 @@ mod warning;
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::Path;
 
 pub use error::{Place, ReadError};
@@ -163,11 +163,8 @@ impl fmt::Display for Kind {
 /// [`ReadError`] names file, line, column and remedy in one line.
 pub fn read(path: &Path) -> Result<Recording, ReadError> {
     let name = path.display().to_string();
-    let refused = |error: &io::Error| {
-        Fault::new(Place::Whole, SourceProblem::Io(error.kind(), error.to_string())).in_file(&name)
-    };
-    let file = File::open(path).map_err(|error| refused(&error))?;
-    read_from(&name, file)
+    let refused = |error| lines::refused(Place::Whole, &error).in_file(&name);
+    read_from(&name, File::open(path).map_err(refused)?)
 }
 
 /// Reads a recording from any reader; `name` stands in the errors. Reads no more than 32 KiB past
@@ -222,7 +219,8 @@ fn body(
         Kind::Dwells => Body::Dwells(rows::read(lines, line, names, warnings)?),
         Kind::Static => Body::Static(rows::read(lines, line, names, warnings)?),
         Kind::Imu => {
-            let (rows, known) = parted(rows::read(lines, line, names, warnings)?);
+            let both = rows::read::<(ImuRow, _)>(lines, line, names, warnings)?;
+            let (rows, known): (_, Vec<_>) = both.into_iter().unzip();
             truth.attitude = known.into_iter().flatten().collect();
             if !truth.attitude.is_empty() && truth.attitude.iter().all(Option::is_none) {
                 warnings.push(Warning { line, about: About::NoAttitude });
@@ -230,17 +228,13 @@ fn body(
             Body::Imu(rows)
         }
         Kind::Spin => {
-            let (rows, known) = parted(rows::read(lines, line, names, warnings)?);
+            let both = rows::read::<(SpinRow, _)>(lines, line, names, warnings)?;
+            let (rows, known): (_, Vec<_>) = both.into_iter().unzip();
             truth.roll_rad = known.into_iter().flatten().collect();
             Body::Spin(rows)
         }
     };
     Ok((body, truth))
-}
-
-/// Rows, and apart from them what only a check may know of each.
-fn parted<R, T>(rows: Vec<(R, T)>) -> (Vec<R>, Vec<T>) {
-    rows.into_iter().unzip()
 }
 
 /// The line of column names: its number and text.

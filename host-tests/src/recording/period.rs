@@ -10,15 +10,36 @@
 const LONGEST_STEP: f64 = 1.75;
 
 /// The part by which a stated rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
-pub(super) const RATE_TOLERANCE: f64 = 0.01;
+const RATE_TOLERANCE: f64 = 0.01;
 
 /// The steps from sample to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// The usual one, s: the median, the lower one of two.
     pub median_s: f64,
+    all: Total,
+    /// Those without a missing sample.
+    unbroken: Total,
+}
+
+/// What steps amount to, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Total {
     sum_s: f64,
     count: f64,
+    /// The shortest and the longest.
+    ends_s: [f64; 2],
+}
+
+impl Total {
+    fn of(steps: impl Iterator<Item = f64>) -> Self {
+        let none = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };
+        steps.fold(none, |Self { sum_s, count, ends_s: [shortest, longest] }, step| Self {
+            sum_s: sum_s + step,
+            count: count + 1.0,
+            ends_s: [shortest.min(step), longest.max(step)],
+        })
+    }
 }
 
 impl Steps {
@@ -29,13 +50,8 @@ impl Steps {
         let mut sorted: Vec<f64> = steps().collect();
         let middle = sorted.len().checked_sub(1)? / 2;
         let median_s = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let none = Self { median_s, sum_s: 0.0, count: 0.0 };
-        let add = |Self { sum_s, count, .. }: Self, step| Self {
-            median_s,
-            sum_s: sum_s + step,
-            count: count + 1.0,
-        };
-        Some(steps().filter(|step| none.is_unbroken(*step)).fold(none, add))
+        let unbroken = Total::of(steps().filter(|step| *step <= LONGEST_STEP * median_s));
+        Some(Self { median_s, all: Total::of(steps()), unbroken })
     }
 
     /// Whether no sample is missing in a step, s.
@@ -47,7 +63,7 @@ impl Steps {
     /// The mean of the steps without a missing sample, s.
     #[must_use]
     pub fn mean_s(&self) -> f64 {
-        self.sum_s / self.count
+        self.unbroken.sum_s / self.unbroken.count
     }
 
     /// The rate of the times, Hz, where this one misses it.
@@ -57,10 +73,24 @@ impl Steps {
         ((rate_hz / found_hz - 1.0).abs() > RATE_TOLERANCE).then_some(found_hz)
     }
 
+    /// The rate of the times, Hz, where this one is none of theirs even if much is missing at either end. Missing samples
+    /// slow all steps down, few digits in the times make some seem to miss one: a wrong rate shows both ways.
+    pub(super) fn refuted(&self, rate_hz: f64) -> Option<f64> {
+        let Total { sum_s, count, ends_s: [shortest, longest] } = self.unbroken;
+        // So much may be missing at either end, by few digits or jitter.
+        let spread_s = longest - shortest;
+        let is_refuted = |steps: Total| {
+            let stated_s = steps.count / rate_hz;
+            (steps.sum_s - stated_s).abs() > RATE_TOLERANCE * steps.sum_s + spread_s
+        };
+        [self.all, self.unbroken].into_iter().all(is_refuted).then(|| count / sum_s)
+    }
+
     /// The sample period, s, with the header's rate, Hz, where it has one.
     #[must_use]
     pub fn period_s(&self, rate_hz: Option<f64>) -> f64 {
-        let is_theirs = |stated: &f64| (self.sum_s - self.count * stated).abs() <= 0.5 * stated;
+        let Total { sum_s, count, .. } = self.unbroken;
+        let is_theirs = |stated: &f64| (sum_s - count * stated).abs() <= 0.5 * stated;
         rate_hz.map(|rate| 1.0 / rate).filter(is_theirs).unwrap_or_else(|| self.mean_s())
     }
 }

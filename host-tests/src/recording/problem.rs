@@ -1,7 +1,6 @@
 //! The problems a recording can have, by the stage of reading that finds them.
 
-use std::fmt;
-use std::io;
+use std::{fmt, io};
 
 use thiserror::Error;
 
@@ -155,11 +154,6 @@ pub enum StopProblem {
     /// Not two numbers with a minus.
     #[error("{} is not a stop; write from-to;from-to in seconds", quoted(.0))]
     NotAStop(String),
-    /// A header that is not the one that a run wrote.
-    #[error(
-        "the header was changed since its run; leave this line out to go by what the others say"
-    )]
-    Changed,
     /// Not two numbers with a comma.
     #[error("{} is not a displacement; write north,east;north,east in metres", quoted(.0))]
     NotADisplacement(String),

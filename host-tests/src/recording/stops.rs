@@ -3,7 +3,7 @@
 
 use super::error::Fault;
 use super::header::{Collector, DISPLACEMENTS, Header, STOPS};
-use super::number::number;
+use super::number::{number, pair};
 use super::problem::{Problem, StopProblem};
 use super::range::Range;
 use super::rows::{ImuRow, TIME};
@@ -66,9 +66,7 @@ fn stop(text: &str) -> Result<[f64; 2], Problem> {
 
 /// `north,east`.
 fn displacement(text: &str) -> Result<[f64; 2], Problem> {
-    let (north, east) =
-        text.split_once(',').ok_or_else(|| StopProblem::NotADisplacement(text.to_owned()))?;
-    Ok([number(north.trim_ascii(), &DISPLACEMENT)?, number(east.trim_ascii(), &DISPLACEMENT)?])
+    pair(text, &DISPLACEMENT, StopProblem::NotADisplacement)
 }
 
 /// Refuses displacements that are not one for each stop.
@@ -93,12 +91,9 @@ pub(super) fn check_inside(
     let (Some(stops), [first, .., last]) = (&header.stops_s, rows) else { return Ok(()) };
     let period = (last.time_s - first.time_s) / (rows.len() - 1) as f64;
     let (begin, end) = (first.time_s - 2.0 * period, last.time_s + period);
-    match stops.iter().find(|[from, to]| *from < begin || *to > end) {
-        None => Ok(()),
-        Some(stop) => {
-            let problem =
-                StopProblem::Aiding { stop: *stop, recording: [first.time_s, last.time_s] };
-            Err(Fault::key(entries.line(STOPS), STOPS, problem))
-        }
-    }
+    let outside = stops.iter().find(|[from, to]| *from < begin || *to > end);
+    outside.map_or(Ok(()), |stop| {
+        let problem = StopProblem::Aiding { stop: *stop, recording: [first.time_s, last.time_s] };
+        Err(Fault::key(entries.line(STOPS), STOPS, problem))
+    })
 }
