@@ -5,10 +5,11 @@ use thiserror::Error;
 
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::planner::POSITIONS;
 use orientation::planner::burov::{self, Autocompensation};
 use orientation::planner::order::Order;
-use orientation::planner::{Conditions, FEWEST, Plan, PlanError, Rotation, for_sigma, for_time};
+use orientation::planner::{
+    Conditions, FEWEST, POSITIONS, Plan, PlanError, Rotation, for_sigma, for_time,
+};
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 use serde::Serialize;
 
@@ -113,6 +114,12 @@ pub enum Unplanned {
     NoNorth,
 }
 
+/// What the planner of the core is given about a gyro on a stage that turns so.
+pub(crate) fn conditions(noise: GyroNoise, rotation: Rotation) -> Conditions {
+    let orders = &Order::COMPARED;
+    Conditions { noise, rotation, shortest: SHORTEST, fewest: FEWEST, orders }
+}
+
 impl Request {
     /// Plans positions and dwells.
     ///
@@ -140,14 +147,7 @@ impl Request {
     /// What the planner of the core is given.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
-        let rotation = Rotation::fixed(self.rotation);
-        Conditions {
-            noise: self.noise,
-            rotation,
-            shortest: SHORTEST,
-            fewest: FEWEST,
-            orders: &Order::COMPARED,
-        }
+        conditions(self.noise, Rotation::fixed(self.rotation))
     }
 
     fn degrees(&self, rate_sigma: f64) -> f64 {

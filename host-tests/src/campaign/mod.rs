@@ -3,6 +3,7 @@
 //! A further campaign is an entry here; its world, its figures and its verdict stand in a folder of their own.
 
 pub mod burov;
+mod chance;
 mod columns;
 pub mod disturbed;
 pub mod faults;
@@ -14,6 +15,9 @@ pub mod spin;
 pub mod statistics;
 pub mod szymanowski;
 
+use orientation::alignment::site::Site;
+use orientation::earth::Latitude;
+use orientation::noise::model::{GyroNoise, StatedNoise};
 use rayon::prelude::*;
 use serde_json::Value;
 use simulated::fault::Platform;
@@ -78,6 +82,21 @@ pub static CAMPAIGNS: [Campaign; 9] = [
 /// A reason where something is not so.
 fn unless(found: bool, reason: &'static str) -> Option<&'static str> {
     (!found).then_some(reason)
+}
+
+/// A site whose gyro has N, B, K and R, °/√h, °/h, °/h/√h and °/h².
+///
+/// # Panics
+/// Where the latitude, °, is beyond ±90.
+fn site(latitude_deg: f64, [n, b, k, r]: [f64; 4]) -> Site {
+    let latitude = Latitude::from_degrees(latitude_deg).unwrap_or_else(|| unreachable!());
+    let noise = StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r));
+    Site { noise, ..Site::at(latitude) }
+}
+
+/// The azimuth of a seed, °: by the golden angle, so that those of successive seeds fill the circle evenly.
+fn azimuth_deg(seed: u64) -> f64 {
+    (137.507_764 * seed as f64) % 360.0
 }
 
 /// A tenth of the runs, or one.

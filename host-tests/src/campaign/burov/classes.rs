@@ -13,11 +13,12 @@ use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
 
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude};
+use crate::campaign::chance::Chance;
 use crate::campaign::keep::limit::stored_sigma;
 use crate::campaign::statistics::{Answer, Precision};
 use crate::campaign::{Tick, over};
 use crate::methods::stops::samples::Converter;
-use crate::output::{azimuth_error, degrees};
+use crate::output::degrees;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
 const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
@@ -189,14 +190,13 @@ impl Class {
 
     /// An azimuth from outside, stored until the time is over.
     fn stored(&self, sigma_deg: f64, runs: usize, tick: Tick<'_>) -> (String, Precision) {
-        let answers = over(runs, tick, |seed| Ok(self.keep(sigma_deg, seed)));
-        (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of::<Refusal>(&answers))
+        let answers = over(runs, tick, |seed| self.keep(sigma_deg, seed));
+        (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of(&answers))
     }
 
     /// One azimuth of zero, handed over with an error of its own and kept on a base that turns.
-    fn keep(&self, sigma_deg: f64, seed: u64) -> Answer {
-        let mut handed = hal_mock::noise::Generator::stream(seed, 1 << 20);
-        let azimuth = (sigma_deg * handed.gaussian()).to_radians();
+    fn keep(&self, sigma_deg: f64, seed: u64) -> Result<Answer, Refusal> {
+        let azimuth = (sigma_deg * Chance::new(seed, 1 << 20).normal()).to_radians();
         let sigma = sigma_deg.to_radians();
         let mut base = Base::new(&self.grade, seed);
         let mut keeper = Keeper::new(&self.setting());
@@ -211,10 +211,9 @@ impl Class {
             keeper.push(&base.sample(turning));
         }
         let stored = f64::from(samples) / RATE_HZ;
-        let limit = degrees(stored_sigma(&self.grade.noise(), sigma, REST, stored));
-        let azimuth = keeper.report().azimuth;
-        let [angle, sigma] = azimuth.map_or([f64::NAN; 2], |a| [a.angle, a.sigma].map(degrees));
-        Answer { error: azimuth_error(angle, 180.0), sigma, limit }
+        let limit = stored_sigma(&self.grade.noise(), sigma, REST, stored);
+        let lost = Azimuth { angle: f64::NAN, sigma: f64::NAN };
+        Answer::of(Ok(keeper.report().azimuth.unwrap_or(lost)), Some(limit), 180.0)
     }
 
     /// What the keeper is given: the class's gyro about the axis down, coarse ones beside it.

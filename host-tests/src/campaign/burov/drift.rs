@@ -16,7 +16,7 @@ const ROTATION: f64 = 2.0;
 
 /// The gyros: fibre-optic in a temperature gradient, and one that drifts in every way.
 pub const GYROS: [Grade; 2] = [
-    Grade { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, r_deg_h2: 0.127 },
+    super::devices::EXAMPLE,
     Grade { n_deg_sqrt_h: 0.06, b_deg_h: 1.0, k_deg_h_sqrt_h: 0.5, r_deg_h2: 2.0 },
 ];
 

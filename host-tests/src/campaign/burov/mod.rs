@@ -11,21 +11,18 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
-use orientation::alignment::stepwise;
-use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stepwise::{self, Session};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::noise::model::{GyroNoise, StatedNoise};
-use orientation::planner::order::Order;
-use orientation::planner::{Conditions, FEWEST, Plan, Rotation};
+use orientation::noise::model::GyroNoise;
+use orientation::planner::{Conditions, Plan, Rotation};
 use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
 
 use super::statistics::Answer;
-use crate::planning::SHORTEST;
-use crate::simulate;
+use crate::{planning, simulate};
 
 /// Latitude of the simulations, °.
 pub const LATITUDE_DEG: f64 = 48.0;
@@ -37,8 +34,6 @@ const FLICKER_HIGH_HZ: f64 = 5.0;
 pub(crate) const BIAS_DEG_H: f64 = 1.0;
 /// 1σ of either accelerometer bias, m/s²: a good 1 mg.
 const FORCE_BIAS: f64 = 0.01;
-/// Golden angle, °: azimuths of successive seeds fill the circle evenly.
-const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
 
 /// A gyro by its coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -68,13 +63,7 @@ impl Grade {
 
     /// What a planner is given about it on such a stage.
     fn conditions(&self, rotation: Rotation) -> Conditions {
-        Conditions {
-            noise: self.noise(),
-            rotation,
-            shortest: SHORTEST,
-            fewest: FEWEST,
-            orders: &Order::COMPARED,
-        }
+        planning::conditions(self.noise(), rotation)
     }
 
     /// The gyro as it is simulated, with its ramp R to the full.
@@ -113,15 +102,14 @@ pub struct Trial {
 ///
 /// # Panics
 /// Never: it is a constant within ±90°.
-#[must_use]
-pub fn latitude() -> Latitude {
+pub(crate) fn latitude() -> Latitude {
     Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!())
 }
 
 impl Trial {
     /// One alignment through samples, filter and session.
     fn answer(&self, seed: u64) -> Result<Answer, Refusal> {
-        let azimuth_deg = (GOLDEN_ANGLE_DEG * seed as f64) % 360.0;
+        let azimuth_deg = super::azimuth_deg(seed);
         let procedure = Procedure::new(Schedule::Planned(self.plan), 1.0 / RATE_HZ);
         let mut session = Session::new(self.setting(), procedure)
             .map_err(|_| Refusal::Stepwise(stepwise::Refusal::TooFewPositions { positions: 0 }))?;
@@ -134,11 +122,8 @@ impl Trial {
     }
 
     fn setting(&self) -> Setting {
-        Setting::new(Site {
-            noise: StatedNoise::Whole(self.grade.noise()),
-            accelerometer_bias_sigma: FORCE_BIAS,
-            ..Site::at(latitude())
-        })
+        let site = super::site(LATITUDE_DEG, self.grade.values());
+        Setting::new(Site { accelerometer_bias_sigma: FORCE_BIAS, ..site })
     }
 
     fn world(&self, azimuth_deg: f64) -> InstrumentsConfiguration {

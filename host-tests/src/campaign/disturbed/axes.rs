@@ -1,6 +1,6 @@
 //! How a unit may be built in wrongly: axes that are flipped together, or turned by 90°.
 
-use super::chance::Chance;
+use crate::campaign::chance::Chance;
 
 /// What the columns show of the true axes, row by row.
 pub(super) type Axes = [[f64; 3]; 3];

@@ -5,8 +5,8 @@ use std::fmt;
 use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
 
-use super::chance::Chance;
 use crate::assumptions::unseen::Unseen;
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::Answer;
 use crate::output::azimuth_error;
 

@@ -8,10 +8,10 @@ use hal_mock::stage::Harmonic;
 use hal_mock::temperature::TemperatureConfiguration;
 
 use super::axes::TURNED;
-use super::chance::Chance;
 use super::class::{Class, Fault};
 use super::gyro::Drift;
-use super::unit::{Rig, Unit};
+use super::unit::Rig;
+use crate::campaign::chance::Chance;
 
 /// m/s² of a thousandth of gravity.
 const MILLI_G: f64 = 9.81e-3;
@@ -77,29 +77,30 @@ pub(super) fn reversed<R: Rig>(name: &str, fault: &str, drawn: fn(u64) -> R) -> 
 pub(super) fn drifts<R: Rig>(steps: &str) -> [Class; 3] {
     let unit = format!("σ of a {}", R::MEAN);
     let over = format!("{unit}, over the recording");
-    let [of_steps, of_walk, of_warm_up] = [
-        ("bias-steps", steps, unit.clone()),
-        ("random-walk", "a rate random walk that no key states", over),
-        ("warm-up", "a warm-up that no key states", unit),
-    ]
-    .map(|(name, fault, unit)| of::<R>(name, fault, [0.1, 1000.0], unit));
+    let of = |name, fault, unit: &str| of::<R>(name, fault, [0.1, 1000.0], unit);
     [
-        of_steps.spoils(R::on_circle, |rig, chance, size| {
+        of("bias-steps", steps, &unit).spoils(R::on_circle, |rig, chance, size| {
             for _ in 0..2 {
                 let at_s = rig.some_time(chance);
                 let rate = chance.sign() * size * rig.mean_sigma();
                 rig.unit_mut().drift.push(Drift::Step { at_s, rate });
             }
         }),
-        of_walk.spoils(R::on_circle, |rig, _, size| {
-            let density = size * rig.mean_sigma() / rig.seconds().sqrt();
-            rig.unit_mut().drift.push(Drift::Walk { density });
-        }),
-        of_warm_up.spoils(R::on_circle, |rig, chance, size| {
-            let rate = chance.sign() * size * rig.mean_sigma();
-            let seconds = chance.scaled(0.1, 3.0) * rig.seconds();
-            rig.unit_mut().drift.push(Drift::WarmUp { rate, seconds });
-        }),
+        of("random-walk", "a rate random walk that no key states", &over).spoils(
+            R::on_circle,
+            |rig, _, size| {
+                let density = size * rig.mean_sigma() / rig.seconds().sqrt();
+                rig.unit_mut().drift.push(Drift::Walk { density });
+            },
+        ),
+        of("warm-up", "a warm-up that no key states", &unit).spoils(
+            R::on_circle,
+            |rig, chance, size| {
+                let rate = chance.sign() * size * rig.mean_sigma();
+                let seconds = chance.scaled(0.1, 3.0) * rig.seconds();
+                rig.unit_mut().drift.push(Drift::WarmUp { rate, seconds });
+            },
+        ),
     ]
 }
 
@@ -187,67 +188,41 @@ pub(super) fn period<R: Rig>() -> Class {
     })
 }
 
-/// What no key states.
+/// What no key states: healthy rigs that leave it unsaid have none of it.
 pub(super) fn unstated<R: Rig>() -> [Class; 3] {
+    let kappa = "a g-sensitivity that no key states";
     let kappa_unit = "times 50 000 °/h/g for each (°/√h)² of N";
+    let scale = "a scale error that no key states";
+    let bias = "accelerometer biases that no key states";
     [
-        of::<R>(
-            "unstated-g-sensitivity",
-            "a g-sensitivity that no key states",
-            [0.01, 4.0],
-            kappa_unit,
-        )
-        .spoils(
-            |seed| silent::<R>(seed, leave_g_sensitivity_unsaid),
-            |rig, chance, size| {
+        of::<R>("unstated-g-sensitivity", kappa, [0.01, 4.0], kappa_unit).drawn(|seed, size| {
+            let mut rig = R::drawn(seed);
+            let header = &mut rig.unit_mut().header;
+            header.g_sensitivity_deg_h_g = None;
+            header.g_sensitivity_sigma_deg_h_g = None;
+            rig.pair(|rig, chance| {
                 let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
                 let gyro = &mut rig.unit_mut().instruments.gyro;
                 let size = (size * 50_000.0 * gyro.n_deg_sqrt_h * gyro.n_deg_sqrt_h).min(212.0);
                 gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
-            },
-        ),
-        of::<R>("unstated-scale", "a scale error that no key states", [0.0001, 0.05], "").spoils(
-            |seed| silent::<R>(seed, leave_scale_unsaid),
-            |rig, chance, size| {
+            })
+        }),
+        of::<R>("unstated-scale", scale, [0.0001, 0.05], "").drawn(|seed, size| {
+            let mut rig = R::drawn(seed);
+            rig.unit_mut().header.gyro_scale_sigma = None;
+            rig.unit_mut().instruments.gyro.scale_sigma = 0.0;
+            rig.pair(|rig, chance| {
                 rig.unit_mut().instruments.gyro.scale_error = chance.sign() * size;
-            },
-        ),
-        of::<R>(
-            "unstated-accelerometer-bias",
-            "accelerometer biases that no key states",
-            [0.1, 100.0],
-            "mg",
-        )
-        .spoils(
-            |seed| silent::<R>(seed, leave_force_bias_unsaid),
-            |rig, chance, size| {
+            })
+        }),
+        of::<R>("unstated-accelerometer-bias", bias, [0.1, 100.0], "mg").drawn(|seed, size| {
+            let mut rig = R::drawn(seed);
+            rig.unit_mut().header.accelerometer_bias_m_s2 = None;
+            rig.unit_mut().instruments.accelerometer.bias_sigma_m_s2 = 0.0;
+            rig.pair(|rig, chance| {
                 rig.unit_mut().instruments.accelerometer.bias_m_s2 =
                     [0, 1, 2].map(|_| chance.sign() * size * MILLI_G);
-            },
-        ),
+            })
+        }),
     ]
-}
-
-/// A drawn rig of which something is left unsaid.
-fn silent<R: Rig>(seed: u64, leave: fn(&mut Unit)) -> R {
-    let mut rig = R::drawn(seed);
-    leave(rig.unit_mut());
-    rig
-}
-
-fn leave_g_sensitivity_unsaid(unit: &mut Unit) {
-    unit.header.g_sensitivity_deg_h_g = None;
-    unit.header.g_sensitivity_sigma_deg_h_g = None;
-}
-
-/// Says nothing of the gyro's scale, which is exact.
-fn leave_scale_unsaid(unit: &mut Unit) {
-    unit.header.gyro_scale_sigma = None;
-    unit.instruments.gyro.scale_sigma = 0.0;
-}
-
-/// Says nothing of the accelerometer's biases, which are none.
-fn leave_force_bias_unsaid(unit: &mut Unit) {
-    unit.header.accelerometer_bias_m_s2 = None;
-    unit.instruments.accelerometer.bias_sigma_m_s2 = 0.0;
 }

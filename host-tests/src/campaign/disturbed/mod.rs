@@ -6,7 +6,6 @@
 //! difference is the fault's alone.
 
 mod axes;
-mod chance;
 mod class;
 mod faults;
 mod gyro;
@@ -17,9 +16,9 @@ mod turning;
 mod unit;
 mod vehicle;
 
-use hal_mock::noise::Generator;
 use serde::Serialize;
 
+use super::chance::Chance;
 use super::statistics::{Answer, Precision};
 use super::{Tick, over};
 
@@ -124,7 +123,7 @@ pub struct Row {
 pub fn row(class: &Class, runs: usize, tick: Tick<'_>) -> Row {
     let runs = over(runs, tick, |seed| {
         let [low, high] = class.fault.severity;
-        let severity = low * (high / low).powf(Generator::stream(seed, SEVERITY).uniform());
+        let severity = Chance::new(seed, SEVERITY).scaled(low, high);
         Run { seed, severity, pair: (class.draw)(seed, severity) }
     });
     summary(class, &runs)

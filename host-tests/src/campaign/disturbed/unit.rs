@@ -11,9 +11,9 @@ use hal_mock::noise::Generator;
 use hal_mock::stage::EncoderConfiguration;
 
 use super::axes::{Axes, UPRIGHT};
-use super::chance::Chance;
 use super::class::Subject;
 use super::gyro::{Column, Drift, Drifting, GyroFault};
+use crate::campaign::chance::Chance;
 use crate::output::degrees;
 use crate::recording::Header;
 

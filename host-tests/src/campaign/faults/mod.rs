@@ -78,19 +78,19 @@ pub fn rows(platforms: &[Platform], seeds: RangeInclusive<u64>, tick: Tick<'_>) 
 fn row(platform: Platform, fault: Fault, seed: u64) -> Row {
     let ended = runs::run(platform, fault, seed);
     let failed = ended.as_ref().err().map(ToString::to_string);
-    let Ended { verdict, events, health, dwells, seconds, violations } = ended.unwrap_or_default();
-    let error = verdict.as_ref().ok().copied();
+    let Ended { error_sigmas, reason, events, health, dwells, seconds, violations } =
+        ended.unwrap_or_default();
     Row {
         platform: platform.name(),
         fault: fault.to_string(),
-        outcome: match error {
+        outcome: match error_sigmas {
             _ if failed.is_some() => "FAILED",
             None => "refused",
             Some(sigmas) if sigmas.abs() <= WRONG_SIGMAS => "ok",
             Some(_) => "WRONG",
         },
-        error_sigmas: error,
-        reason: failed.or(verdict.err()),
+        error_sigmas,
+        reason: failed.or(reason),
         noticed: notice::first(&events).map(ToString::to_string),
         is_noticed: notice::is_noticed(fault.notice(platform), &events),
         faults: health.faults(),

@@ -35,11 +35,13 @@ const FLIGHT_S: f64 = 3.0;
 /// Greatest 1σ of a roll that is one, °.
 const ROLL_SIGMA_DEG: f64 = 10.0;
 
-/// How a run ended.
-#[derive(Debug)]
+/// How a run ended; by default how one did that came to no end.
+#[derive(Debug, Default)]
 pub(super) struct Ended {
-    /// Error in σ, or why there is no azimuth or roll.
-    pub(super) verdict: Result<f64, String>,
+    /// Error in σ, where there is an azimuth or a roll.
+    pub(super) error_sigmas: Option<f64>,
+    /// Why there is none.
+    pub(super) reason: Option<String>,
     pub(super) events: Vec<Event>,
     pub(super) health: Health,
     /// Dwells that were measured again, and that were left out.
@@ -48,24 +50,11 @@ pub(super) struct Ended {
     pub(super) violations: usize,
 }
 
-impl Default for Ended {
-    /// How a run ended that came to no end.
-    fn default() -> Self {
-        Self {
-            verdict: Err(String::new()),
-            events: Vec::new(),
-            health: Health::default(),
-            dwells: None,
-            seconds: 0.0,
-            violations: 0,
-        }
-    }
-}
-
 impl Ended {
     fn new<R>(run: &Run<R>, verdict: Result<f64, String>) -> Self {
         Self {
-            verdict,
+            error_sigmas: verdict.as_ref().ok().copied(),
+            reason: verdict.err(),
             events: run.events.iter().map(|(_, event)| *event).collect(),
             health: run.health,
             dwells: None,

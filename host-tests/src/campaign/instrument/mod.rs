@@ -2,11 +2,11 @@
 
 pub(super) mod report;
 
-use hal_mock::noise::Generator;
 use orientation::alignment::refusal::Refusal;
 use serde::Serialize;
 use simulated::scenario::Scenario;
 
+use super::chance::Chance;
 use super::statistics::{Answer, Precision};
 use super::{Tick, over};
 use crate::instrument::{RunError, Trial};
@@ -32,16 +32,16 @@ pub struct Runs {
 
 /// The scenario of one seed: site, attitude and instrument drawn from it.
 fn scenario(seed: u64) -> Scenario {
-    let mut chance = Generator::new(seed);
-    let mut uniform = |low: f64, high: f64| low + (high - low) * chance.uniform();
-    let (tilt, toward) = (uniform(0.0, TILT_DEG), uniform(0.0, core::f64::consts::TAU));
+    let mut chance = Chance::new(seed, 0);
+    let tilt = chance.between(0.0, TILT_DEG);
+    let toward = chance.between(0.0, core::f64::consts::TAU);
     Scenario {
         seed,
-        latitude_deg: uniform(-LATITUDE_DEG, LATITUDE_DEG),
-        azimuth_deg: uniform(0.0, 360.0),
+        latitude_deg: chance.between(-LATITUDE_DEG, LATITUDE_DEG),
+        azimuth_deg: chance.between(0.0, 360.0),
         pitch_deg: tilt * libm::cos(toward),
         roll_deg: tilt * libm::sin(toward),
-        start_deg: uniform(-4.0, 360.0),
+        start_deg: chance.between(-4.0, 360.0),
         sample_rate_hz: RATE_HZ,
         ..Scenario::default()
     }

@@ -5,7 +5,7 @@
 
 pub mod limit;
 pub(super) mod report;
-pub mod world;
+mod world;
 
 use serde::Serialize;
 

@@ -13,6 +13,7 @@ use orientation::earth::Latitude;
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::burov::{Grade, LATITUDE_DEG, latitude};
+use crate::campaign::chance::Chance;
 use crate::methods::stops::samples::Converter;
 use crate::output::{azimuth_error, degrees};
 
@@ -75,15 +76,15 @@ const WIND_HZ: [(f64, f64); 3] = [(0.1, 0.3), (0.4, 0.9), (1.0, 2.0)];
 
 /// The sway of a vehicle that stands.
 fn wind(seed: u64) -> SwayConfiguration {
-    let mut draw = Generator::stream(seed, WIND);
+    let mut chance = Chance::new(seed, WIND);
     // Three waves make up the RMS together.
     let amplitude = WIND_DEG * (2.0 / 3.0_f64).sqrt();
     let components = WIND_HZ.map(|(low, high)| SwayComponent {
         azimuth_deg: amplitude,
         pitch_deg: amplitude,
         roll_deg: -amplitude,
-        frequency_hz: low + (high - low) * draw.uniform(),
-        phase_rad: std::f64::consts::TAU * draw.uniform(),
+        frequency_hz: chance.between(low, high),
+        phase_rad: chance.between(0.0, std::f64::consts::TAU),
     });
     SwayConfiguration { components }
 }
@@ -171,7 +172,6 @@ impl Fitting {
     }
 
     /// For how long the precise gyro rests as it will store, s.
-    #[must_use]
     pub fn learnt_s(&self) -> f64 {
         match self.mount {
             Mount::Strapdown => REST_S,
@@ -200,7 +200,6 @@ impl Fitting {
     }
 
     /// Lives through a day; a mark each minute of storage. The azimuth is handed over with this 1σ, °.
-    #[must_use]
     pub fn live(&self, start_sigma_deg: f64, seed: u64) -> Vec<Mark> {
         let day = self.day(seed);
         let configuration = day.configuration();
@@ -263,7 +262,7 @@ impl Board {
 
     fn hand_over(&mut self, sigma_deg: f64, seed: u64, azimuth: f64) {
         let sigma = sigma_deg.to_radians();
-        let error = sigma * Generator::stream(seed, HANDED).gaussian();
+        let error = sigma * Chance::new(seed, HANDED).normal();
         self.keeper.hand_over(Azimuth { angle: azimuth + error, sigma });
     }
 

@@ -14,16 +14,13 @@ use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::solution::Fit;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::site::Site;
-use orientation::earth::Latitude;
-use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
 use self::world::{LATITUDE_DEG, World};
+use super::site;
 use super::statistics::Answer;
 use crate::methods::rotating::follow;
 
-/// Golden angle, °: azimuths of successive seeds fill the circle evenly.
-const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
 /// By how much a number of turns may miss a whole one for rounding.
 const WHOLE: f64 = 1e-9;
 /// Time for level, rate-modulated turns and changes of speed, s.
@@ -42,24 +39,22 @@ pub struct Solved {
 
 /// Turns a world's platform as a session wants it: at these speeds in turns a second, so many seconds each
 /// way in all, shared between the speeds as the session does.
-#[must_use]
-pub fn solve(world: &World, sensor: Sensor, speeds_hz: &[f64], seconds: f64, seed: u64) -> Solved {
+fn solve(world: &World, sensor: Sensor, speeds_hz: &[f64], seconds: f64, seed: u64) -> Solved {
     let speeds: Vec<f64> = speeds_hz.iter().map(|speed| TAU * speed).collect();
     let slowest = speeds_hz.iter().copied().fold(f64::INFINITY, f64::min);
     let squares: f64 = speeds_hz.iter().map(|speed| speed * speed).sum();
     let mut procedure = Procedure::new(&speeds, 1.0 / world::RATE_HZ);
     procedure.turns = (seconds * slowest * slowest / squares * slowest + WHOLE) as u32;
-    let session = setting(world, sensor).and_then(|setting| Session::new(setting, procedure).ok());
-    let Some(mut session) = session else { return Solved::NONE };
+    let Ok(mut session) = Session::new(setting(world, sensor), procedure) else {
+        return Solved::NONE;
+    };
     world.obey(&mut session, 2.0 * seconds + SPARE, seed);
     Solved::of(&session, world)
 }
 
 /// Turns a world's platform by its own segments, and follows it.
-#[must_use]
-pub fn follow_world(world: &World, sensor: Sensor, seed: u64) -> Solved {
-    let session = setting(world, sensor)
-        .and_then(|setting| follow(setting, &world.rows(seed), 1.0 / world::RATE_HZ).ok());
+fn follow_world(world: &World, sensor: Sensor, seed: u64) -> Solved {
+    let session = follow(setting(world, sensor), &world.rows(seed), 1.0 / world::RATE_HZ);
     session.map_or(Solved::NONE, |session| Solved::of(&session, world))
 }
 
@@ -76,12 +71,11 @@ impl Solved {
     }
 }
 
-fn setting(world: &World, sensor: Sensor) -> Option<Setting> {
+fn setting(world: &World, sensor: Sensor) -> Setting {
     let walk = world.n_deg_sqrt_h.max(LEAST_WALK);
     let site = Site {
-        noise: StatedNoise::Whole(GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0)),
         g_sensitivity: world.g_sensitivity_deg_h_g.map(|part| part * DEGREE_PER_HOUR),
-        ..Site::at(Latitude::from_degrees(LATITUDE_DEG)?)
+        ..site(LATITUDE_DEG, [walk, 0.0, 0.0, 0.0])
     };
-    Some(Setting::new(site, sensor))
+    Setting::new(site, sensor)
 }

@@ -4,7 +4,6 @@
 use std::f64::consts::TAU;
 
 use hal_mock::earth::EARTH_RATE_RAD_S;
-use hal_mock::noise::Generator;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::Sensor;
 use rustfft::num_complex::Complex;
@@ -12,6 +11,7 @@ use serde::Serialize;
 
 use super::world::{Integrating, LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, World};
 use super::{Solved, solve};
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
 use crate::campaign::{Tick, over};
 use crate::output::azimuth_error;
@@ -111,12 +111,12 @@ fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: Tick<'_>) -> Row {
 impl Draw {
     /// Phase and direction of the g-sensitivity from a seed, the platform's world too.
     fn of(coupling_deg: f64, ratio: f64, seed: u64) -> Self {
-        let mut chance = Generator::stream(seed, SENSOR_DRAWN);
+        let mut chance = Chance::new(seed, SENSOR_DRAWN);
         let [least, most] = PHASES_DEG;
         let sensor = Integrating {
             ratio,
-            toward_deg: 360.0 * chance.uniform(),
-            lag_deg: least + (most - least) * chance.uniform(),
+            toward_deg: chance.between(0.0, 360.0),
+            lag_deg: chance.between(least, most),
             speed_hz: SPEEDS_HZ[0],
         };
         let molecular = Some(sensor.sensor());

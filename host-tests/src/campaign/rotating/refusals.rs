@@ -21,12 +21,8 @@ const WALK: f64 = 0.002;
 /// Before this the rate-modulated stretch is over, and the first even turns, s.
 const LATER: f64 = 160.0;
 
-/// Something that goes wrong.
-#[derive(Clone, Copy)]
-struct Case {
-    name: &'static str,
-    spoil: fn(&mut World),
-}
+/// Something that goes wrong: its name, and what it does to a world.
+type Case = (&'static str, fn(&mut World));
 
 /// What came of one case, over many runs.
 #[derive(Clone, Debug, Serialize)]
@@ -54,15 +50,15 @@ pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
 /// How many cases there are.
 pub const COUNT: usize = CASES.len();
 
-fn row(case: &Case, runs: usize, tick: Tick<'_>) -> Row {
+fn row((name, spoil): &Case, runs: usize, tick: Tick<'_>) -> Row {
     let solved = over(runs, tick, |seed| {
         let mut world = World { n_deg_sqrt_h: WALK, ..World::drawn(seed, &[TURN_HZ], SECONDS) };
-        (case.spoil)(&mut world);
+        spoil(&mut world);
         follow_world(&world, Sensor::GYRO, seed)
     });
     let (reason, reason_given) = most_given(&solved);
     Row {
-        case: case.name,
+        case: name,
         runs,
         refused: solved.iter().filter(|run| run.answer.is_err()).count(),
         wrong: solved.iter().filter(|run| is_wrong(run)).count(),
@@ -95,48 +91,30 @@ fn last(world: &mut World, of: impl Fn(Segment) -> Vec<Segment>) {
 }
 
 const CASES: [Case; 11] = [
-    Case { name: "counter-clockwise 2 % faster", spoil: |world| faster(world, 1.02) },
-    Case { name: "counter-clockwise 10 % faster", spoil: |world| faster(world, 1.1) },
-    Case { name: "platform never turns back", spoil: |world| world.segments.truncate(2) },
-    Case {
-        name: "platform stops on the way back",
-        spoil: |world| {
-            last(world, |segment| {
-                let moving = Segment { seconds: 1.5 / TURN_HZ, ..segment };
-                vec![moving, Segment::steady(0.0, SECONDS - moving.seconds)]
-            });
-        },
-    },
-    Case {
-        name: "platform stands",
-        spoil: |world| world.segments = vec![Segment::steady(0.0, 300.0)],
-    },
-    Case {
-        name: "half a turn each way",
-        spoil: |world| {
-            for segment in world.segments.iter_mut().skip(1) {
-                segment.seconds = 0.5 / TURN_HZ;
-            }
-        },
-    },
-    Case {
-        name: "encoder slips by 2°",
-        spoil: |world| {
-            world.slip = EncoderSlip { from_s: LATER, by_rad: TAU / 180.0, rad_per_s: 0.0 }
-        },
-    },
-    Case {
-        name: "encoder creeps by 10° a minute",
-        spoil: |world| {
-            world.slip = EncoderSlip { from_s: LATER, by_rad: 0.0, rad_per_s: TAU / 2160.0 }
-        },
-    },
-    Case {
-        name: "accelerometer saturated from the start",
-        spoil: |world| saturate(world, 0.0, 600.0),
-    },
-    Case { name: "accelerometer saturated later on", spoil: |world| saturate(world, LATER, 600.0) },
-    Case { name: "accelerometer saturated for 3 s", spoil: |world| saturate(world, LATER, 3.0) },
+    ("counter-clockwise 2 % faster", |world| faster(world, 1.02)),
+    ("counter-clockwise 10 % faster", |world| faster(world, 1.1)),
+    ("platform never turns back", |world| world.segments.truncate(2)),
+    ("platform stops on the way back", |world| {
+        last(world, |segment| {
+            let moving = Segment { seconds: 1.5 / TURN_HZ, ..segment };
+            vec![moving, Segment::steady(0.0, SECONDS - moving.seconds)]
+        });
+    }),
+    ("platform stands", |world| world.segments = vec![Segment::steady(0.0, 300.0)]),
+    ("half a turn each way", |world| {
+        for segment in world.segments.iter_mut().skip(1) {
+            segment.seconds = 0.5 / TURN_HZ;
+        }
+    }),
+    ("encoder slips by 2°", |world| {
+        world.slip = EncoderSlip { from_s: LATER, by_rad: TAU / 180.0, rad_per_s: 0.0 }
+    }),
+    ("encoder creeps by 10° a minute", |world| {
+        world.slip = EncoderSlip { from_s: LATER, by_rad: 0.0, rad_per_s: TAU / 2160.0 }
+    }),
+    ("accelerometer saturated from the start", |world| saturate(world, 0.0, 600.0)),
+    ("accelerometer saturated later on", |world| saturate(world, LATER, 600.0)),
+    ("accelerometer saturated for 3 s", |world| saturate(world, LATER, 3.0)),
 ];
 
 fn faster(world: &mut World, factor: f64) {

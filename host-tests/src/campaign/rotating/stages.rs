@@ -7,9 +7,9 @@ use orientation::alignment::rotating::Sensor;
 use serde::Serialize;
 
 use super::world::{Integrating, World};
-use super::{GOLDEN_ANGLE_DEG, Solved, solve};
+use super::{Solved, solve};
 use crate::campaign::statistics::{Precision, greatest, rms};
-use crate::campaign::{Tick, over};
+use crate::campaign::{Tick, azimuth_deg, over};
 use crate::output::azimuth_error;
 
 /// Speed, turns a second: that of papers/004's last figure.
@@ -88,7 +88,7 @@ fn stage(index: usize, runs: &[Run]) -> Stage {
 pub fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
     World {
         n_deg_sqrt_h,
-        azimuth_deg: (GOLDEN_ANGLE_DEG * seed as f64) % 360.0,
+        azimuth_deg: azimuth_deg(seed),
         molecular: Some(
             Integrating { ratio: RATIO, toward_deg: 0.0, lag_deg: 0.0, speed_hz: TURN_HZ }.sensor(),
         ),

@@ -14,7 +14,6 @@ use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
 use orientation::alignment::Input;
 use orientation::alignment::refusal::Refusal;
-use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
@@ -22,9 +21,7 @@ use orientation::alignment::stepwise::etalon::{self, Accepted, Limit, Series};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
 use orientation::alignment::stepwise::setting::Setting;
-use orientation::earth::Latitude;
 use orientation::math::reference_table::{ONE, STEP, TURN, Table as Etalon};
-use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::DEGREE_PER_HOUR;
@@ -32,7 +29,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::statistics::{Answer, Precision, least, rms};
-use super::{Tick, over};
+use super::{Tick, over, site};
 use crate::methods::stepwise::drive;
 use crate::output::degrees;
 use crate::reference::Filter;
@@ -89,15 +86,8 @@ impl Turn {
 }
 
 /// The setting that the solver gets.
-///
-/// # Panics
-/// Never: the latitude is a constant within ±90°.
 fn setting() -> Setting {
-    let latitude = Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!());
-    Setting::new(Site {
-        noise: StatedNoise::Whole(GyroNoise::from_field_units(ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0)),
-        ..Site::at(latitude)
-    })
+    Setting::new(site(LATITUDE_DEG, [ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0]))
 }
 
 /// The samples of one realisation.

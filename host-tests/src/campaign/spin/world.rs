@@ -1,7 +1,8 @@
 //! A simulated spinning body's samples for the core, and the truth beside them.
 
+use std::f64::consts::TAU;
+
 use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::noise::Generator;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinSample as Shown, SpinWorld};
 use orientation::signal::SpinSample;
@@ -9,6 +10,7 @@ use orientation::units::DEGREE_PER_SQRT_HOUR;
 
 use orientation::roll::Setting;
 
+use crate::campaign::chance::Chance;
 use crate::methods::spin::METHODS;
 use crate::methods::spin::errors::Errors;
 use crate::methods::spin::limit::{self, Noise};
@@ -132,9 +134,7 @@ impl Recorded {
 #[must_use]
 pub fn drawn(seed: u64, seconds: f64) -> (f64, [(f64, f64); 2]) {
     // Streams of a world begin at one.
-    let mut generator = Generator::stream(seed, 0);
-    let mut between = |low: f64, high: f64| low + (high - low) * generator.uniform();
-    let turn = 2.0 * std::f64::consts::PI;
-    let (roll, spin) = (between(-0.5 * turn, 0.5 * turn), turn * between(60.0, 100.0));
-    (roll, [(0.0, spin), (seconds, spin * (1.0 + between(-0.05, 0.05) * seconds))])
+    let mut chance = Chance::new(seed, 0);
+    let (roll, spin) = (chance.between(-0.5 * TAU, 0.5 * TAU), TAU * chance.between(60.0, 100.0));
+    (roll, [(0.0, spin), (seconds, spin * (1.0 + chance.between(-0.05, 0.05) * seconds))])
 }

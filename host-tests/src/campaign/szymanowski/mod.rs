@@ -4,4 +4,4 @@
 pub mod drives;
 pub mod parked;
 pub(super) mod report;
-pub mod world;
+mod world;

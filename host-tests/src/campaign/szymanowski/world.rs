@@ -1,20 +1,17 @@
 //! A simulated vehicle's samples for the session, and the truth beside them.
 
-use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::gyro::GyroConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
-use hal_mock::vehicle::{Vehicle, VehicleSample};
+use hal_mock::vehicle::{Vehicle, VehicleConfiguration, VehicleSample};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
-use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::conclusion::Conclusion;
-use orientation::alignment::stops::session::{Procedure, Session};
+use orientation::alignment::stops::session::Procedure;
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::stops::{Session, Setting};
 use orientation::alignment::{Input, Method};
-use orientation::earth::Latitude;
-use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
+use crate::campaign::site;
 use crate::campaign::statistics::Answer;
 use crate::methods::stops::averaging::Averages;
 use crate::methods::stops::samples::Converter;
@@ -61,15 +58,13 @@ pub struct Known {
 }
 
 /// Lives through a day. The session knows the sensors' noise and the 1σ of their biases.
-#[must_use]
 pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
-    let day = at_rate(day);
+    let mut day = day.clone();
+    day.vehicle.rate_hz = RATE_HZ;
     let configuration = day.configuration();
     let mut vehicle = Vehicle::new(&configuration, seed);
-    let mut session = setting(&day).and_then(|setting| {
-        let procedure = Procedure::recorded(known.rests, 1.0 / RATE_HZ);
-        Session::new(setting, procedure).ok()
-    });
+    let procedure = Procedure::recorded(known.rests, 1.0 / RATE_HZ);
+    let mut session = Session::new(setting(&day), procedure).ok();
     let stops: Vec<[f64; 2]> = configuration.stops().collect();
     let first_s = stops.first().map_or(0.0, |stop| stop[1]);
     let mut middles = stops.iter().map(|[from, to]| 0.5 * (from + to)).peekable();
@@ -106,24 +101,16 @@ pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
     }
 }
 
-fn at_rate(day: &Scenario) -> Scenario {
-    let mut day = day.clone();
-    day.vehicle.rate_hz = RATE_HZ;
-    day
-}
-
 /// What the session is given about place and sensors.
-fn setting(day: &Scenario) -> Option<Setting> {
-    let [gyro, ..]: [GyroConfiguration; 3] = day.vehicle.gyros;
-    let accelerometer: AccelerometerConfiguration = day.vehicle.accelerometer;
+fn setting(day: &Scenario) -> Setting {
+    let VehicleConfiguration { gyros: [gyro, ..], accelerometer, latitude_deg, .. } = day.vehicle;
     let site = Site {
-        noise: StatedNoise::Whole(GyroNoise::from_field_units(gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0)),
         accelerometer_bias_sigma: accelerometer.bias_sigma_m_s2,
-        ..Site::at(Latitude::from_degrees(day.vehicle.latitude_deg)?)
+        ..site(latitude_deg, [gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0])
     };
-    Some(Setting {
+    Setting {
         bias_sigma: Some(gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
         force_noise: accelerometer.noise_m_s2_sqrt_hz,
         ..Setting::new(site)
-    })
+    }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Flight, Recorded};
-use crate::campaign::disturbed::chance::Chance;
+use crate::campaign::chance::Chance;
 use crate::campaign::disturbed::class::{Class, Fault, Subject};
 use crate::recording::SpinRow;
 
@@ -54,48 +54,39 @@ fn gyro_stuck() -> Class {
 
 /// Sensors that show too much or too little, of their own axis or of another's.
 fn wrong_gains() -> [Class; 4] {
+    let scale = "the gyro's scale is off by more than is stated";
+    let twice = "the gyro's rate, or a force, has a part that goes round twice a turn";
+    let twice_unit = "of the rate, of the lift";
+    let leaning = "an accelerometer's axis leans towards the other's";
+    let large = "an accelerometer shows too much, or too little";
     [
-        Fault::new(
-            "spin-gyro-scale",
-            "the gyro's scale is off by more than is stated",
-            [1e-4, 0.1],
-            "",
-        )
-        .spoils(Recorded::drawn, |recorded, chance, size| {
-            let scale = 1.0 + chance.sign() * size;
-            recorded.rows.iter_mut().for_each(|row| row.rate_rad_s *= scale);
-        }),
-        Fault::new(
-            "spin-second-harmonic",
-            "the gyro's rate, or a force, has a part that goes round twice a turn",
-            [1e-5, 0.3],
-            "of the rate, of the lift",
-        )
-        .spoils(Recorded::drawn, goes_round_twice),
-        Fault::new(
-            "spin-axis-leaning",
-            "an accelerometer's axis leans towards the other's",
-            [1e-3, 6.0],
-            "°",
-        )
-        .spoils(Recorded::drawn, |recorded, chance, size| {
-            let axis = chance.one_of(&[0, 1]);
-            let (sine, cosine) = (chance.sign() * size.to_radians()).sin_cos();
-            for SpinRow { force_m_s2: force, .. } in &mut recorded.rows {
-                force[axis] = cosine * force[axis] + sine * force[1 - axis];
-            }
-        }),
-        Fault::new(
-            "spin-axis-large",
-            "an accelerometer shows too much, or too little",
-            [1e-4, 0.1],
-            "",
-        )
-        .spoils(Recorded::drawn, |recorded, chance, size| {
-            let axis = chance.one_of(&[0, 1]);
-            let scale = 1.0 + chance.sign() * size;
-            recorded.rows.iter_mut().for_each(|row| row.force_m_s2[axis] *= scale);
-        }),
+        Fault::new("spin-gyro-scale", scale, [1e-4, 0.1], "").spoils(
+            Recorded::drawn,
+            |recorded, chance, size| {
+                let scale = 1.0 + chance.sign() * size;
+                recorded.rows.iter_mut().for_each(|row| row.rate_rad_s *= scale);
+            },
+        ),
+        Fault::new("spin-second-harmonic", twice, [1e-5, 0.3], twice_unit)
+            .spoils(Recorded::drawn, goes_round_twice),
+        Fault::new("spin-axis-leaning", leaning, [1e-3, 6.0], "°").spoils(
+            Recorded::drawn,
+            |recorded, chance, size| {
+                let axis = chance.one_of(&[0, 1]);
+                let (sine, cosine) = (chance.sign() * size.to_radians()).sin_cos();
+                for SpinRow { force_m_s2: force, .. } in &mut recorded.rows {
+                    force[axis] = cosine * force[axis] + sine * force[1 - axis];
+                }
+            },
+        ),
+        Fault::new("spin-axis-large", large, [1e-4, 0.1], "").spoils(
+            Recorded::drawn,
+            |recorded, chance, size| {
+                let axis = chance.one_of(&[0, 1]);
+                let scale = 1.0 + chance.sign() * size;
+                recorded.rows.iter_mut().for_each(|row| row.force_m_s2[axis] *= scale);
+            },
+        ),
     ]
 }
 

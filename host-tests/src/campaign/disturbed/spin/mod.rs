@@ -11,8 +11,8 @@ use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
 
 use super::Platform;
-use super::chance::Chance;
 use super::class::{Aligned, Subject};
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::spin::errors::wrapped;

@@ -9,16 +9,15 @@ use hal_mock::disturbance::Effect;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::Instruments;
 use hal_mock::stage::{Stage, Stop};
-use orientation::alignment::stepwise::level;
-use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stepwise::{Session, level};
 use orientation::math::regression::{Column as Coefficient, Regression};
 
 use super::axes::shown;
-use super::chance::Chance;
 use super::class::{Aligned, Subject};
 use super::unit::{Grade, Rig, Unit};
 use super::{FEW_RESIDUALS, Platform};
 use crate::assumptions::unseen;
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::stepwise::replay;
@@ -109,10 +108,8 @@ impl Subject for Instrument {
 
     fn align(&self) -> Aligned {
         let body = Body::Stage(self.rows());
-        match replay(&self.unit.header, &body, &Asked::default(), |_| ()) {
-            Ok(replay) => aligned(&replay.session, self.truth_deg()),
-            Err(error) => Aligned::refused(error),
-        }
+        replay(&self.unit.header, &body, &Asked::default(), |_| ())
+            .map_or_else(Aligned::refused, |replay| aligned(&replay.session, self.truth_deg()))
     }
 
     fn is_few(&self) -> bool {
@@ -174,14 +171,10 @@ fn aligned(session: &Session, truth_deg: f64) -> Aligned {
 fn plain_deg(session: &Session) -> Option<f64> {
     let setting = session.setting();
     let gravity = setting.site.latitude.gravity();
-    let tilt = level::tilt(
-        &setting.mount,
-        session.dwells().iter(),
-        gravity,
-        setting.site.accelerometer_bias_sigma,
-    );
+    let (dwells, bias_sigma) = (session.dwells(), setting.site.accelerometer_bias_sigma);
+    let tilt = level::tilt(&setting.mount, dwells.iter(), gravity, bias_sigma);
     let mut regression = Regression::<3>::default();
-    for dwell in session.dwells() {
+    for dwell in dwells {
         let axis = tilt.sensitive_axis(dwell.stage.rad());
         let left = dwell.rate + setting.site.latitude.vertical_rate() * axis[2];
         regression.push(&[axis[0], -axis[1], 1.0], left);

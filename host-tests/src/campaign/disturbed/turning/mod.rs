@@ -9,17 +9,16 @@ use std::f64::consts::TAU;
 use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
-use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
-use orientation::alignment::rotating::session::Session;
+use hal_mock::turntable::{Segment, Turntable, TurntableConfiguration};
+use orientation::alignment::rotating::Session;
 use orientation::alignment::rotating::solution::Fit;
 
 use super::Platform;
 use super::axes::shown;
-use super::chance::Chance;
 use super::class::{Aligned, Subject};
-use super::gyro::Column;
 use super::unit::{Grade, Rig, Unit};
 use crate::assumptions::unseen;
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::rotating::replay;
@@ -128,7 +127,6 @@ impl Instrument {
             instruments: self.unit.instruments,
             unevenness: self.unevenness,
             start_rad: self.start_rad,
-            slip: EncoderSlip::default(),
             segments: &segments,
             ..TurntableConfiguration::default()
         };
@@ -140,30 +138,19 @@ impl Instrument {
             (unit.base.at(time_s), drifting.rate(&unit.drift, time_s, angle_rad))
         };
         while let Some(sample) = turntable.next_on(&mut befalls) {
-            let row = self.row(&sample, rows.last(), &mut column);
-            rows.push(row);
+            let [along, across, _] = shown(&unit.axes, sample.force_m_s2);
+            rows.push(RotatingRow {
+                line: rows.len() as u64 + 1,
+                time_s: sample.time_s,
+                stage_rad: unit.shown_rad(sample.stage_rad, sample.time_s),
+                stage_rate_rad_s: unit.sense() * sample.stage_rate_rad_s,
+                rate_rad_s: column.show(sample.rate_rad_s),
+                force_m_s2: along,
+                across_m_s2: Some(across),
+                force_is_new: true,
+            });
         }
         if self.rate_is_encoders { with_own_rate(rows) } else { rows }
-    }
-
-    fn row(
-        &self,
-        sample: &TurningSample,
-        last: Option<&RotatingRow>,
-        column: &mut Column,
-    ) -> RotatingRow {
-        let time_s = sample.time_s;
-        let [along, across, _] = shown(&self.unit.axes, sample.force_m_s2);
-        RotatingRow {
-            line: last.map_or(1, |last| last.line + 1),
-            time_s,
-            stage_rad: self.unit.shown_rad(sample.stage_rad, time_s),
-            stage_rate_rad_s: self.unit.sense() * sample.stage_rate_rad_s,
-            rate_rad_s: column.show(sample.rate_rad_s),
-            force_m_s2: along,
-            across_m_s2: Some(across),
-            force_is_new: true,
-        }
     }
 }
 
@@ -186,10 +173,8 @@ impl Subject for Instrument {
 
     fn align(&self) -> Aligned {
         let body = Body::Rotating(self.rows());
-        match replay(&self.unit.header, &body, &Asked::default()) {
-            Ok(replay) => aligned(&replay.session, self.truth_deg()),
-            Err(error) => Aligned::refused(error),
-        }
+        replay(&self.unit.header, &body, &Asked::default())
+            .map_or_else(Aligned::refused, |replay| aligned(&replay.session, self.truth_deg()))
     }
 }
 

@@ -1,11 +1,9 @@
 //! The plain mean of all turns of a platform: nothing is checked, nothing left out.
 
+use orientation::alignment::rotating::Session;
 use orientation::alignment::rotating::level::Lean;
-use orientation::alignment::rotating::misalignment;
-use orientation::alignment::rotating::misalignment::AxisMisalignment;
-use orientation::alignment::rotating::molecular;
-use orientation::alignment::rotating::molecular::Halves;
-use orientation::alignment::rotating::session::Session;
+use orientation::alignment::rotating::misalignment::{self, AxisMisalignment};
+use orientation::alignment::rotating::molecular::{self, Halves};
 use orientation::alignment::rotating::turn::{Sense, Stretch, Turn};
 use orientation::math::Complex;
 

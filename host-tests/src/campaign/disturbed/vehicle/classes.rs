@@ -3,8 +3,8 @@
 use hal_mock::vehicle::Leg;
 
 use super::{DRAWN, Instrument, MILLI_G};
+use crate::campaign::chance::Chance;
 use crate::campaign::disturbed::axes::turned;
-use crate::campaign::disturbed::chance::Chance;
 use crate::campaign::disturbed::class::{Class, Fault, Subject};
 
 /// Answers that may be wrong of a vehicle that only stands, where a bias is not what it was said to be: no data

@@ -11,8 +11,8 @@ use hal_mock::vehicle::{Leg, Vehicle};
 
 use super::Platform;
 use super::axes::{Axes, UPRIGHT, shown};
-use super::chance::Chance;
 use super::class::{Aligned, Subject};
+use crate::campaign::chance::Chance;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::stops::{Method, Replay, replay};
@@ -76,14 +76,8 @@ impl Instrument {
 
     /// One that moves: what is built in wrongly shows in sway and drives, not in a level vehicle that is quiet.
     fn moving(seed: u64) -> Self {
-        let moves = |unit: &Self| {
-            unit.method == Method::Siap
-                || unit
-                    .day
-                    .legs
-                    .iter()
-                    .any(|leg| matches!(leg, Leg::Stop(stop) if stop.sway.is_active()))
-        };
+        let sways = |leg: &Leg| matches!(leg, Leg::Stop(stop) if stop.sway.is_active());
+        let moves = |unit: &Self| unit.method == Method::Siap || unit.day.legs.iter().any(sways);
         let later = |index: u64| Self::drawn(seed.wrapping_add(2 * RESERVED * index));
         (0..RESERVED).map(later).find(moves).unwrap_or_else(|| Self::siap(seed))
     }
@@ -189,10 +183,8 @@ impl Subject for Instrument {
     fn align(&self) -> Aligned {
         let (body, header, truth_deg) = self.recorded();
         let options = Asked { method: Some(self.method.name()), ..Asked::default() };
-        match replay(&header, &body, &options) {
-            Ok(replay) => aligned(&replay, truth_deg),
-            Err(error) => Aligned::refused(error),
-        }
+        replay(&header, &body, &options)
+            .map_or_else(Aligned::refused, |replay| aligned(&replay, truth_deg))
     }
 }
 
