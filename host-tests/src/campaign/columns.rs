@@ -2,7 +2,6 @@
 
 use super::statistics::{NORMAL_COVERAGE, Precision};
 pub(super) use crate::report::Columns;
-use crate::report::{Figure, Part, Series};
 
 impl<'a, R> Columns<'a, R> {
     /// Per cent of errors within 1, 2 and 3 σ.
@@ -25,11 +24,6 @@ impl<'a, R> Columns<'a, R> {
 /// Three numbers with one decimal place.
 pub(super) fn list(values: &[f64; 3]) -> String {
     values.map(|value| format!("{value:.1}")).join(", ")
-}
-
-/// Curves over linear axes, each with its unit.
-pub(super) fn figure(title: &str, x: [&str; 2], y: [&str; 2], series: Vec<Series>) -> Part {
-    Figure::new(title, x, y, series).into()
 }
 
 /// First reasons of refusals, a line each.

@@ -105,11 +105,6 @@ fn tenth(runs: usize) -> usize {
 }
 
 /// One result for each seed.
-fn over<T: Send>(runs: usize, tick: Tick<'_>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let of = |seed| {
-        let result = of(seed);
-        tick();
-        result
-    };
-    (1..=runs as u64).into_par_iter().map(of).collect()
+fn over<T: Send>(runs: usize, tick: Tick<'_>, of: impl Fn(u64) -> T + Send + Sync) -> Vec<T> {
+    (1..=runs as u64).into_par_iter().map(of).inspect(|_| tick()).collect()
 }

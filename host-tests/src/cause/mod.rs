@@ -21,8 +21,7 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stops::Refusal as Stops;
 
 use crate::methods::asked::Asked;
-use crate::methods::rotating;
-use crate::methods::stepwise;
+use crate::methods::{rotating, stepwise};
 use crate::recording::{Body, Header, Sensor, Short};
 
 /// Times the stated noise power that no residuals are by chance or drift.

@@ -145,10 +145,8 @@ impl Layout {
 
     /// Whether the column of this name is there.
     fn has(&self, name: &str) -> bool {
-        self.columns
-            .iter()
-            .zip(self.present)
-            .any(|(column, present)| present && column.name == name)
+        let mut all = self.columns.iter().zip(self.present);
+        all.any(|(column, is_there)| is_there && column.name == name)
     }
 
     /// The columns that must be there, given which optional ones are.

@@ -182,9 +182,9 @@ impl Figure {
 }
 
 impl From<[&str; 2]> for Axis {
-    /// A linear axis of a quantity and its unit.
+    /// An axis of a quantity and its unit, empty for a plain number, on which equal differences are equally long.
     fn from([label, unit]: [&str; 2]) -> Self {
-        Self::linear(label, unit)
+        Self { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
     }
 }
 
@@ -197,16 +197,10 @@ impl Point {
 }
 
 impl Axis {
-    /// An axis on which equal differences are equally long; `unit` is empty for a plain number.
-    #[must_use]
-    pub fn linear(label: &str, unit: &str) -> Self {
-        Self { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
-    }
-
     /// An axis on which equal ratios are equally long; `unit` is empty for a plain number.
     #[must_use]
     pub fn logarithmic(label: &str, unit: &str) -> Self {
-        Self { scale: Scale::Logarithmic, ..Self::linear(label, unit) }
+        Self { scale: Scale::Logarithmic, ..[label, unit].into() }
     }
 
     /// What stands beside the axis.

@@ -88,7 +88,7 @@ fn the_papers_stop_rule_fires_by_noise_and_its_alpha_tells_nothing() {
 
 #[test]
 fn statistics_are_what_their_names_say() {
-    assert!((rms(&[3.0, -4.0]) - 12.5_f64.sqrt()).abs() < 1e-12);
+    assert!((rms([3.0, -4.0]) - 12.5_f64.sqrt()).abs() < 1e-12);
     assert_eq!(least([3.0, -2.0, 5.0]), 2.0);
     assert_eq!(coverage([0.5, -1.5, 2.5, 4.0].map(|error| [error, 1.0])), [25.0, 50.0, 75.0]);
 }

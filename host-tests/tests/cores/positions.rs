@@ -91,7 +91,7 @@ impl Trial<'_> {
             .map(|seed| self.verdict((seed * 47 % 360) as f64 + 0.3, seed).expect("it is north"))
             .collect();
         let ratios: Vec<f64> = all.iter().map(|(error, sigma)| error / sigma).collect();
-        (rms(&ratios), rms(&all.iter().map(|(error, _)| *error).collect::<Vec<f64>>()))
+        (rms(&ratios), rms(all.iter().map(|(error, _)| error)))
     }
 }
 

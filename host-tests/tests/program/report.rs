@@ -22,7 +22,7 @@ fn figure(x: Axis, y: Axis, series: Vec<Series>) -> Figure {
 }
 
 fn linear(series: Vec<Series>) -> Figure {
-    figure(Axis::linear("time", "s"), Axis::linear("rate", "°/h"), series)
+    figure(["time", "s"].into(), ["rate", "°/h"].into(), series)
 }
 
 fn logarithmic(series: Vec<Series>) -> Figure {

@@ -56,8 +56,7 @@ impl Grade {
     }
 
     /// N, B, K and R.
-    #[must_use]
-    pub fn values(&self) -> [f64; 4] {
+    pub(super) fn values(&self) -> [f64; 4] {
         [self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, self.r_deg_h2]
     }
 

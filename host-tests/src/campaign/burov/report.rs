@@ -4,11 +4,10 @@ use serde_json::json;
 
 use super::devices::{Device, ROTATION, SECONDS, curve};
 use super::drift::Comparison;
-use super::{LATITUDE_DEG, classes};
-use super::{devices, drift};
-use crate::campaign::columns::{Columns, figure, normal};
+use super::{LATITUDE_DEG, classes, devices, drift};
+use crate::campaign::columns::{Columns, normal};
 use crate::campaign::{Asked, Campaign, Done, Tick, tenth, unless};
-use crate::report::{Part, Report, Series, Style};
+use crate::report::{Figure, Part, Report, Series, Style};
 
 /// The paper's example and devices, schedules under drift, the five classes.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -66,7 +65,7 @@ fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) ->
 
 fn over_positions(title: &str, label: &str, curve: Vec<(f64, f64)>) -> Part {
     let series = Series::new("eq. (1)", Style::LineAndPoints, curve);
-    figure(title, ["number of positions n", ""], [label, "°/h"], vec![series])
+    Figure::new(title, ["number of positions n", ""], [label, "°/h"], [series]).into()
 }
 
 /// The slope of Δω over n by differences, between the positions.

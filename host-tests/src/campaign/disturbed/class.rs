@@ -7,11 +7,10 @@ use serde::Serialize;
 
 use crate::assumptions::unseen::Unseen;
 use crate::campaign::chance::Chance;
+use crate::campaign::faults::WRONG_SIGMAS;
 use crate::campaign::statistics::Answer;
 use crate::output::azimuth_error;
 
-/// Error in σ beyond which an answer is wrong.
-pub const WRONG_SIGMAS: f64 = 5.0;
 /// How many times the σ of the healthy run an answer may have that is as good.
 const GREATEST_SIGMA: f64 = 3.0;
 

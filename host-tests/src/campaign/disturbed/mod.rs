@@ -23,7 +23,7 @@ use super::statistics::{Answer, Precision};
 use super::{Tick, over};
 
 use self::class::Subject;
-pub use class::{Class, Fault, Pair, WRONG_SIGMAS};
+pub use class::{Class, Fault, Pair};
 
 /// Residuals below which σ rests on few.
 pub const FEW_RESIDUALS: usize = 10;
@@ -94,7 +94,7 @@ pub struct Row {
     pub runs: usize,
     /// Runs that were answered with the fault.
     pub answered: usize,
-    /// Answers beyond [`WRONG_SIGMAS`], and how many of these rest on few residuals.
+    /// Answers beyond [`WRONG_SIGMAS`](super::faults::WRONG_SIGMAS), and how many of these rest on few residuals.
     pub wrong: usize,
     /// Wrong answers that rest on few residuals.
     pub wrong_of_few: usize,

@@ -2,9 +2,9 @@
 
 use serde_json::json;
 
-use super::{Class, HealthyRow, Row, WRONG_SIGMAS};
-use super::{classes, healthy, row};
+use super::{Class, HealthyRow, Row, classes, healthy, row};
 use crate::campaign::columns::Columns;
+use crate::campaign::faults::WRONG_SIGMAS;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::{Lines, Part, Report};
 

@@ -66,12 +66,8 @@ pub fn rows(platforms: &[Platform], seeds: RangeInclusive<u64>, tick: Tick<'_>) 
     let cases: Vec<(Platform, Fault, u64)> = faults
         .flat_map(|(platform, fault)| seeds.clone().map(move |seed| (platform, fault, seed)))
         .collect();
-    let rows = cases.into_par_iter().map(|(platform, fault, seed)| {
-        let row = row(platform, fault, seed);
-        tick();
-        row
-    });
-    rows.collect()
+    let rows = cases.into_par_iter().map(|(platform, fault, seed)| row(platform, fault, seed));
+    rows.inspect(|_| tick()).collect()
 }
 
 /// Runs one fault; a board that does not come to an end has failed.

@@ -5,8 +5,7 @@ use simulated::fault::Platform;
 
 use std::fmt::Display;
 
-use super::Row;
-use super::{count, rows};
+use super::{Row, count, rows};
 use crate::campaign::columns::Columns;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::Report;

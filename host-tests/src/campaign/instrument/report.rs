@@ -2,8 +2,7 @@
 
 use serde_json::json;
 
-use super::Runs;
-use super::precision;
+use super::{Runs, precision};
 use crate::campaign::columns::{Columns, normal, reasons};
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::{Lines, Report};

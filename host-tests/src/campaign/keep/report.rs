@@ -2,13 +2,12 @@
 
 use serde_json::json;
 
-use super::{COUNT, row};
-use super::{Growth, Row};
+use super::{COUNT, Growth, Row, row};
 use crate::campaign::burov::LATITUDE_DEG;
-use crate::campaign::columns::{Columns, figure};
+use crate::campaign::columns::Columns;
 use crate::campaign::statistics::Spread;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
-use crate::report::{Part, Report, Series, Style};
+use crate::report::{Figure, Part, Report, Series, Style};
 
 /// Azimuth, pitch and roll through half an hour of driving.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -51,13 +50,13 @@ fn growth(row: &Row, title: &str, wanted_deg: f64, of: impl Fn(&Growth) -> Sprea
         let points = row.growth.iter().map(|at| (at.seconds / 60.0, value(of(at))));
         Series::new(name, style, points)
     };
-    let series = vec![
+    let series = [
         curve("error", Style::LineAndPoints, &|spread| spread.rms_deg),
         curve("σ(t)", Style::Line, &|spread| spread.sigma_deg),
         curve("wanted", Style::Dashed, &|_| wanted_deg),
     ];
     let time = ["time since the azimuth was handed over", "min"];
-    figure(title, time, ["error, RMS over the runs", "°"], series)
+    Figure::new(title, time, ["error, RMS over the runs", "°"], series).into()
 }
 
 /// The gyros of each class, and what became of it.

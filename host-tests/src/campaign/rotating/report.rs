@@ -5,12 +5,12 @@ use serde_json::json;
 
 use super::world::{LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, UNEVENNESS, World, segments};
 use super::{molecular, refusals, stages};
-use crate::campaign::columns::{Columns, figure, normal, reasons};
+use crate::campaign::columns::{Columns, normal, reasons};
 use crate::campaign::statistics::Precision;
 use crate::campaign::{Asked, Campaign, Done, Tick, tenth, unless};
 use crate::methods::rotating::outcome::figures;
 use crate::methods::rotating::part::Part;
-use crate::report::{Part as OfPage, Report, Series, Style};
+use crate::report::{Figure, Part as OfPage, Report, Series, Style};
 
 /// The stages of compensation, molecular-electronic sensors, and what must be refused.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -97,7 +97,8 @@ fn of_stages(row: &stages::Row) -> OfPage {
 fn raw(row: &stages::Row) -> OfPage {
     let series = Series::new("one run each", Style::Points, row.raw.iter().copied());
     let title = "Raw error over where the gear's unevenness acts";
-    figure(title, ["from the azimuth", "°"], ["error of the raw azimuth", "°"], vec![series])
+    Figure::new(title, ["from the azimuth", "°"], ["error of the raw azimuth", "°"], [series])
+        .into()
 }
 
 fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> OfPage {

@@ -84,8 +84,7 @@ fn stage(index: usize, runs: &[Run]) -> Stage {
 }
 
 /// The world of a seed: azimuths fill the circle evenly, the rest is drawn.
-#[must_use]
-pub fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
+pub(super) fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
     World {
         n_deg_sqrt_h,
         azimuth_deg: azimuth_deg(seed),

@@ -22,11 +22,11 @@ pub const RATE_HZ: f64 = 10_000.0;
 /// Scale error of the gyro: the paper's.
 pub const SCALE_ERROR: f64 = 1e-3;
 /// 1σ of the scale error that the core is given.
-pub const SCALE_SIGMA: f64 = 0.01;
+pub(super) const SCALE_SIGMA: f64 = 0.01;
 
 /// What a flight is like.
 #[derive(Clone, Copy, Debug)]
-pub struct Flight<'a> {
+pub(super) struct Flight<'a> {
     /// Length, s.
     pub seconds: f64,
     /// Roll at the start, rad.
@@ -42,7 +42,7 @@ pub struct Flight<'a> {
 }
 
 /// A second of a lift that holds a heavy body and grows a little, that of the recordings, without noise; nothing turns.
-pub const STEADY: Flight<'static> = Flight {
+pub(super) const STEADY: Flight<'static> = Flight {
     seconds: 1.0,
     roll_rad: 0.0,
     spin_rad_s: &[],
@@ -53,7 +53,7 @@ pub const STEADY: Flight<'static> = Flight {
 
 /// A flight as it was recorded.
 #[derive(Clone, Debug)]
-pub struct Recorded {
+pub(super) struct Recorded {
     /// The samples.
     pub samples: Vec<SpinSample>,
     /// The true roll at each, rad.
@@ -66,8 +66,7 @@ pub struct Recorded {
 
 impl Flight<'_> {
     /// Flies; the seed fixes everything random in it.
-    #[must_use]
-    pub fn fly(&self, seed: u64) -> Recorded {
+    pub(super) fn fly(&self, seed: u64) -> Recorded {
         let mut world = SpinWorld::new(&self.configuration(), seed);
         let noise = Noise {
             force: self.noise_m_s2,
@@ -108,14 +107,12 @@ impl Flight<'_> {
 
 impl Recorded {
     /// The Cramér–Rao bound of the roll at each sample, rad.
-    #[must_use]
-    pub fn bounds(&self) -> Vec<f64> {
+    pub(super) fn bounds(&self) -> Vec<f64> {
         limit::bounds(&self.samples, self.noise, SCALE_SIGMA, |index| self.lifts_m_s2[index])
     }
 
     /// What each of the [`METHODS`] makes of it, and the errors of that.
-    #[must_use]
-    pub fn tracked(&self) -> [(Track, Errors); 3] {
+    pub(super) fn tracked(&self) -> [(Track, Errors); 3] {
         METHODS.map(|method| {
             let setting = Setting {
                 angle_random_walk: self.noise.angle_random_walk,
@@ -131,8 +128,7 @@ impl Recorded {
 }
 
 /// A roll at the start and a spin of 60 to 100 turns a second that changes by up to 5 % a second.
-#[must_use]
-pub fn drawn(seed: u64, seconds: f64) -> (f64, [(f64, f64); 2]) {
+pub(super) fn drawn(seed: u64, seconds: f64) -> (f64, [(f64, f64); 2]) {
     // Streams of a world begin at one.
     let mut chance = Chance::new(seed, 0);
     let (roll, spin) = (chance.between(-0.5 * TAU, 0.5 * TAU), TAU * chance.between(60.0, 100.0));

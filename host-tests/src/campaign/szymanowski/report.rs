@@ -4,11 +4,11 @@ use orientation::earth::Latitude;
 use serde_json::json;
 
 use super::{drives, parked};
-use crate::campaign::columns::{Columns, figure, normal, reasons};
+use crate::campaign::columns::{Columns, normal, reasons};
 use crate::campaign::statistics::Precision;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::methods::stops::outcome::figures;
-use crate::report::{Part, Report, Series, Style};
+use crate::report::{Figure, Part, Report, Series, Style};
 
 /// Drives between stops, and parked vehicles.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -93,5 +93,5 @@ fn errors(row: &drives::Row) -> Part {
     let title = format!("Error after over error before: {}", row.case);
     let series = Series::new("one drive each", Style::Points, row.errors.iter().copied());
     let before = ["averaging over the first stop", "°"];
-    figure(&title, before, ["azimuth at the end", "°"], vec![series])
+    Figure::new(title, before, ["azimuth at the end", "°"], [series]).into()
 }
