@@ -5,9 +5,8 @@ pub mod unseen;
 use std::f64::consts::TAU;
 
 use orientation::alignment::rotating::conclusion::Conclusion as PlatformConclusion;
-use orientation::alignment::rotating::misalignment;
-use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::solution::{Fit, Pair};
+use orientation::alignment::rotating::{misalignment, session as rotating};
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::session::Session;

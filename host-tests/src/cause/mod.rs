@@ -12,7 +12,8 @@ mod units;
 mod vehicle;
 mod warming;
 
-pub use vehicle::{of_level, of_vehicle};
+pub use units::of_forces as of_level;
+pub use vehicle::of_vehicle;
 
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::Refusal as Rotating;
@@ -48,7 +49,7 @@ pub fn of_stopping(
     };
     let force = units::force_unit(body);
     if is_short(refusal) && session.dwells().len() < FEW {
-        return force.map(|unit| unit.describe(units::force_columns(body)));
+        return units::of_forces(body);
     }
     let meant = units::tried(body, force, true, &passes);
     let warming = || {
@@ -57,7 +58,7 @@ pub fn of_stopping(
     };
     warming()
         .or_else(|| meant.as_ref().map(|trial| trial.describe(body)))
-        .or_else(|| force.map(|unit| unit.describe(units::force_columns(body))))
+        .or_else(|| units::of_forces(body))
         .or_else(|| units::of_sigma(header, body, asked))
         .or_else(|| keys::noise(header, body, asked))
         .or_else(|| slip::of(session, refusal))

@@ -228,6 +228,12 @@ pub fn force_unit(body: &Body) -> Option<Unit> {
     FORCES.into_iter().find(|Unit(factor, _)| (usual * factor / GRAVITY - 1.0).abs() < NEAR)
 }
 
+/// What is wrong with the forces' unit, in words.
+#[must_use]
+pub fn of_forces(body: &Body) -> Option<String> {
+    force_unit(body).map(|unit| unit.describe(force_columns(body)))
+}
+
 /// What is wrong with the rate of a platform, which its angle shows.
 pub fn of_platform_rate(rows: &[RotatingRow]) -> Option<String> {
     let (mut turned, mut stated) = (0.0, 0.0);

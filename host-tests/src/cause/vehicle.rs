@@ -20,7 +20,7 @@ pub fn of_vehicle(
     refusal: &Refusal,
 ) -> Option<String> {
     let force = units::force_unit(body);
-    let of_force = force.map(|unit| unit.describe(units::force_columns(body)));
+    let of_force = units::of_forces(body);
     let rows = samples::rows(body).filter(|rows| rows.len() <= MOST_ROWS)?;
     if is_short(refusal) {
         return of_force;
@@ -35,12 +35,6 @@ pub fn of_vehicle(
     let of_rates = RATES.into_iter().find(passes).map(|unit| unit.describe(GYROS));
     let named: Vec<String> = of_rates.into_iter().chain(of_force).collect();
     (!named.is_empty()).then(|| named.join("; "))
-}
-
-/// The cause where no level was found.
-#[must_use]
-pub fn of_level(body: &Body) -> Option<String> {
-    units::force_unit(body).map(|unit| unit.describe(units::force_columns(body)))
 }
 
 /// The rows in other units.

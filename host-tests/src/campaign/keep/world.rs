@@ -227,8 +227,8 @@ impl Fitting {
 struct Board {
     keeper: Keeper,
     path: Converter,
-    /// While the precise gyro lies level, a coarse one shows the down axis; when that is over, s.
-    coarse: Option<(Simulated, f64)>,
+    /// While the precise gyro lies level, a coarse one shows the down axis.
+    coarse: Option<Simulated>,
     precise: Gyro,
 }
 
@@ -238,8 +238,7 @@ impl Board {
             Mount::Strapdown => None,
             Mount::TwoFrame(pair) => {
                 let seed = Generator::stream(seed, BESIDE).next_u64();
-                let gyro = Simulated::new(&pair.sheet().simulated(), RATE_HZ, seed);
-                Some((gyro, LEVEL * REST_S))
+                Some(Simulated::new(&pair.sheet().simulated(), RATE_HZ, seed))
             }
         };
         let keeper = Keeper::new(&fitting.setting(latitude()));
@@ -248,11 +247,11 @@ impl Board {
 
     fn push(&mut self, sample: &VehicleSample) {
         let VehicleSample { time_s, mut turned_rad, force_m_s2, .. } = *sample;
-        if self.coarse.as_ref().is_some_and(|(_, until_s)| time_s > *until_s) {
+        if self.coarse.is_some() && time_s > LEVEL * REST_S {
             self.coarse = None;
             self.keeper.exchange_down(self.precise);
         }
-        if let Some((gyro, _)) = &mut self.coarse {
+        if let Some(gyro) = &mut self.coarse {
             // At rest nearly nothing but the Earth turns it.
             let steady = gyro.steady(-latitude().vertical_rate(), [0.0; 2]);
             turned_rad[2] = gyro.sample(steady, time_s, 25.0) / RATE_HZ;

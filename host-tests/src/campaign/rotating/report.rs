@@ -32,10 +32,11 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Done {
     let molecular = molecular::rows(asked.runs, tick);
     let refusals = refusals::rows(tenth(asked.runs), tick);
     let sensors = molecular.iter().map(|row| &row.precision);
-    let mut healthy = stages.iter().map(|row| &row.precision).chain(sensors);
-    let found = healthy.all(Precision::is_complete) && refusals.iter().all(|row| row.wrong == 0);
+    let healthy: Vec<_> = stages.iter().map(|row| &row.precision).chain(sensors).collect();
+    let is_right = refusals.iter().all(|row| row.wrong == 0);
+    let found = healthy.iter().all(|precision| precision.is_complete()) && is_right;
     Done {
-        report: report(&stages, &molecular, &refusals),
+        report: report(&stages, &molecular, &refusals).below(subtitle(healthy)),
         refusal: unless(found, "a healthy run was refused, or a north was wrong"),
         object: json!({ "stages": stages, "molecular": molecular, "refusals": refusals }),
     }
@@ -63,11 +64,11 @@ fn report(
     ]);
     parts.extend(of_misalignments());
     let title = "Dynamic north finding on a turning platform";
-    Report::new(title, parts).below(subtitle(stages, molecular))
+    Report::new(title, parts)
 }
 
 /// What was simulated, and why any was refused.
-fn subtitle(stages: &[stages::Row], molecular: &[molecular::Row]) -> Vec<String> {
+fn subtitle(healthy: Vec<&Precision>) -> Vec<String> {
     let unevenness = 100.0 * UNEVENNESS;
     let (hertz, seconds, [slow, fast]) = (stages::TURN_HZ, stages::SECONDS, molecular::SPEEDS_HZ);
     let ([least, most], all, walk) = (molecular::PHASES_DEG, molecular::SECONDS, molecular::WALK);
@@ -79,10 +80,8 @@ fn subtitle(stages: &[stages::Row], molecular: &[molecular::Row]) -> Vec<String>
         "a molecular-electronic sensor that lags by {least}° to {most}°, gain and g-sensitivity unknown, at {slow} Hz \
          and {fast} Hz, {all} s each way in all, N = {walk} °/√h"
     );
-    let precisions = stages.iter().map(|row| &row.precision);
-    let all = precisions.chain(molecular.iter().map(|row| &row.precision));
     let lines = ["MET 2018".to_owned(), gyro, sensor, normal()];
-    lines.into_iter().chain(reasons(all)).collect()
+    lines.into_iter().chain(reasons(healthy)).collect()
 }
 
 fn of_stages(row: &stages::Row) -> OfPage {
