@@ -94,9 +94,12 @@ fn site(latitude_deg: f64, [n, b, k, r]: [f64; 4]) -> Site {
     Site { noise, ..Site::at(latitude) }
 }
 
-/// The azimuth of a seed, °: by the golden angle, so that those of successive seeds fill the circle evenly.
+/// Golden angle, °.
+const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
+
+/// The azimuth of a seed, °: those of successive seeds fill the circle evenly.
 fn azimuth_deg(seed: u64) -> f64 {
-    (137.507_764 * seed as f64) % 360.0
+    (GOLDEN_ANGLE_DEG * seed as f64) % 360.0
 }
 
 /// A tenth of the runs, or one.

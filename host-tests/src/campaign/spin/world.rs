@@ -5,10 +5,9 @@ use std::f64::consts::TAU;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinSample as Shown, SpinWorld};
+use orientation::roll::Setting;
 use orientation::signal::SpinSample;
 use orientation::units::DEGREE_PER_SQRT_HOUR;
-
-use orientation::roll::Setting;
 
 use crate::campaign::chance::Chance;
 use crate::methods::spin::METHODS;
@@ -22,7 +21,7 @@ pub const RATE_HZ: f64 = 10_000.0;
 /// Scale error of the gyro: the paper's.
 pub const SCALE_ERROR: f64 = 1e-3;
 /// 1σ of the scale error that the core is given.
-pub(super) const SCALE_SIGMA: f64 = 0.01;
+const SCALE_SIGMA: f64 = 0.01;
 
 /// What a flight is like.
 #[derive(Clone, Copy, Debug)]
