@@ -98,9 +98,6 @@ fn main() -> ExitCode {
         Ok(asked) => asked,
         Err(error) => return misuse(&error),
     };
-    if let Err(wrong) = check(&command, &stated) {
-        return misused(&wrong);
-    }
     // Where there is a pool already, or no room for another one, that one serves.
     let _ = rayon::ThreadPoolBuilder::new().stack_size(STACK).build_global();
     match answer(&command, &stated, as_json) {
@@ -108,18 +105,6 @@ fn main() -> ExitCode {
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
         Err(failure) => failed(&failure, as_json),
-    }
-}
-
-/// What cannot go together in a command's options.
-fn check(command: &Command, stated: &Stated) -> Result<(), String> {
-    match command {
-        Command::Run(options) => options.check(stated),
-        Command::Campaign(options) => options.check(),
-        Command::Replay(options) => options.check(stated),
-        Command::Allan(options) => options.check(),
-        Command::Plan(options) => options.check(),
-        Command::Emulate(_) => Ok(()),
     }
 }
 
@@ -185,7 +170,7 @@ fn warn(warnings: &[String]) {
 /// Runs the command and prints what came of it; whether there was a result.
 fn answer(command: &Command, stated: &Stated, as_json: bool) -> Result<bool, Failure> {
     let answer = match command {
-        Command::Run(options) => command::run::run(options, as_json)?,
+        Command::Run(options) => command::run::run(options, stated, as_json)?,
         Command::Replay(options) => command::replay::run(options, stated, as_json)?,
         Command::Plan(options) => command::plan::run(options, as_json)?,
         Command::Allan(options) => command::allan::run(options, as_json)?,

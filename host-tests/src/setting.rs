@@ -5,16 +5,8 @@ use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
+use crate::methods::asked::or_assumed;
 use crate::recording::{Body, Header};
-
-/// A site, and in words what had to be assumed for it.
-#[derive(Clone, Debug)]
-pub struct Described {
-    /// The site.
-    pub site: Site,
-    /// What the header does not say and how it was taken.
-    pub assumed: Vec<String>,
-}
 
 /// 1σ of a scale factor of which nothing is known, relative: between fibre-optic and micromachined gyros.
 const SCALE_SIGMA: f64 = 0.01;
@@ -23,40 +15,31 @@ const FORCE_BIAS_SIGMA: f64 = 0.25;
 
 /// Builds the site for a latitude from the header's keys.
 #[must_use]
-pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
-    let mut assumed = Vec::new();
-    let mut or_class = |value: Option<f64>, class: f64, words: &str| {
-        value.unwrap_or_else(|| {
-            assumed.push(words.to_owned());
-            class
-        })
-    };
-    let scale_sigma = or_class(
-        header.gyro_scale_sigma,
-        SCALE_SIGMA,
-        "gyro scale factor to 1 % (gyro_scale_sigma)",
-    );
-    let accelerometer_bias_sigma = or_class(
-        header.accelerometer_bias_m_s2,
-        FORCE_BIAS_SIGMA,
-        "accelerometer bias to 0.25 m/s² (accelerometer_bias_m_s2)",
-    );
+pub fn describe(
+    header: &Header,
+    body: &Body,
+    latitude: Latitude,
+    assumed: &mut Vec<String>,
+) -> Site {
+    let scale_sigma = or_assumed(header.gyro_scale_sigma, SCALE_SIGMA, assumed, || {
+        "gyro scale factor to 1 % (gyro_scale_sigma)".to_owned()
+    });
+    let accelerometer_bias_sigma =
+        or_assumed(header.accelerometer_bias_m_s2, FORCE_BIAS_SIGMA, assumed, || {
+            "accelerometer bias to 0.25 m/s² (accelerometer_bias_m_s2)".to_owned()
+        });
     let kappa_known = header.g_sensitivity_sigma_deg_h_g.is_some();
-    let kappa_sigma = or_class(
-        header.g_sensitivity_sigma_deg_h_g,
-        0.0,
-        "g-sensitivity to 50000 °/h/g for each (°/√h)² of N, 100 °/h/g at most (g_sensitivity_sigma_deg_h_g)",
-    );
+    let kappa_sigma = or_assumed(header.g_sensitivity_sigma_deg_h_g, 0.0, assumed, || {
+        "g-sensitivity to 50000 °/h/g for each (°/√h)² of N, 100 °/h/g at most (g_sensitivity_sigma_deg_h_g)".to_owned()
+    });
     let white_known = header.gyro_n_deg_sqrt_h.is_some_and(|n| n > 0.0);
-    match body {
-        Body::Stage(_) if !white_known => {
-            assumed.push("white noise as the dwells show it".to_owned());
-        }
-        Body::Rotating(_) if !white_known => {
-            assumed.push("white noise as the turns show it".to_owned());
-        }
-        _ => {}
-    }
+    let shown = match body {
+        Body::Stage(_) => Some("dwells"),
+        Body::Rotating(_) => Some("turns"),
+        _ => None,
+    };
+    let shown = shown.filter(|_| !white_known);
+    assumed.extend(shown.map(|shown| format!("white noise as the {shown} show it")));
     if noise(header) == noise(header).white_part() {
         assumed.push("no gyro drift (B, K, R)".to_owned());
     }
@@ -67,7 +50,7 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     assumed.push(exact.to_owned());
     let stated = if white_known { StatedNoise::Whole } else { StatedNoise::ExceptWhite };
     let kappa = header.g_sensitivity_deg_h_g.unwrap_or_default();
-    let site = Site {
+    Site {
         noise: stated(noise(header)),
         scale_sigma,
         g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
@@ -75,8 +58,7 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         g_sensitivity_known: kappa_known,
         accelerometer_bias_sigma,
         ..Site::at(latitude)
-    };
-    Described { site, assumed }
+    }
 }
 
 /// The gyro's noise as the header has it; what is absent is zero.

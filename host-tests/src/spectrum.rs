@@ -42,11 +42,8 @@ impl Window {
 #[must_use]
 pub fn amplitudes(signal: &[f64], rate_hz: f64, window: Window) -> Vec<Line> {
     let samples = signal.len();
-    let mean = signal.iter().sum::<f64>() / samples.max(1) as f64;
     let weights: Vec<f64> = (0..samples).map(|index| window.weight(index, samples)).collect();
-    let weighted = signal.iter().zip(&weights).map(|(x, weight)| (x - mean) * weight);
-    let mut buffer: Vec<Complex<f64>> = weighted.map(Complex::from).collect();
-    FftPlanner::new().plan_fft_forward(samples).process(&mut buffer);
+    let buffer = transformed(signal, &weights);
     let whole: f64 = weights.iter().sum();
     let line = |index: usize| Line {
         frequency_hz: index as f64 * rate_hz / samples as f64,
@@ -58,4 +55,13 @@ pub fn amplitudes(signal: &[f64], rate_hz: f64, window: Window) -> Vec<Line> {
 /// A frequency stands on both sides of the two-sided spectrum, but for half the sample rate.
 fn sides(index: usize, samples: usize) -> f64 {
     if 2 * index == samples { 1.0 } else { 2.0 }
+}
+
+/// The Fourier transform of a signal without its mean, each sample with its weight.
+pub(crate) fn transformed(signal: &[f64], weights: &[f64]) -> Vec<Complex<f64>> {
+    let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
+    let weighted = signal.iter().zip(weights).map(|(x, weight)| (x - mean) * weight);
+    let mut buffer: Vec<Complex<f64>> = weighted.map(Complex::from).collect();
+    FftPlanner::new().plan_fft_forward(signal.len()).process(&mut buffer);
+    buffer
 }

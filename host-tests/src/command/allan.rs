@@ -30,7 +30,7 @@ impl AllanOptions {
     ///
     /// # Errors
     /// The option, and why.
-    pub fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         let report = files::written("--report", "the page", self.report.as_ref());
         files::check(Some(&self.file), &[report])
     }
@@ -38,6 +38,7 @@ impl AllanOptions {
 
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
+    options.check().map_err(Failure::misuse)?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let warnings = recording.warning_lines(&options.file);
     analyse(options, recording, as_json)

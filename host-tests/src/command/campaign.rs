@@ -7,7 +7,7 @@ use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::output::progress::Progress;
 use simulated::fault::Platform;
 
-use super::{Answer, faults as of_run, files, registered, whole};
+use super::{Answer, Failure, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -37,7 +37,7 @@ impl CampaignOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         let given = [self.platform.map(|_| "platform"), self.class.as_ref().map(|_| "class")];
         for (option, things) in given.into_iter().zip(["platforms", "classes"]) {
             option.map_or(Ok(()), |option| self.check_own(option, things))?;
@@ -64,7 +64,8 @@ impl CampaignOptions {
 }
 
 /// Runs a campaign.
-pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, String> {
+pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> {
+    options.check().map_err(Failure::misuse)?;
     let campaign = options.campaign;
     let asked = Asked {
         runs: options.runs.map_or(campaign.runs, |runs| runs as usize),

@@ -13,12 +13,11 @@ pub mod stated;
 use std::io::Write;
 use std::path::Path;
 
-use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::outcome::{self, Finished, Outcome};
 use host::recording::{Body, Truth};
 use host::report::Report;
-use orientation::alignment::stepwise::setting;
+use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -131,6 +130,13 @@ impl Answer {
         }
         self
     }
+
+    /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
+    /// failure, but the rest is not lost with it.
+    fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
+        let write = |path: &Path| page().write(path).map_err(|error| error.to_string());
+        self.with_written(path.map_or(Ok(()), write))
+    }
 }
 
 /// A finished analysis with what it found, ready to be shown.
@@ -167,22 +173,15 @@ fn explained(reason: &str, remedy: &str, cause: &str) -> String {
     format!("{}; {cause}", reason.strip_suffix(remedy).unwrap_or(reason))
 }
 
-/// The half of the circle in which an azimuth lies.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Half {
-    /// 0° to 180°.
-    East,
-    /// 180° to 360°.
-    West,
-}
+/// The halves of the circle in which an azimuth may lie.
+static HALVES: [(Half, [&str; 2]); 2] =
+    [(Half::East, ["east", "0° to 180°"]), (Half::West, ["west", "180° to 360°"])];
 
-impl From<Half> for setting::Half {
-    fn from(half: Half) -> Self {
-        match half {
-            Half::East => Self::East,
-            Half::West => Self::West,
-        }
-    }
+/// Takes the names of values, and shows them with their meanings.
+fn named<T: Copy + Send + Sync + 'static>(
+    values: &'static [(T, [&'static str; 2])],
+) -> impl TypedValueParser<Value = T> {
+    registered(values, |(_, name)| *name).map(|(value, _)| *value)
 }
 
 /// Takes the names of a registry's entries, and shows them with their meanings.
@@ -219,15 +218,6 @@ fn sigma(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
         _ => Err("not a number of degrees above 0, at most 180".to_owned()),
-    }
-}
-
-impl Answer {
-    /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
-    /// failure, but the rest is not lost with it.
-    fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
-        let write = |path: &Path| page().write(path).map_err(|error| error.to_string());
-        self.with_written(path.map_or(Ok(()), write))
     }
 }
 

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
+use host::outcome::keys::Keys;
 use host::output::plan;
-use host::planning::{Planned, Request, Wanted};
+use host::planning::{Request, Wanted};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use serde::Serialize;
 use serde_json::json;
 
-use super::{Answer, files, latitude};
+use super::{Answer, Failure, files, latitude};
 
 /// The gyro, the place, the stage, and what is asked.
 #[derive(Args)]
@@ -69,7 +69,7 @@ impl PlanOptions {
     ///
     /// # Errors
     /// The option, and why.
-    pub fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
     }
 }
@@ -96,22 +96,15 @@ impl From<&PlanOptions> for Request {
     }
 }
 
-/// What was planned, as one object.
-#[derive(Serialize)]
-struct Found {
-    status: &'static str,
-    #[serde(flatten)]
-    planned: Planned,
-}
-
 /// Plans positions and dwells, and shows them.
-pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, String> {
+pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
+    options.check().map_err(Failure::misuse)?;
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
-        Err(why) => return refused(options, &why.to_string(), as_json),
+        Err(why) => return Ok(refused(options, &why.to_string(), as_json)?),
     };
-    let object = Found { status: "ok", planned };
+    let object = Keys::default().with("status", "ok").with_all(Some(&planned));
     let answer = Answer::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
     Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }

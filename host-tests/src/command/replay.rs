@@ -11,10 +11,11 @@ use host::output::progress::Progress;
 use host::recording::{self, Recording};
 use host::unwritten;
 use orientation::alignment::stepwise::criterion::Criterion;
+use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 
 use super::stated::{Stated, long};
-use super::{Answer, Failure, Half, Shown, explained, files, latitude, registered, sigma};
+use super::{Answer, Failure, HALVES, Shown, explained, files, latitude, named, registered, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -32,7 +33,7 @@ pub struct ReplayOptions {
     #[arg(long, value_parser = host::criterion::parse)]
     criterion: Option<Criterion>,
     /// The half of the circle in which the azimuth is known to lie: two positions need it.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = named(&HALVES))]
     half: Option<Half>,
     /// How far each stop of a vehicle lies from the first, north and east, in metres: `0,0;n,e;…`
     /// instead of the recording's.
@@ -65,7 +66,7 @@ impl ReplayOptions {
             method: self.method.map(|method| method.name),
             latitude: self.latitude,
             criterion: self.criterion,
-            half: self.half.map(Into::into),
+            half: self.half,
             displacements_m: self.displacements.as_ref().map(|list| list.0.clone()),
             required_sigma: self.require_sigma,
         }
@@ -75,7 +76,7 @@ impl ReplayOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self, stated: &Stated) -> Result<(), String> {
+    fn check(&self, stated: &Stated) -> Result<(), String> {
         self.method.map_or(Ok(()), |method| check(stated, method))?;
         let attitude = files::written("--attitude-out", "the attitude", self.attitude_out.as_ref());
         let report = files::written("--report", "the page", self.report.as_ref());
@@ -106,6 +107,7 @@ fn check(stated: &Stated, method: &Method) -> Result<(), String> {
 
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
+    options.check(stated).map_err(Failure::misuse)?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let method = options.method.unwrap_or_else(|| methods::usual(&recording));
     // Without a method stated, that the options do not suit shows only now.

@@ -47,36 +47,23 @@ pub fn table(elf: &[u8]) -> Result<Table, String> {
     }
 }
 
-/// Bytes in, lines out.
-pub struct Decoder<'t> {
-    stream: Box<dyn StreamDecoder + Send + Sync + 't>,
-}
-
-impl<'t> Decoder<'t> {
-    /// A decoder at the beginning of a stream.
-    #[must_use]
-    pub fn new(table: &'t Table) -> Self {
-        Self { stream: table.new_stream_decoder() }
-    }
-
-    /// Takes bytes and hands over the lines that they complete.
-    ///
-    /// # Errors
-    /// An error of `on_line`, or bytes that are no defmt frame: nothing is lost on the way from the
-    /// emulator, so something else has printed there.
-    pub fn take(
-        &mut self,
-        bytes: &[u8],
-        mut on_line: impl FnMut(&Line) -> Result<(), String>,
-    ) -> Result<(), String> {
-        self.stream.received(bytes);
-        loop {
-            match self.stream.decode() {
-                Ok(frame) => on_line(&Line::of(&frame))?,
-                Err(DecodeError::UnexpectedEof) => return Ok(()),
-                Err(DecodeError::Malformed) => {
-                    return Err("the emulator's log holds bytes that are no defmt frame".to_owned());
-                }
+/// Takes bytes of a stream and hands over the lines that they complete.
+///
+/// # Errors
+/// An error of `on_line`, or bytes that are no defmt frame: nothing is lost on the way from the
+/// emulator, so something else has printed there.
+pub fn take(
+    stream: &mut dyn StreamDecoder,
+    bytes: &[u8],
+    mut on_line: impl FnMut(&Line) -> Result<(), String>,
+) -> Result<(), String> {
+    stream.received(bytes);
+    loop {
+        match stream.decode() {
+            Ok(frame) => on_line(&Line::of(&frame))?,
+            Err(DecodeError::UnexpectedEof) => return Ok(()),
+            Err(DecodeError::Malformed) => {
+                return Err("the emulator's log holds bytes that are no defmt frame".to_owned());
             }
         }
     }

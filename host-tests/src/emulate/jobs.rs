@@ -12,7 +12,7 @@ use simulated::turntable::TurntableScenario;
 use simulated::vehicle::{BRIEF, Day, VehicleScenario};
 
 use super::outcome::Outcome;
-use crate::instrument::{RunError, Trial, VehiclePlan};
+use crate::instrument::{Carrier, Run, Trial, VehiclePlan, VehicleRun};
 
 /// A run of the image.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub static STAGE: Job = Job {
     title: "from dwell to dwell at 400 Hz, on a stage",
     sample_budget: None,
     is_idle: false,
-    on_host: |seed| stage(&Scenario::usual(seed)),
+    on_host: |seed| outcome(Trial::of(&Scenario::usual(seed)), of_stage),
 };
 
 /// A run at the highest sample rate.
@@ -44,7 +44,7 @@ pub static BRIEF_STAGE: Job = Job {
     title: "from dwell to dwell at 2400 Hz, on a stage",
     sample_budget: Some(budget::SAMPLE_INSTRUCTIONS),
     is_idle: true,
-    on_host: |seed| stage(&Scenario::brief(seed)),
+    on_host: |seed| outcome(Trial::of(&Scenario::brief(seed)), of_stage),
 };
 
 /// The run that learns the noise of its gyro and plans by it.
@@ -53,7 +53,7 @@ pub static SURVEY: Job = Job {
     title: "from dwell to dwell at 100 Hz, after a survey of two minutes",
     sample_budget: None,
     is_idle: false,
-    on_host: |seed| stage(&Scenario::surveying(seed)),
+    on_host: |seed| outcome(Trial::of(&Scenario::surveying(seed)), of_stage),
 };
 
 /// A run on two frames.
@@ -62,7 +62,7 @@ pub static TWO_FRAME: Job = Job {
     title: "from dwell to dwell at 2400 Hz, on a two-frame mount",
     sample_budget: Some(budget::FRAMES_SAMPLE_INSTRUCTIONS),
     is_idle: false,
-    on_host: |seed| frames(&FramesScenario::brief(seed)),
+    on_host: |seed| outcome(Trial::of(&FramesScenario::brief(seed)), |run| of_stage(&run.run)),
 };
 
 /// A run on a turntable.
@@ -71,7 +71,11 @@ pub static TURNTABLE: Job = Job {
     title: "from turn to turn at 2400 Hz, on a turntable",
     sample_budget: Some(budget::TURNING_SAMPLE_INSTRUCTIONS),
     is_idle: true,
-    on_host: |seed| turntable(&TurntableScenario::brief(seed)),
+    on_host: |seed| {
+        outcome(Trial::of(&TurntableScenario::brief(seed)), |run| {
+            Outcome::of::<Sample>(&run.run.replay, &[])
+        })
+    },
 };
 
 /// A run in a vehicle, with what it keeps afterwards.
@@ -80,7 +84,15 @@ pub static VEHICLE: Job = Job {
     title: "from stop to stop at 50 Hz, in a vehicle",
     sample_budget: Some(budget::STOPS_SAMPLE_INSTRUCTIONS),
     is_idle: false,
-    on_host: |seed| vehicle(&VehicleScenario::brief(seed)),
+    on_host: |seed| {
+        let scenario = VehicleScenario::brief(seed);
+        let day = Day { legs: BRIEF.into_iter().collect(), ..scenario.day(None) };
+        let plan = VehiclePlan { day, chips: Injection::NONE };
+        outcome(Trial::of(&scenario).plan(plan), |VehicleRun { run, .. }| {
+            let kept: Vec<_> = run.reports.iter().map(|report| report as &dyn Trace).collect();
+            Outcome::of::<InertialSample>(&run.replay, &kept)
+        })
+    },
 };
 
 /// A flight of a spinning body.
@@ -89,42 +101,22 @@ pub static SPIN: Job = Job {
     title: "over a flight at 14.4 kHz, on a spinning body",
     sample_budget: Some(budget::SPIN_SAMPLE_INSTRUCTIONS),
     is_idle: false,
-    on_host: |seed| spin(&SpinScenario::brief(seed)),
+    on_host: |seed| {
+        outcome(Trial::of(&SpinScenario::brief(seed)), |run| {
+            Outcome::of::<SpinSample>(&run.run.replay, &[])
+        })
+    },
 };
 
 /// All runs, in the order in which they are made.
 pub static JOBS: [&Job; 7] =
     [&STAGE, &BRIEF_STAGE, &SURVEY, &TWO_FRAME, &TURNTABLE, &VEHICLE, &SPIN];
 
-fn stage(scenario: &Scenario) -> Result<Outcome, String> {
-    let run = told(Trial::of(scenario).run())?;
-    Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
+/// What came of a run on the host.
+fn outcome<C: Carrier>(trial: Trial<'_, C>, of: fn(&C::Run) -> Outcome) -> Result<Outcome, String> {
+    trial.run().map(|run| of(&run)).map_err(|error| format!("the host's run: {error}"))
 }
 
-fn frames(scenario: &FramesScenario) -> Result<Outcome, String> {
-    let run = told(Trial::of(scenario).run())?.run;
-    Ok(Outcome::of::<Sample>(&run.replay.session, &[]))
-}
-
-fn turntable(scenario: &TurntableScenario) -> Result<Outcome, String> {
-    let run = told(Trial::of(scenario).run())?.run;
-    Ok(Outcome::of::<Sample>(&run.replay, &[]))
-}
-
-fn vehicle(scenario: &VehicleScenario) -> Result<Outcome, String> {
-    let day = Day { legs: BRIEF.into_iter().collect(), ..scenario.day(None) };
-    let plan = VehiclePlan { day, chips: Injection::NONE };
-    let run = told(Trial::of(scenario).plan(plan).run())?.run;
-    let kept: Vec<&dyn Trace> = run.reports.iter().map(|report| report as &dyn Trace).collect();
-    Ok(Outcome::of::<InertialSample>(&run.replay, &kept))
-}
-
-fn spin(scenario: &SpinScenario) -> Result<Outcome, String> {
-    let run = told(Trial::of(scenario).run())?.run;
-    Ok(Outcome::of::<SpinSample>(&run.replay, &[]))
-}
-
-/// A run, or why there is none.
-fn told<R>(run: Result<R, RunError>) -> Result<R, String> {
-    run.map_err(|error| format!("the host's run: {error}"))
+fn of_stage(run: &Run) -> Outcome {
+    Outcome::of::<Sample>(&run.replay.session, &[])
 }

@@ -24,7 +24,6 @@ use std::path::Path;
 use std::time::Duration;
 
 use self::collect::Collected;
-use self::decode::Decoder;
 use self::jobs::{JOBS, Job};
 use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
@@ -109,10 +108,10 @@ fn instrument(
     mut on_line: impl FnMut(&decode::Line),
 ) -> Result<(Outcome, collect::Figures), String> {
     let table = decode::table(elf)?;
-    let mut decoder = Decoder::new(&table);
+    let mut stream = table.new_stream_decoder();
     let mut collected = Collected::default();
     let status = qemu::run(image, &["-append", order], LONGEST, |bytes| {
-        decoder.take(bytes, |line| {
+        decode::take(&mut *stream, bytes, |line| {
             on_line(line);
             collected.take(line)
         })

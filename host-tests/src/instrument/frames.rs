@@ -31,12 +31,6 @@ pub struct FramesRun {
     pub axis: [f64; 3],
 }
 
-impl AsMut<Run> for FramesRun {
-    fn as_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-}
-
 impl Carrier for FramesScenario {
     type Sample = Sample;
     type Plan = KeptPlan;
@@ -54,9 +48,12 @@ impl Carrier for FramesScenario {
         if !self.base.has_base_imu {
             return align_on(NoBase, self, None, &plan.chips, around);
         }
-        plan.on_base(&self.base, self.alignment_seconds(), |imu, journey| {
-            align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around)
-        })
+        plan.on_base(
+            &self.base,
+            self.alignment_seconds(),
+            |found: &mut FramesRun| &mut found.run,
+            |imu, journey| align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around),
+        )
     }
 }
 
@@ -70,8 +67,8 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
 ) -> Result<FramesRun, RunError> {
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
-    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
-    let frames = scenario.frames().map_err(RunError::Mount)?;
+    let mut session = Session::new(setting, scenario.procedure())?;
+    let frames = scenario.frames()?;
     let Around { watch, recorder, store } = around;
     let board = RefCell::new(scenario.board(journey, injection));
     let harness = Harness::new(watch);
@@ -99,12 +96,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
-    let replay = Replay {
-        method: POSITIONS,
-        setting: *session.setting(),
-        session,
-        assumed: given_with(scenario.base.half),
-    };
-    let run = harness.clear(&ended, &board, replay);
+    let replay = Replay { method: POSITIONS, session, assumed: given_with(scenario.base.half) };
+    let run = harness.clear(ended, &board, replay);
     Ok(FramesRun { run, axis })
 }

@@ -17,15 +17,16 @@ use super::kept::Kept;
 use super::{Run, RunError};
 use crate::virtual_time;
 
-/// Keeps what the board reports and passes it on.
-pub(super) struct Log<'w> {
+/// A harness on which a board is put: it keeps what the board reports and passes it on.
+pub(super) struct Harness<'w> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
     base: RefCell<Vec<(Instant, BaseReading)>>,
+    bytes: RefCell<Vec<u8>>,
     watch: &'w dyn Observer,
 }
 
-impl Observer for Log<'_> {
+impl Observer for Harness<'_> {
     fn event(&self, at: Instant, event: &Event) {
         self.events.borrow_mut().push((at, *event));
         self.watch.event(at, event);
@@ -73,28 +74,16 @@ impl Write for Wire<'_> {
     }
 }
 
-/// A harness on which a board is put.
-pub(super) struct Harness<'w> {
-    log: Log<'w>,
-    bytes: RefCell<Vec<u8>>,
-}
-
-/// How a run ended.
-pub(super) struct Ended {
-    health: Health,
-    at: Instant,
-}
-
 impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
     pub(super) fn new(watch: &'w dyn Observer) -> Self {
-        let (events, reports, base) = Default::default();
-        Self { log: Log { events, reports, base, watch }, bytes: RefCell::default() }
+        let (events, reports, base, bytes) = Default::default();
+        Self { events, reports, base, bytes, watch }
     }
 
     /// The channels of the board's parts.
     pub(super) fn channels<S>(&self) -> Channels<'_, S> {
-        Channels::new(&self.log)
+        Channels::new(self)
     }
 
     /// The wire of its link.
@@ -105,7 +94,7 @@ impl<'w> Harness<'w> {
     /// What is left of a run on a board.
     pub(super) fn clear<R, P, C: Chips<P>>(
         self,
-        ended: &Ended,
+        (health, at): (Health, Instant),
         board: &RefCell<Board<'_, P, C>>,
         replay: R,
     ) -> Run<R> {
@@ -113,13 +102,13 @@ impl<'w> Harness<'w> {
         let violations = board.recorded();
         Run {
             replay,
-            events: self.log.events.into_inner(),
-            reports: self.log.reports.into_inner(),
-            base: self.log.base.into_inner(),
+            events: self.events.into_inner(),
+            reports: self.reports.into_inner(),
+            base: self.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
-            seconds: ended.at.as_micros() as f64 * 1e-6,
+            seconds: at.as_micros() as f64 * 1e-6,
             kept: Kept::default(),
-            health: ended.health,
+            health,
             violations: violations
                 .map(|(chip, violation)| format!("{chip:?}: {violation}"))
                 .collect(),
@@ -127,14 +116,14 @@ impl<'w> Harness<'w> {
     }
 }
 
-/// Runs a board's two futures in virtual time on this thread.
+/// Runs a board's two futures in virtual time on this thread; what the instrument ends with, and when.
 ///
 /// # Errors
 /// Everything waits and nothing would come.
 pub(super) fn run(
     acquisition: impl Future<Output = ()>,
     instrument: impl Future<Output = Health>,
-) -> Result<Ended, RunError> {
-    let instrument = async { Ended { health: instrument.await, at: Instant::now() } };
+) -> Result<(Health, Instant), RunError> {
+    let instrument = async { (instrument.await, Instant::now()) };
     virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
 }

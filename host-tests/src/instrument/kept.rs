@@ -39,10 +39,11 @@ impl KeptPlan {
     ///
     /// # Errors
     /// Those of the run.
-    pub(super) fn on_base<R, O: AsMut<Run<R>>>(
+    pub(super) fn on_base<O, R>(
         &self,
         scenario: &Scenario,
         alignment_s: f64,
+        of_run: impl FnOnce(&mut O) -> &mut Run<R>,
         run: impl FnOnce(
             &mut SimulatedBase<'_, '_, Injection>,
             Option<JourneyConfiguration<'_>>,
@@ -53,7 +54,7 @@ impl KeptPlan {
         let journey = (scenario.hold.seconds > 0.0).then_some(journey);
         let rig = RefCell::new(base::rig(scenario, journey.as_ref()));
         let mut found = run(&mut base::imu(&rig, scenario, &self.chips), journey)?;
-        let of_run = found.as_mut();
+        let of_run = of_run(&mut found);
         let rig = rig.borrow();
         let violations = base::violations(&rig).iter();
         of_run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
@@ -96,6 +97,13 @@ impl Point {
     pub fn azimuth_error(&self) -> Option<[f64; 2]> {
         let azimuth = self.report.azimuth?;
         Some([short(azimuth.angle - self.truth.azimuth_rad), azimuth.sigma])
+    }
+
+    /// The azimuth, its stated 1σ and its error, °; none where it is not known.
+    #[must_use]
+    pub fn azimuth_deg(&self) -> Option<[f64; 3]> {
+        let [error, sigma] = self.azimuth_error()?;
+        Some([self.report.azimuth?.angle, sigma, error].map(f64::to_degrees))
     }
 
     /// Errors of pitch and roll, rad.

@@ -89,12 +89,6 @@ impl<R> Run<R> {
     }
 }
 
-impl AsMut<Self> for Run {
-    fn as_mut(&mut self) -> &mut Self {
-        self
-    }
-}
-
 /// Why a scenario could not be run; a refusal is not among them.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
@@ -103,10 +97,10 @@ pub enum RunError {
     Latitude(f64),
     /// The session cannot begin.
     #[error("{0}")]
-    Procedure(SetupError),
+    Procedure(#[from] SetupError),
     /// The mount's calibration is impossible.
     #[error("{0}")]
-    Mount(MountError),
+    Mount(#[from] MountError),
     /// A sensor has a scale factor that is none.
     #[error("a sensor's scale factor is none")]
     Scale,

@@ -92,7 +92,7 @@ impl Carrier for SpinScenario {
             ),
         )?;
         drop(channels);
-        let run = harness.clear(&ended, &board, flight);
+        let run = harness.clear(ended, &board, flight);
         // Another body of the same course, which has not flown yet.
         let fresh = self.board(course, injection).plant;
         let at = |plant: &SpinPlant, time: Instant| {

@@ -40,9 +40,12 @@ impl Carrier for Scenario {
         if !self.has_base_imu {
             return align_on(NoBase, self, None, &plan.chips, around);
         }
-        plan.on_base(self, self.alignment_seconds(), |imu, journey| {
-            align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around)
-        })
+        plan.on_base(
+            self,
+            self.alignment_seconds(),
+            |run| run,
+            |imu, journey| align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around),
+        )
     }
 }
 
@@ -59,7 +62,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
 ) -> Result<Run, RunError> {
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
-    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
+    let mut session = Session::new(setting, scenario.procedure())?;
     let Around { watch, recorder, store } = around;
     let board = RefCell::new(simulated::board(scenario, journey, injection));
     let harness = Harness::new(watch);
@@ -83,11 +86,6 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
             &channels,
         ),
     )?;
-    let replay = Replay {
-        method: name_of(&session),
-        setting: *session.setting(),
-        session,
-        assumed: given_with(scenario.half),
-    };
-    Ok(harness.clear(&ended, &board, replay))
+    let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };
+    Ok(harness.clear(ended, &board, replay))
 }

@@ -42,12 +42,6 @@ pub struct TurntableRun {
     pub rate: f64,
 }
 
-impl AsMut<Run<rotating::Session>> for TurntableRun {
-    fn as_mut(&mut self) -> &mut Run<rotating::Session> {
-        &mut self.run
-    }
-}
-
 impl Carrier for TurntableScenario {
     type Sample = Sample;
     type Plan = TurntablePlan;
@@ -66,9 +60,14 @@ impl Carrier for TurntableScenario {
         if !self.base.has_base_imu {
             return align_on(NoBase, self, None, plan, around);
         }
-        plan.kept.on_base(&self.base, self.alignment_seconds(), |imu, journey| {
-            align_on(SwayCompensation::for_keeping(imu), self, journey, plan, around)
-        })
+        plan.kept.on_base(
+            &self.base,
+            self.alignment_seconds(),
+            |found: &mut TurntableRun| &mut found.run,
+            |imu, journey| {
+                align_on(SwayCompensation::for_keeping(imu), self, journey, plan, around)
+            },
+        )
     }
 }
 
@@ -95,7 +94,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         let load = load_calibration(&mut opened, today, given, &channels.shared);
         virtual_time::run(load).map_err(|_| RunError::Deadlock)?;
     }
-    let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
+    let mut session = rotating::Session::new(setting, procedure)?;
     let configuration = scenario.base.configuration();
     let platform = TurntableConfiguration::default();
     let wires = Wires(&board, injection);
@@ -118,5 +117,5 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         ),
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
+    Ok(TurntableRun { run: harness.clear(ended, &board, session), rate })
 }

@@ -61,8 +61,7 @@ impl Carrier for VehicleScenario {
         around: Around<'_, R, T>,
     ) -> Result<VehicleRun, RunError> {
         let setting = self.setting().ok_or(RunError::Latitude(self.base.latitude_deg))?;
-        let session = stops::Session::new(setting, self.procedure());
-        let mut session = session.map_err(RunError::Procedure)?;
+        let mut session = stops::Session::new(setting, self.procedure())?;
         let (VehiclePlan { day, chips: injection }, Around { watch, recorder, store }) =
             (plan, around);
         let board = RefCell::new(self.board(&day.legs, &day.events, injection));
@@ -84,7 +83,7 @@ impl Carrier for VehicleScenario {
             ),
         )?;
         let truth = board.borrow().plant.truth();
-        let mut run = harness.clear(&ended, &board, session);
+        let mut run = harness.clear(ended, &board, session);
         run.kept = Kept::of(&run.reports, day.configuration().motion());
         Ok(VehicleRun { run, truth })
     }

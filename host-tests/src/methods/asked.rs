@@ -8,7 +8,7 @@ use orientation::units::DEGREE;
 
 use super::error::ReplayError;
 use crate::recording::{Body, Header};
-use crate::setting::{Described, describe};
+use crate::setting::describe;
 
 /// Greatest 1σ that is accepted where none is asked for, rad: 10°, as [`orientation::alignment::site::Site`] has it.
 pub const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
@@ -49,10 +49,15 @@ impl Asked {
     ///
     /// # Errors
     /// There is no latitude.
-    pub(crate) fn describe(&self, header: &Header, body: &Body) -> Result<Described, ReplayError> {
-        let mut described = describe(header, body, self.latitude(header, body)?);
-        self.change(&mut described.site);
-        Ok(described)
+    pub(crate) fn describe(
+        &self,
+        header: &Header,
+        body: &Body,
+        assumed: &mut Vec<String>,
+    ) -> Result<Site, ReplayError> {
+        let mut site = describe(header, body, self.latitude(header, body)?, assumed);
+        self.change(&mut site);
+        Ok(site)
     }
 
     /// Greatest accepted 1σ of a method whose recordings hold none, rad.
@@ -65,4 +70,17 @@ impl Asked {
         site.latitude = self.latitude.unwrap_or(site.latitude);
         site.required_sigma = self.required_sigma.unwrap_or(site.required_sigma);
     }
+}
+
+/// What is stated; where nothing is, what is usual, which the words say to be assumed.
+pub(crate) fn or_assumed<T>(
+    stated: Option<T>,
+    usual: T,
+    assumed: &mut Vec<String>,
+    words: impl FnOnce() -> String,
+) -> T {
+    stated.unwrap_or_else(|| {
+        assumed.push(words());
+        usual
+    })
 }

@@ -126,7 +126,7 @@ pub enum ReplayError {
     NoiseUnknown,
     /// The session cannot follow the recording.
     #[error("{0}")]
-    Procedure(SetupError),
+    Procedure(#[from] SetupError),
     /// What the header says of a run's session cannot be read, and why.
     #[error("key session: {0}: leave the line as the run wrote it, or take it out")]
     Session(String),

@@ -1,7 +1,10 @@
 //! The outcome of a run, where there is an alignment and where an azimuth is only kept.
 
-use super::run::{KeptDetails, RunDetails};
-use super::{Finished, NoDetails, Outcome, Source};
+use super::keys::Keys;
+use super::run::RunDetails;
+use super::{Finished, Outcome, Source};
+use crate::instrument::kept::Point;
+use crate::output::degrees;
 use crate::recording::Truth;
 
 /// A run whose azimuth is kept while no alignment's conclusion stands: it came from outside, or the session was begun
@@ -11,7 +14,7 @@ pub struct KeptAzimuth;
 
 impl Finished for KeptAzimuth {
     fn outcome(&self, _: &Truth) -> Outcome {
-        Outcome::new("kept", NoDetails {})
+        Outcome::new("kept", Keys::default(), Vec::new())
     }
 
     fn titles(&self) -> [&'static str; 2] {
@@ -24,19 +27,19 @@ impl Outcome {
     #[must_use]
     pub fn of_run(self, seed: u64, run: RunDetails) -> Self {
         let this = Self { source: Some(Source::Seed(seed)), ..self };
-        if this.details::<NoDetails>().is_none() {
+        if !this.details.is_empty() {
             return Self { run: Some(run), ..this };
         }
-        let of = |value: fn(&KeptDetails) -> Option<f64>| run.kept.as_ref().and_then(value);
-        let azimuth_deg = of(|kept| kept.azimuth_deg);
-        let reason = azimuth_deg.is_none().then(|| "the azimuth is not known any more".to_owned());
+        let last = run.kept.as_ref();
+        let azimuth = last.and_then(Point::azimuth_deg);
+        let reason = azimuth.is_none().then(|| "the azimuth is not known any more".to_owned());
         Self {
-            azimuth_deg,
-            sigma_deg: of(|kept| kept.sigma_deg),
-            error_deg: of(|kept| kept.error_deg),
-            pitch_deg: of(|kept| Some(kept.pitch_deg)),
-            roll_deg: of(|kept| Some(kept.roll_deg)),
-            seconds: of(|kept| Some(kept.seconds)).unwrap_or_default(),
+            azimuth_deg: azimuth.map(|[azimuth, ..]| azimuth),
+            sigma_deg: azimuth.map(|[_, sigma, _]| sigma),
+            error_deg: azimuth.map(|[.., error]| error),
+            pitch_deg: last.map(|last| degrees(last.report.pitch)),
+            roll_deg: last.map(|last| degrees(last.report.roll)),
+            seconds: last.map_or(0.0, |last| last.report.seconds),
             run: Some(run),
             ..this
         }

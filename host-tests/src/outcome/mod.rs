@@ -5,25 +5,22 @@
 //! shows.
 
 pub mod kept;
+pub mod keys;
 pub mod run;
-
-use std::any::Any;
-use std::fmt;
 
 use orientation::alignment::Azimuth;
 use orientation::alignment::budget::Budget;
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::refusal::Refusal;
-use serde::ser::Error;
 use serde::{Serialize, Serializer};
-use serde_json::Value;
 
+use self::keys::Keys;
 use self::run::RunDetails;
 use crate::methods::asked::Asked;
 use crate::methods::vertical::Moment;
 use crate::output::{azimuth_error, degrees, positive_zero};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Lines, Part as ReportPart, Report, Table};
+use crate::report::{Figure, Lines, Part as ReportPart, Report, Table};
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;
@@ -38,14 +35,9 @@ pub trait Finished {
         ["True north found in", "No azimuth from"]
     }
 
-    /// Lines and tables beyond those that every method has.
-    fn parts(&self, _outcome: &Outcome) -> Vec<ReportPart> {
-        Vec::new()
-    }
-
     /// Figures of the page. The truth is for errors alone; `body` holds the rows that were analysed, where
     /// there are any.
-    fn figures(&self, _outcome: &Outcome, _truth: &Truth, _body: Option<&Body>) -> Vec<ReportPart> {
+    fn figures(&self, _outcome: &Outcome, _truth: &Truth, _body: Option<&Body>) -> Vec<Figure> {
         Vec::new()
     }
 
@@ -72,7 +64,7 @@ pub enum Source {
 }
 
 /// The result of any method on a recording or on a simulated run, as its JSON object has it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Outcome {
     /// Version of the object, [`SCHEMA`].
     pub schema: u32,
@@ -112,9 +104,12 @@ pub struct Outcome {
     /// What an azimuth rests on; only of methods that give one.
     #[serde(flatten)]
     pub fit: Option<FitDetails>,
-    /// What the method adds.
-    #[serde(flatten, serialize_with = "keys")]
-    pub details: Box<dyn Details>,
+    /// What the method adds: further keys.
+    #[serde(flatten)]
+    pub details: Keys,
+    /// Lines and tables of the report beyond those that every method has.
+    #[serde(skip)]
+    pub parts: Vec<ReportPart>,
     /// What only a simulated run has.
     #[serde(flatten)]
     pub run: Option<RunDetails>,
@@ -123,7 +118,7 @@ pub struct Outcome {
 }
 
 /// What an azimuth rests on.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct FitDetails {
     /// The 1σ parts of σ, °; null where there is no fit.
     pub budget: Option<BudgetDetails>,
@@ -140,30 +135,6 @@ pub struct FitDetails {
     /// What was left out, and why.
     pub excluded: Vec<Excluded>,
 }
-
-/// What a method adds to an outcome: keys of its object, of which only the method itself knows the type.
-pub trait Details: fmt::Debug + Any {
-    /// The keys and their values.
-    ///
-    /// # Errors
-    /// A value that JSON does not have.
-    fn keys(&self) -> serde_json::Result<Value>;
-}
-
-impl<T: Serialize + fmt::Debug + 'static> Details for T {
-    fn keys(&self) -> serde_json::Result<Value> {
-        serde_json::to_value(self)
-    }
-}
-
-#[expect(clippy::borrowed_box, reason = "the field as it stands comes in")]
-fn keys<S: Serializer>(details: &Box<dyn Details>, serializer: S) -> Result<S::Ok, S::Error> {
-    details.keys().map_err(S::Error::custom)?.serialize(serializer)
-}
-
-/// No details of an alignment: an azimuth that is kept without one, or a session that did not end.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct NoDetails {}
 
 /// The 1σ parts of σ, serialised in degrees under the names of their sources.
 #[derive(Clone, Copy, Debug)]
@@ -184,48 +155,16 @@ impl Serialize for BudgetDetails {
 }
 
 /// A dwell, turns, or part of a stop that took no part.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Excluded {
-    /// Number of the dwell, from one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dwell: Option<usize>,
-    /// Stage angle of the dwell, °.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stage_deg: Option<f64>,
-    /// When it began, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from_s: Option<f64>,
-    /// When it ended, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub to_s: Option<f64>,
-    /// Sense of the turns.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sense: Option<String>,
-    /// Speed of the turns, turns a second.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub speed_hz: Option<f64>,
-    /// How many turns.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub turns: Option<u32>,
-    /// Number of the stop, from one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stop: Option<usize>,
+    /// What it is.
+    #[serde(flatten)]
+    pub place: Keys,
+    /// The beginning of the sentence that the reason ends, with what it is.
+    #[serde(skip)]
+    pub words: String,
     /// Why it took no part.
     pub reason: String,
-}
-
-impl Excluded {
-    /// What was left out, in words.
-    fn place(&self) -> String {
-        let Self { dwell, stage_deg, from_s, to_s, sense, speed_hz, turns, stop, .. } = self;
-        if let (Some(dwell), Some(stage), Some(from), Some(to)) = (dwell, stage_deg, from_s, to_s) {
-            return format!("dwell {dwell}, {stage:.2}°, {from:.1}…{to:.1} s: ");
-        }
-        if let (Some(sense), Some(speed), Some(turns)) = (sense, speed_hz, turns) {
-            return format!("{turns} turn(s) {sense} at {speed:.5} Hz: ");
-        }
-        stop.map_or_else(String::new, |stop| format!("at stop {stop}, "))
-    }
 }
 
 impl FitDetails {
@@ -236,10 +175,7 @@ impl FitDetails {
             budget: budget.copied().map(BudgetDetails),
             dominant: budget.and_then(Budget::dominant).map(|source| source.to_string()),
             positions,
-            earth_rate_ratio: None,
-            earth_rate_ratio_sigma: None,
-            model: Vec::new(),
-            excluded: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -247,32 +183,15 @@ impl FitDetails {
 impl Outcome {
     /// An outcome of a method, with nothing found yet.
     #[must_use]
-    pub fn new(method: &'static str, details: impl Details + 'static) -> Self {
-        Self {
-            schema: SCHEMA,
-            source: None,
-            method,
-            status: "refused",
-            reason: None,
-            remedy: "",
-            azimuth_deg: None,
-            sigma_deg: None,
-            error_deg: None,
-            limit_deg: None,
-            pitch_deg: None,
-            roll_deg: None,
-            seconds: 0.0,
-            fit: None,
-            details: Box::new(details),
-            run: None,
-            assumed: Vec::new(),
-        }
+    pub fn new(method: &'static str, details: Keys, parts: Vec<ReportPart>) -> Self {
+        Self { schema: SCHEMA, method, status: "refused", details, parts, ..Self::default() }
     }
 
     /// The outcome of a session that was not given its end.
     #[must_use]
     pub fn unfinished(method: &'static str) -> Self {
-        Self::new(method, NoDetails {}).settled(Some("the session did not end".to_owned()))
+        let this = Self::new(method, Keys::default(), Vec::new());
+        this.settled(Some("the session did not end".to_owned()))
     }
 
     /// The outcome with the verdict of an alignment; `truth_deg` is for its error alone.
@@ -297,12 +216,6 @@ impl Outcome {
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
 
-    /// What the method added, where it is of this type.
-    #[must_use]
-    pub fn details<D: 'static>(&self) -> Option<&D> {
-        (&*self.details as &dyn Any).downcast_ref()
-    }
-
     /// Whether there is a result.
     #[must_use]
     pub fn is_ok(&self) -> bool {
@@ -316,15 +229,15 @@ pub fn report(
     name: &str,
     outcome: &Outcome,
     finished: &dyn Finished,
-    figures: Vec<ReportPart>,
+    figures: Vec<Figure>,
 ) -> Report {
     let mut parts = vec![headline(outcome).into()];
-    parts.extend(finished.parts(outcome));
+    parts.extend(outcome.parts.iter().cloned());
     let budget = outcome.fit.as_ref().and_then(|fit| fit.budget.as_ref());
     parts.extend(budget.map(budget_table).map(ReportPart::from));
     parts.push(assumed(outcome).into());
-    parts.extend(outcome.run.iter().flat_map(RunDetails::parts));
-    parts.extend(figures);
+    parts.extend(outcome.run.iter().flat_map(|run| run.parts.iter().cloned()));
+    parts.extend(figures.into_iter().map(ReportPart::from));
     let [found, refused] = finished.titles();
     Report::new(format!("{} {name}", if outcome.is_ok() { found } else { refused }), parts)
 }
@@ -383,8 +296,8 @@ fn of_fit(lines: &mut Lines, fit: &FitDetails) {
     if !fit.model.is_empty() {
         lines.add("model", fit.model.join(", "));
     }
-    for excluded in &fit.excluded {
-        lines.add("left out", format!("{}{}", excluded.place(), excluded.reason));
+    for Excluded { words, reason, .. } in &fit.excluded {
+        lines.add("left out", format!("{words}{reason}"));
     }
 }
 
@@ -415,10 +328,15 @@ fn remedy(source: Part) -> &'static str {
     }
 }
 
+/// Biases of the gyros forward, right and down, and their 1σ, °/h, in words with so many decimal places.
+pub(crate) fn of_biases([biases, sigmas]: [[f64; 3]; 2], places: usize) -> String {
+    let both = biases.iter().zip(sigmas);
+    let each = both.map(|(bias, sigma)| format!("{bias:+.places$} ± {sigma:.places$}"));
+    format!("{} °/h forward, right, down", each.collect::<Vec<_>>().join(", "))
+}
+
 fn assumed(outcome: &Outcome) -> Lines {
-    let mut lines = Lines::default();
-    if !outcome.assumed.is_empty() {
-        lines.add("assumed", outcome.assumed.join("; "));
-    }
+    let (mut lines, all) = (Lines::default(), &outcome.assumed);
+    lines.add_found("assumed", (!all.is_empty()).then(|| all.join("; ")));
     lines
 }

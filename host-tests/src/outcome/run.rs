@@ -5,10 +5,11 @@ use std::time::Duration;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::remembered::Remembered;
-use orientation::attitude::Realigned;
+use orientation::attitude::{Realigned, Report};
 use orientation::navigation::Progress;
 use serde::Serialize;
 
+use super::keys::Keys;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
@@ -17,203 +18,156 @@ use crate::report::{self, Figure, Lines, Part, Series, Style};
 /// What only a simulated run has.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunDetails {
-    /// Simulated time from power-on to the end, s.
-    pub simulated_seconds: f64,
-    /// What went wrong on the board, counted.
-    pub health: HealthDetails,
-    /// Stored axis misalignments that the board used; of a turntable.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub recalled: Option<Vec<RecalledDetails>>,
-    /// Whether the gyro stands vertical at the end, to keep the azimuth; of two frames.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stored: Option<bool>,
-    /// True angle between its axis and the vertical then, °; of two frames.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub truth_off_vertical_deg: Option<f64>,
-    /// What was kept after the alignment, where anything was.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub kept: Option<KeptDetails>,
-    /// Samples a second.
+    /// Further keys of the outcome.
+    #[serde(flatten)]
+    keys: Keys,
+    /// Lines of the report, and figures of what was kept over time.
     #[serde(skip)]
-    rate_hz: f64,
-    /// Time that the run took on this machine, s.
+    pub(super) parts: Vec<Part>,
+    /// What was kept at last, where anything was.
     #[serde(skip)]
-    wall_s: f64,
-    /// Error of what was kept over time.
-    #[serde(skip)]
-    figures: Vec<Figure>,
+    pub(super) kept: Option<Point>,
 }
 
-/// What went wrong on the board, counted.
-#[derive(Clone, Debug, Serialize)]
-pub struct HealthDetails {
-    /// Counts of the board itself.
-    #[serde(flatten)]
-    pub counts: Health,
-    /// Accesses that a data sheet forbids, in words.
-    pub violations: Vec<String>,
+/// What only the run of a single platform has.
+#[derive(Clone, Debug)]
+pub enum OfPlatform {
+    /// Nothing.
+    Nothing,
+    /// Of a turntable: the stored axis misalignments that its board used.
+    Recalled(Vec<Remembered>),
+    /// Of two frames: how the gyro stands at the end, to keep the azimuth.
+    Stored {
+        /// Whether it stands vertical.
+        is_vertical: bool,
+        /// True angle between its axis and the vertical then, °.
+        off_deg: f64,
+    },
+}
+
+impl OfPlatform {
+    fn add(&self, keys: Keys) -> Keys {
+        match self {
+            Self::Nothing => keys,
+            Self::Recalled(found) => {
+                keys.with("recalled", found.iter().map(recalled).collect::<Vec<_>>())
+            }
+            Self::Stored { is_vertical, off_deg } => {
+                keys.with("stored", is_vertical).with("truth_off_vertical_deg", off_deg)
+            }
+        }
+    }
 }
 
 /// A stored axis misalignment.
-#[derive(Clone, Debug, Serialize)]
-pub struct RecalledDetails {
-    /// Angle between the sensitive axis and the platform's plane, °.
-    pub coupling_deg: f64,
-    /// Speed of the turn at which it was found, turns a second.
-    pub speed_hz: f64,
-    /// Day on which it was found.
-    pub date: String,
-    /// Temperature at which it was found, °C.
-    pub temperature_c: f32,
-    /// In words.
-    #[serde(skip)]
-    words: String,
-}
-
-impl From<&Remembered> for RecalledDetails {
-    fn from(found: &Remembered) -> Self {
-        Self {
-            coupling_deg: found.angle,
-            speed_hz: found.rate / 360.0,
-            date: found.day.to_string(),
-            temperature_c: found.temperature,
-            words: found.to_string(),
-        }
-    }
-}
-
-/// What was kept at last, and how well on the way.
-#[derive(Clone, Debug, Serialize)]
-pub struct KeptDetails {
-    /// For how long the azimuth was kept, s.
-    pub seconds: f64,
-    /// Azimuth of body x, °; null where it was lost, or never known.
-    pub azimuth_deg: Option<f64>,
-    /// 1σ of the azimuth, °.
-    pub sigma_deg: Option<f64>,
-    /// Error of the azimuth, °.
-    pub error_deg: Option<f64>,
-    /// The greatest error on the way, over its σ of the moment.
-    pub greatest_sigmas: Option<f64>,
-    /// Pitch, °.
-    pub pitch_deg: f64,
-    /// Roll, °.
-    pub roll_deg: f64,
-    /// 1σ of either, °.
-    pub level_sigma_deg: f64,
-    /// Errors of pitch and roll, °.
-    pub level_error_deg: [f64; 2],
-    /// RMS errors of pitch and roll since an azimuth was kept, °.
-    pub level_rms_deg: [f64; 2],
-    /// What the keeper was about.
-    pub state: String,
-    /// How often a later azimuth agreed with what was kept.
-    pub realigned: usize,
+fn recalled(found: &Remembered) -> Keys {
+    Keys::default()
+        .with("coupling_deg", found.angle)
+        .with("speed_hz", found.rate / 360.0)
+        .with("date", found.day.to_string())
+        .with("temperature_c", found.temperature)
 }
 
 impl RunDetails {
-    /// The details of a run with samples at `rate_hz` that took `wall` here.
+    /// What a finished run of so many samples a second was like, which took so long on this machine.
     #[must_use]
-    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration) -> Self {
+    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration, beside: &OfPlatform) -> Self {
+        let kept = run.kept.last().copied();
+        let health =
+            Keys::default().with_all(Some(&run.health)).with("violations", &run.violations);
+        let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
+        let board = board(run, rate_hz, wall.as_secs_f64(), beside);
+        let lines = kept.iter().map(|last| in_words(run, last)).chain([board]).map(Part::from);
         Self {
-            simulated_seconds: run.seconds,
-            health: HealthDetails { counts: run.health, violations: run.violations.clone() },
-            recalled: None,
-            stored: None,
-            truth_off_vertical_deg: None,
-            kept: KeptDetails::of(run),
-            rate_hz,
-            wall_s: wall.as_secs_f64(),
-            figures: figures(&run.kept),
+            keys: beside.add(keys).with_found("kept", kept.map(|last| of_kept(run, &last))),
+            parts: lines.chain(figures(&run.kept).into_iter().map(Part::from)).collect(),
+            kept,
         }
-    }
-
-    /// The lines about the run, then the figures of what was kept.
-    pub(super) fn parts(&self) -> Vec<Part> {
-        let kept = self.kept.as_ref().map(KeptDetails::lines);
-        let lines = kept.into_iter().chain([self.lines()]).map(Part::from);
-        lines.chain(self.figures.iter().cloned().map(Part::from)).collect()
-    }
-
-    fn lines(&self) -> Lines {
-        let mut lines = Lines::new("The simulated board");
-        for found in self.recalled.iter().flatten() {
-            lines.add("recalled", &found.words);
-        }
-        let (seconds, rate, wall) = (self.simulated_seconds, self.rate_hz, self.wall_s);
-        let ratio = seconds / wall;
-        let text =
-            format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
-        lines.add("simulated", text);
-        let Health { samples, missing, late, overflowed, lost, restarts, .. } = &self.health.counts;
-        let text =
-            format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
-        lines.add("samples", text);
-        let [lost, restarts]: [u32; 2] =
-            [lost, restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
-        lines.add("devices", format!("{lost} readings lost, {restarts} restarts"));
-        for violation in &self.health.violations {
-            lines.add("FORBIDDEN", violation);
-        }
-        if let Some((is_stored, off)) = self.stored.zip(self.truth_off_vertical_deg) {
-            let what = if is_stored { "vertical, to store the azimuth" } else { "not stored" };
-            lines.add("gyro", format!("{what}: truly {off:.4}° off the base's vertical"));
-        }
-        lines
     }
 }
 
-impl KeptDetails {
-    /// What a run kept; `None` where it kept nothing.
-    fn of<R>(run: &Run<R>) -> Option<Self> {
-        let (kept, last) = (&run.kept, run.kept.last()?);
-        let errors = last.azimuth_error();
-        let greatest = kept.with_azimuth().map(|(_, [error, sigma])| error.abs() / sigma);
-        let fused = |event: &Event| {
-            matches!(event, Event::Navigation(Progress::HandedOver(_, Realigned::Fused { .. })))
-        };
-        Some(Self {
-            seconds: last.report.seconds,
-            azimuth_deg: last.report.azimuth.map(|azimuth| degrees(azimuth.angle)),
-            sigma_deg: errors.map(|[_, sigma]| degrees(sigma)),
-            error_deg: errors.map(|[error, _]| degrees(error)),
-            greatest_sigmas: greatest.reduce(f64::max),
-            pitch_deg: degrees(last.report.pitch),
-            roll_deg: degrees(last.report.roll),
-            level_sigma_deg: degrees(last.report.level_sigma),
-            level_error_deg: last.level_error().map(degrees),
-            level_rms_deg: level_rms(kept).map(degrees),
-            state: last.report.state.to_string(),
-            realigned: run.events.iter().filter(|(_, event)| fused(event)).count(),
-        })
-    }
-
-    fn lines(&self) -> Lines {
-        let mut lines = Lines::new(&format!("Kept for {:.0} s", self.seconds));
-        match (self.azimuth_deg, self.sigma_deg, self.error_deg) {
-            (Some(azimuth), Some(sigma), Some(error)) => {
-                lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
-                let (sigmas, greatest) = (error / sigma, self.greatest_sigmas.unwrap_or(0.0));
-                let text =
-                    format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way");
-                lines.add("its error", text);
-            }
-            _ => lines.add("azimuth of body x", "not known any more"),
+/// How the board did.
+fn board<R>(run: &Run<R>, rate: f64, wall: f64, beside: &OfPlatform) -> Lines {
+    let (mut lines, seconds) = (Lines::new("The simulated board"), run.seconds);
+    if let OfPlatform::Recalled(found) = beside {
+        for found in found {
+            lines.add("recalled", found.to_string());
         }
-        let [pitch, roll] = [self.pitch_deg, self.roll_deg].map(|angle| positive_zero(angle, 5e-4));
-        let sigma = self.level_sigma_deg;
-        lines.add("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"));
-        let [pitch, roll] = self.level_rms_deg;
-        lines.add("their errors", format!("{pitch:.3}°, {roll:.3}° RMS on the way"));
-        lines.add("state", &self.state);
-        if self.realigned > 0 {
-            lines.add("realigned", format!("{} time(s)", self.realigned));
-        }
-        lines
     }
+    let ratio = seconds / wall;
+    let text = format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
+    lines.add("simulated", text);
+    let Health { samples, missing, late, overflowed, lost, restarts, .. } = &run.health;
+    let text = format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
+    lines.add("samples", text);
+    let [lost, restarts]: [u32; 2] =
+        [lost, restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
+    lines.add("devices", format!("{lost} readings lost, {restarts} restarts"));
+    for violation in &run.violations {
+        lines.add("FORBIDDEN", violation);
+    }
+    if let OfPlatform::Stored { is_vertical, off_deg } = beside {
+        let what = if *is_vertical { "vertical, to store the azimuth" } else { "not stored" };
+        lines.add("gyro", format!("{what}: truly {off_deg:.4}° off the base's vertical"));
+    }
+    lines
 }
 
-/// RMS of the errors of pitch and roll while an azimuth was kept, rad.
+/// What was kept at last, and how well on the way.
+fn of_kept<R>(run: &Run<R>, last: &Point) -> Keys {
+    let azimuth = last.azimuth_deg();
+    let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
+    Keys::default()
+        .with("seconds", seconds)
+        .with("azimuth_deg", azimuth.map(|[azimuth, ..]| azimuth))
+        .with("sigma_deg", azimuth.map(|[_, sigma, _]| sigma))
+        .with("error_deg", azimuth.map(|[.., error]| error))
+        .with("greatest_sigmas", greatest_sigmas(&run.kept))
+        .with("pitch_deg", degrees(pitch))
+        .with("roll_deg", degrees(roll))
+        .with("level_sigma_deg", degrees(level_sigma))
+        .with("level_error_deg", last.level_error().map(degrees))
+        .with("level_rms_deg", level_rms(&run.kept).map(degrees))
+        .with("state", last.report.state.to_string())
+        .with("realigned", realigned(run))
+}
+
+/// What was kept at last, in words.
+fn in_words<R>(run: &Run<R>, last: &Point) -> Lines {
+    let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
+    let mut lines = Lines::new(&format!("Kept for {seconds:.0} s"));
+    if let Some([azimuth, sigma, error]) = last.azimuth_deg() {
+        lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
+        let (sigmas, greatest) = (error / sigma, greatest_sigmas(&run.kept).unwrap_or(0.0));
+        let text = format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way");
+        lines.add("its error", text);
+    } else {
+        lines.add("azimuth of body x", "not known any more");
+    }
+    let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(degrees(angle), 5e-4));
+    let sigma = degrees(level_sigma);
+    lines.add("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"));
+    let [pitch, roll] = level_rms(&run.kept).map(degrees);
+    lines.add("their errors", format!("{pitch:.3}°, {roll:.3}° RMS on the way"));
+    lines.add("state", last.report.state.to_string());
+    let times = Some(realigned(run)).filter(|times| *times > 0);
+    lines.add_found("realigned", times.map(|times| format!("{times} time(s)")));
+    lines
+}
+
+/// The greatest error of the azimuth on the way, over its σ of the moment.
+fn greatest_sigmas(kept: &Kept) -> Option<f64> {
+    kept.with_azimuth().map(|(_, [error, sigma])| error.abs() / sigma).reduce(f64::max)
+}
+
+/// How often a later azimuth agreed with what was kept.
+fn realigned<R>(run: &Run<R>) -> usize {
+    let fused = |event: &Event| {
+        matches!(event, Event::Navigation(Progress::HandedOver(_, Realigned::Fused { .. })))
+    };
+    run.events.iter().filter(|(_, event)| fused(event)).count()
+}
+
 fn level_rms(kept: &Kept) -> [f64; 2] {
     let (mut squares, mut count) = ([0.0; 2], 0.0_f64);
     for (point, _) in kept.with_azimuth() {

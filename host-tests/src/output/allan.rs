@@ -4,12 +4,13 @@ mod page;
 
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::units::DEGREE_PER_HOUR;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::degrees_per_hour;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
 use crate::outcome::SCHEMA;
+use crate::outcome::keys::Keys;
 use crate::planning::Suggestion;
 use crate::recording::Gap;
 use crate::report::{Lines, Report};
@@ -56,6 +57,19 @@ fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
 }
 
 impl Coefficient {
+    /// Adds the coefficient, with its 1σ or what it is at most.
+    fn add(&self, keys: Keys) -> Keys {
+        let key = self.key;
+        match self.estimate {
+            Estimate::Found { value, sigma } => {
+                keys.with(key, value).with(&format!("{key}_sigma"), sigma)
+            }
+            Estimate::NotObservable { at_most } => {
+                keys.with(key, ()).with(&format!("{key}_at_most"), at_most)
+            }
+        }
+    }
+
     /// The value with its unit, or that there is none.
     fn text(&self) -> String {
         let unit = self.unit;
@@ -127,44 +141,38 @@ impl Shown<'_> {
 
     /// The analysis as one JSON object.
     #[must_use]
-    pub fn object(&self) -> Value {
+    pub fn object(&self) -> Keys {
         let reason = self.analysis.as_ref().err().map(ToString::to_string);
-        let mut object = Map::new();
-        let mut set =
-            |values: Value| object.extend(values.as_object().cloned().unwrap_or_default());
         let status = if reason.is_none() { "ok" } else { "refused" };
-        set(json!({ "schema": SCHEMA, "file": self.name, "status": status }));
-        if let Some(reason) = reason {
-            set(json!({ "reason": reason }));
-        }
-        let (rest, schedule) = (self.rest, self.schedule.map(|suggestion| suggestion.0));
-        let gaps = rest.spacing.gaps.iter();
+        let rest = self.rest;
         let gap =
             |gap: &Gap| json!({"line": gap.line, "from_s": gap.from_s, "seconds": gap.seconds});
-        set(json!({
-            "column": rest.column,
-            "samples": rest.rates.len(),
-            "rate_hz": 1.0 / rest.spacing.period_s,
-            "gaps": gaps.map(gap).collect::<Value>(),
-            "notes": self.notes(),
-        }));
-        if let Ok(analysis) = self.analysis {
-            set(deviations(&analysis.points));
-            for coefficient in coefficients(&analysis.fit) {
-                set(entries(&coefficient));
-            }
-            let comparison = self.comparison.as_ref();
-            set(json!({
-                "chi_square": analysis.fit.chi_square,
-                "fit_degrees": analysis.fit.degrees,
-                "streaming_samples_s": comparison.map(|both| both.streaming),
-                "batch_samples_s": comparison.map(|both| both.batch),
-                "streaming_difference": comparison.map(|both| both.difference),
-            }));
-        }
-        let angles = "at the equator; times sec φ elsewhere";
-        set(json!({ "schedule": schedule, "schedule_angles": angles }));
-        object.into()
+        Keys::default()
+            .with("schema", SCHEMA)
+            .with("file", self.name)
+            .with("status", status)
+            .with_found("reason", reason)
+            .with("column", rest.column)
+            .with("samples", rest.rates.len())
+            .with("rate_hz", 1.0 / rest.spacing.period_s)
+            .with("gaps", rest.spacing.gaps.iter().map(gap).collect::<Value>())
+            .with("notes", self.notes())
+            .with_all(self.analysis.as_ref().ok().map(|analysis| self.found(analysis)).as_ref())
+            .with("schedule", self.schedule.map(|suggestion| suggestion.0))
+            .with("schedule_angles", "at the equator; times sec φ elsewhere")
+    }
+
+    /// The Allan deviations and what was fitted to them.
+    fn found(&self, analysis: &Analysis) -> Keys {
+        let comparison = self.comparison.as_ref();
+        let coefficients = coefficients(&analysis.fit).into_iter();
+        coefficients
+            .fold(deviations(&analysis.points), |keys, it| it.add(keys))
+            .with("chi_square", analysis.fit.chi_square)
+            .with("fit_degrees", analysis.fit.degrees)
+            .with("streaming_samples_s", comparison.map(|both| both.streaming))
+            .with("batch_samples_s", comparison.map(|both| both.batch))
+            .with("streaming_difference", comparison.map(|both| both.difference))
     }
 }
 
@@ -197,25 +205,13 @@ fn speed(lines: &mut Lines, comparison: &Comparison) {
 }
 
 /// The curve as arrays.
-fn deviations(points: &[Confident]) -> Value {
-    let column = |of: fn(&Confident) -> f64| points.iter().map(of).collect::<Value>();
-    json!({
-        "tau_s": column(|point| point.seconds),
-        "adev_deg_h": column(|point| degrees_per_hour(point.deviation)),
-        "lower": column(|point| degrees_per_hour(point.limits[0])),
-        "upper": column(|point| degrees_per_hour(point.limits[1])),
-        "terms": points.iter().map(|point| point.terms).collect::<Value>(),
-        "degrees_of_freedom": column(|point| point.degrees),
-    })
-}
-
-/// A coefficient with its deviation, or nothing with what it does not exceed.
-fn entries(coefficient: &Coefficient) -> Value {
-    let key = coefficient.key;
-    match coefficient.estimate {
-        Estimate::Found { value, sigma } => json!({ key: value, (format!("{key}_sigma")): sigma }),
-        Estimate::NotObservable { at_most } => {
-            json!({ key: null, (format!("{key}_at_most")): at_most })
-        }
-    }
+fn deviations(points: &[Confident]) -> Keys {
+    let column = |of: fn(&Confident) -> f64| points.iter().map(of).collect::<Vec<_>>();
+    Keys::default()
+        .with("tau_s", column(|point| point.seconds))
+        .with("adev_deg_h", column(|point| degrees_per_hour(point.deviation)))
+        .with("lower", column(|point| degrees_per_hour(point.limits[0])))
+        .with("upper", column(|point| degrees_per_hour(point.limits[1])))
+        .with("terms", points.iter().map(|point| point.terms).collect::<Vec<_>>())
+        .with("degrees_of_freedom", column(|point| point.degrees))
 }

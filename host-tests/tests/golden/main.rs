@@ -323,7 +323,7 @@ fn every_method_answers_some_kinds_by_its_name_with_listed_keys_and_says_why_it_
             let outcome = finished.outcome(&truth);
             assert_eq!(outcome.method, method.name, "{name}");
             assert!(!outcome.assumed.is_empty() && outcome.seconds > 0.0, "{name}");
-            assert!(!finished.parts(&outcome).is_empty(), "{name} is shown to people, too");
+            assert!(!outcome.parts.is_empty(), "{name} is shown to people, too");
             let mut found = BTreeSet::new();
             keys(&serde_json::to_value(&outcome).expect("it is an object"), &mut found);
             let unlisted: Vec<_> = found.difference(&listed).collect();

@@ -16,7 +16,7 @@ use simulated::vehicle::{Place, VehicleScenario};
 use host::instrument::recorder::{self, Recorded, Samples};
 use host::instrument::{Run, SpinRun, Trial};
 use host::methods::asked::{Asked, REQUIRED_SIGMA};
-use host::methods::spin::{Known, follow};
+use host::methods::spin::follow;
 use host::methods::{rotating, spin, stepwise, stops};
 use host::outcome::Finished;
 use host::recording::{self, Body, Header, Truth};
@@ -83,7 +83,7 @@ fn compare_stage<C: Recorded>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, 
     let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(reported_of_stage(&again), reported_of_stage(&of.replay));
-    assert_eq!(again.setting, of.replay.setting);
+    assert_eq!(again.session.setting(), of.replay.session.setting());
 }
 
 fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
@@ -153,13 +153,14 @@ fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
 
 /// What the command line tells of a flight.
 fn of_spin(scenario: &SpinScenario, run: &SpinRun, assumed: &[String]) -> spin::Replay {
-    let (setting, assumed) = (scenario.setting(), assumed.to_vec());
-    let known = Known { setting, required_sigma: REQUIRED_SIGMA, assumed };
     let ended = run.run.events.iter().find_map(|(_, event)| match event {
         Event::Alignment(Progress::Roll(roll::Progress::Ended(_))) => Some(event.to_string()),
         _ => None,
     });
-    spin::Replay { ended, ..follow(&run.samples, known) }
+    spin::Replay {
+        ended,
+        ..follow(&run.samples, scenario.setting(), REQUIRED_SIGMA, assumed.to_vec())
+    }
 }
 
 /// A circle of eight positions, the first again, four seconds each.

@@ -17,7 +17,7 @@ const HANDED: f64 = 20.0;
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
     /// with --realign 1800; 0 with --fault, and where an accuracy is asked for).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds::<0, 14_400>)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0))]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
     #[arg(long)]

@@ -27,7 +27,7 @@ use self::options::Common;
 use super::faults::{self, FaultChoice};
 use super::files::{self, Written};
 use super::stated::{self, Stated};
-use super::{Answer, Shown};
+use super::{Answer, Failure, Shown};
 
 /// What is run.
 #[derive(Args)]
@@ -54,9 +54,6 @@ enum Carrier {
 
 /// A platform that is run as its options say.
 trait Simulated {
-    /// What every platform takes.
-    fn common(&self) -> &Common;
-
     /// What cannot go together, beyond what the parser of the arguments refuses.
     ///
     /// # Errors
@@ -98,9 +95,9 @@ impl RunOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self, stated: &Stated) -> Result<(), String> {
-        let (platform, options) = self.platform.of();
-        match options.common().fault {
+    fn check(&self, stated: &Stated) -> Result<(), String> {
+        let (platform, common, options) = self.platform.of();
+        match common.fault {
             Some(FaultChoice::List) => {
                 let beside = stated.beside(&["fault", "json"]);
                 return beside.map_or(Ok(()), |option| {
@@ -111,7 +108,7 @@ impl RunOptions {
             None => {}
         }
         options.check(stated)?;
-        let Common { record, report, .. } = options.common();
+        let Common { record, report, .. } = common;
         let record = files::written("--record", "the recording", record.as_ref());
         let report = files::written("--report", "the page", report.as_ref());
         let files: Vec<_> = [record].into_iter().chain(options.files()).chain([report]).collect();
@@ -120,28 +117,29 @@ impl RunOptions {
 }
 
 impl Carrier {
-    /// The platform as the catalogue of faults names it, and its options.
-    fn of(&self) -> (Platform, &dyn Simulated) {
+    /// The platform as the catalogue of faults names it, what every platform takes, and the platform's own options.
+    fn of(&self) -> (Platform, &Common, &dyn Simulated) {
         match self {
-            Self::Stage(options) => (Platform::Stage, &**options),
-            Self::TwoFrame(options) => (Platform::TwoFrame, &**options),
-            Self::Turntable(options) => (Platform::Turntable, &**options),
-            Self::Vehicle(options) => (Platform::Vehicle, &**options),
-            Self::Spin(options) => (Platform::Spin, options),
+            Self::Stage(options) => (Platform::Stage, &options.base.common, &**options),
+            Self::TwoFrame(options) => (Platform::TwoFrame, &options.base.common, &**options),
+            Self::Turntable(options) => (Platform::Turntable, &options.common, &**options),
+            Self::Vehicle(options) => (Platform::Vehicle, &options.common, &**options),
+            Self::Spin(options) => (Platform::Spin, &options.common, options),
         }
     }
 }
 
 /// Runs the board and reports what came of it.
-pub fn run(options: &RunOptions, as_json: bool) -> Result<Answer, String> {
-    let (platform, options) = options.platform.of();
-    let Common { seed, fault, report, .. } = options.common();
+pub fn run(options: &RunOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
+    options.check(stated).map_err(Failure::misuse)?;
+    let (platform, common, options) = options.platform.of();
+    let Common { seed, fault, report, .. } = common;
     let fault = match fault {
-        Some(FaultChoice::List) => return faults::list(platform, as_json),
+        Some(FaultChoice::List) => return Ok(faults::list(platform, as_json)?),
         Some(FaultChoice::One(fault)) => Some(*fault),
         None => None,
     };
-    options.common().open()?;
+    common.open()?;
     let Ran { name, finished, truth, details, body, written } = options.run(fault)?;
     let outcome = finished.outcome(&truth).of_run(*seed, details);
     let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };

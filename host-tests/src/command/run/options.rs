@@ -1,16 +1,17 @@
 //! Options that several platforms share.
 
 use std::fs::OpenOptions;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use drivers::ads1262::configuration::DataRate;
 use host::instrument::recorder::{self, Recorded, Samples};
 use host::unwritten;
 use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
-use crate::command::seed;
+use crate::command::{named, seed};
 
 /// What every platform takes.
 #[derive(Args, Clone, Debug)]
@@ -73,8 +74,8 @@ pub struct Place {
     #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
     azimuth: f64,
     /// The gyro (fog).
-    #[arg(long, value_enum)]
-    pub gyro: Option<Gyro>,
+    #[arg(long, value_parser = named(&GYROS))]
+    pub gyro: Option<GyroClass>,
     /// Samples of the gyro a second: a data rate of its converter (400; of a vehicle 100).
     #[arg(long, value_name = "HERTZ", value_parser = rate)]
     pub rate: Option<f64>,
@@ -87,7 +88,7 @@ impl Place {
         Scenario {
             latitude_deg: self.latitude,
             azimuth_deg: self.azimuth.rem_euclid(360.0),
-            gyro: self.gyro.map_or(usual.gyro, Into::into),
+            gyro: self.gyro.unwrap_or(usual.gyro),
             sample_rate_hz: self.rate.unwrap_or(usual.sample_rate_hz),
             ..usual
         }
@@ -105,29 +106,22 @@ pub struct Inclination {
     pub roll: f64,
 }
 
-/// A class of gyros.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Gyro {
-    /// Fibre-optic: N 0.001 °/√h, B 0.007 °/h.
-    Fog,
-    /// Fibre-optic, lower grade: N 0.02 °/√h, B 0.1 °/h.
-    FogCoarse,
-    /// The best micromechanical: N 0.036 °/√h, B 0.3 °/h.
-    MemsFine,
-    /// Micromechanical, tactical grade: N 0.15 °/√h, B 0.5 °/h.
-    Mems,
-}
-
-impl From<Gyro> for GyroClass {
-    fn from(gyro: Gyro) -> Self {
-        match gyro {
-            Gyro::Fog => Self::FIBRE_OPTIC,
-            Gyro::FogCoarse => Self::FIBRE_OPTIC_COARSE,
-            Gyro::MemsFine => Self::MICROMECHANICAL_FINE,
-            Gyro::Mems => Self::MICROMECHANICAL,
-        }
-    }
-}
+/// The classes of gyros.
+static GYROS: [(GyroClass, [&str; 2]); 4] = [
+    (GyroClass::FIBRE_OPTIC, ["fog", "Fibre-optic: N 0.001 °/√h, B 0.007 °/h"]),
+    (
+        GyroClass::FIBRE_OPTIC_COARSE,
+        ["fog-coarse", "Fibre-optic, lower grade: N 0.02 °/√h, B 0.1 °/h"],
+    ),
+    (
+        GyroClass::MICROMECHANICAL_FINE,
+        ["mems-fine", "The best micromechanical: N 0.036 °/√h, B 0.3 °/h"],
+    ),
+    (
+        GyroClass::MICROMECHANICAL,
+        ["mems", "Micromechanical, tactical grade: N 0.15 °/√h, B 0.5 °/h"],
+    ),
+];
 
 fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
     let limit = f64::from(LIMIT);
@@ -145,21 +139,18 @@ fn rate(text: &str) -> Result<f64, String> {
     rate.ok_or_else(|| format!("not one of the converter's rates: {known}"))
 }
 
-/// A number from `least` to `most` of what the words name.
-///
-/// # Errors
-/// Anything else, in words.
-pub fn number(text: &str, least: f64, most: f64, what: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (least..=most).contains(&number) => Ok(number),
-        _ => Err(format!("not {what} from {least} to {most}")),
+/// A parser of a number in a range, of what the words name.
+pub fn number(
+    range: RangeInclusive<f64>,
+    what: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
+        Ok(number) if range.contains(&number) => Ok(number),
+        _ => Err(format!("not {what} from {} to {}", range.start(), range.end())),
     }
 }
 
-/// A time from `LEAST` to `MOST` s.
-///
-/// # Errors
-/// Anything else, in words.
-pub fn seconds<const LEAST: u32, const MOST: u32>(text: &str) -> Result<f64, String> {
-    number(text, LEAST.into(), MOST.into(), "a number of seconds")
+/// A parser of a time in a range, s.
+pub fn seconds(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    number(range, "a number of seconds")
 }

@@ -3,44 +3,30 @@
 use clap::Args;
 use host::instrument::{SpinRun, Trial};
 use host::methods::asked::REQUIRED_SIGMA;
-use host::methods::spin::{Known, Replay, follow};
-use host::outcome::run::RunDetails;
+use host::methods::spin::{Replay, follow};
+use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::{GIVEN, Truth};
 use orientation::roll::Progress;
 use simulated::fault::Fault;
 use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
-use super::options::{Common, number};
+use super::options::{Common, number, seconds};
 use super::{Ran, Simulated, Terminal};
 
 /// What is asked of a flight.
 #[derive(Args, Clone, Debug)]
 pub struct SpinOptions {
     #[command(flatten)]
-    common: Common,
+    pub(super) common: Common,
     /// Seconds for which the roll is followed (2).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=60.0))]
     flight_seconds: Option<f64>,
     /// Turns a second (100).
-    #[arg(long, value_name = "TURNS", value_parser = turns)]
+    #[arg(long, value_name = "TURNS", value_parser = number(20.0..=105.0, "a number of turns a second"))]
     turns_per_second: Option<f64>,
 }
 
-/// A time of flight, s.
-fn seconds(text: &str) -> Result<f64, String> {
-    number(text, 0.5, 60.0, "a number of seconds")
-}
-
-/// A spin within what the gyro measures, turns a second.
-fn turns(text: &str) -> Result<f64, String> {
-    number(text, 20.0, 105.0, "a number of turns a second")
-}
-
 impl Simulated for SpinOptions {
-    fn common(&self) -> &Common {
-        &self.common
-    }
-
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let usual = SpinScenario::default();
         let scenario = SpinScenario {
@@ -55,14 +41,13 @@ impl Simulated for SpinOptions {
         let written = self.common.write(&scenario, &flown, &flown.samples);
         let SpinRun { run, samples, rolls_rad, .. } = flown;
         let assumed = vec![GIVEN.to_owned()];
-        let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
         let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());
-        let replay = Replay { ended, ..follow(&samples, known) };
+        let replay = follow(&samples, scenario.setting(), REQUIRED_SIGMA, assumed);
         Ok(Ran {
             name: "the simulated flight",
-            finished: Box::new(replay),
+            finished: Box::new(Replay { ended, ..replay }),
             truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
-            details: RunDetails::of(&run, SAMPLE_RATE, wall),
+            details: RunDetails::of(&run, SAMPLE_RATE, wall, &OfPlatform::Nothing),
             body: None,
             written,
         })

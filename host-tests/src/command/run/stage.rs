@@ -1,13 +1,18 @@
 //! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
 
+use std::time::Duration;
+
 use clap::Args;
 use firmware::event::Event;
+use host::instrument::recorder::Recorded;
 use host::instrument::{FramesRun, Run, Trial};
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
-use host::outcome::run::RunDetails;
+use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::Truth;
+use orientation::alignment::stepwise::setting::Half;
+use orientation::signal::Sample;
 use simulated::fault::Fault;
 use simulated::mount::FramesScenario;
 use simulated::scenario::{Aim, Scenario};
@@ -17,13 +22,13 @@ use super::options::{Common, Inclination, Place, number, seconds};
 use super::{Ran, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
-use crate::command::{Half, sigma, whole};
+use crate::command::{HALVES, named, sigma, whole};
 
 /// What is asked of a stage.
 #[derive(Args, Clone, Debug)]
 pub struct StageOptions {
     #[command(flatten)]
-    base: BaseOptions,
+    pub(super) base: BaseOptions,
     /// Positions on the full circle (24), to the first of which it comes once more at the end.
     #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"])]
     positions: Option<u64>,
@@ -33,7 +38,7 @@ pub struct StageOptions {
 #[derive(Args, Clone, Debug)]
 pub struct FramesOptions {
     #[command(flatten)]
-    base: BaseOptions,
+    pub(super) base: BaseOptions,
     /// How often the four headings are visited (6).
     #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"])]
     passes: Option<u64>,
@@ -41,36 +46,36 @@ pub struct FramesOptions {
 
 /// What a stage and two frames share: a base that stands or sways, and a plan of positions.
 #[derive(Args, Clone, Debug)]
-struct BaseOptions {
+pub(super) struct BaseOptions {
     #[command(flatten)]
-    common: Common,
+    pub(super) common: Common,
     #[command(flatten)]
     place: Place,
     #[command(flatten)]
     inclination: Inclination,
     /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
     /// --sigma the time allowed.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds::<60, 36_000>)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
     seconds: Option<f64>,
     /// Goes on until this standard deviation is reached, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", value_parser = wanted)]
     sigma: Option<f64>,
     /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds::<60, 36_000>)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
     survey: Option<f64>,
     /// The half of the circle in which the board is given that the azimuth lies: two positions need it.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = named(&HALVES))]
     half: Option<Half>,
     /// Seconds at each position (10).
-    #[arg(long, value_name = "SECONDS", value_parser = dwell, conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=600.0), conflicts_with_all = ["seconds", "sigma"])]
     dwell: Option<f64>,
     #[command(flatten)]
     keeping: KeepingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
-    #[arg(long, value_name = "DEGREES", value_parser = sway)]
+    #[arg(long, value_name = "DEGREES", value_parser = number(0.0..=2.0, "an amplitude in degrees"))]
     sway: Option<f64>,
     /// Frequency of the sway in hertz.
-    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = sway_hertz, requires = "sway")]
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway")]
     sway_hertz: f64,
     /// Lets the base sway without a coarse IMU on it.
     #[arg(long, requires = "sway")]
@@ -79,18 +84,6 @@ struct BaseOptions {
 
 fn wanted(text: &str) -> Result<f64, String> {
     sigma(text).map(f64::to_degrees)
-}
-
-fn dwell(text: &str) -> Result<f64, String> {
-    number(text, 0.5, 600.0, "a number of seconds")
-}
-
-fn sway(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 2.0, "an amplitude in degrees")
-}
-
-fn sway_hertz(text: &str) -> Result<f64, String> {
-    number(text, 0.05, 5.0, "a frequency in hertz")
 }
 
 /// Time allowed for an accuracy where none is stated, s.
@@ -126,7 +119,7 @@ impl BaseOptions {
             roll_deg: self.inclination.roll,
             aim: self.aim(),
             survey_s: self.survey.unwrap_or(0.0),
-            half: self.half.map(Into::into),
+            half: self.half,
             dwell_s: self.dwell.unwrap_or(usual.dwell_s),
             sway_deg: self.sway.unwrap_or(0.0),
             sway_hz: self.sway_hertz,
@@ -134,6 +127,21 @@ impl BaseOptions {
             hold,
             ..usual
         }
+    }
+
+    /// Runs a board, and writes the recording; `shown` gets the time, too, that it took on this machine.
+    fn run<C: Recorded<Sample = Sample>>(
+        &self,
+        carrier: &C,
+        fault: Option<Fault>,
+        shown: impl FnOnce(C::Run, Duration) -> Ran,
+    ) -> Result<Ran, String> {
+        let mut wanted = self.common.wanted();
+        let (run, wall) = Terminal::watching("positions", |watch| {
+            Trial::of(carrier).fault(fault).record(&mut wanted).watch(watch).run()
+        })?;
+        let written = self.common.write(carrier, &run, &wanted.taken);
+        Ok(Ran { written, ..shown(run, wall) })
     }
 
     /// What keeping needs, and what it takes the place of.
@@ -167,10 +175,6 @@ impl StageOptions {
 }
 
 impl Simulated for StageOptions {
-    fn common(&self) -> &Common {
-        &self.base.common
-    }
-
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let scenario = self.scenario();
         // A stage keeps its azimuth by the coarse gyros alone.
@@ -180,13 +184,10 @@ impl Simulated for StageOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let mut wanted = self.base.common.wanted();
-        let (run, wall) = Terminal::watching("positions", |watch| {
-            Trial::of(&scenario).fault(fault).record(&mut wanted).watch(watch).run()
-        })?;
-        let written = self.base.common.write(&scenario, &run, &wanted.taken);
-        let details = RunDetails::of(&run, scenario.sample_rate_hz, wall);
-        Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
+        self.base.run(&scenario, fault, |run, wall| {
+            let details = RunDetails::of(&run, scenario.sample_rate_hz, wall, &OfPlatform::Nothing);
+            ran("the simulated run", run, details, &scenario)
+        })
     }
 }
 
@@ -202,10 +203,6 @@ impl FramesOptions {
 }
 
 impl Simulated for FramesOptions {
-    fn common(&self) -> &Common {
-        &self.base.common
-    }
-
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let scenario = self.scenario();
         self.base.check(stated, (&scenario.base, scenario.alignment_seconds()), &ALIGNING)
@@ -213,18 +210,14 @@ impl Simulated for FramesOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let mut wanted = self.base.common.wanted();
-        let (run, wall) = Terminal::watching("positions", |watch| {
-            Trial::of(&scenario).fault(fault).record(&mut wanted).watch(watch).run()
-        })?;
-        let written = self.base.common.write(&scenario, &run, &wanted.taken);
-        let FramesRun { run, axis: [forward, right, down] } = run;
-        let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
-        let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
-        details.stored = Some(stored);
-        details.truth_off_vertical_deg = Some(degrees(forward.hypot(right).atan2(down)));
-        let ran = ran("the simulated run on two frames", run, details, &scenario.base);
-        Ok(Ran { written, ..ran })
+        self.base.run(&scenario, fault, |FramesRun { run, axis: [forward, right, down] }, wall| {
+            let beside = OfPlatform::Stored {
+                is_vertical: run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))),
+                off_deg: degrees(forward.hypot(right).atan2(down)),
+            };
+            let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &beside);
+            ran("the simulated run on two frames", run, details, &scenario.base)
+        })
     }
 }
 

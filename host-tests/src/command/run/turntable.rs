@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
-use firmware::remembered::Remembered;
 use firmware::storage::{FlashStore, Today};
 use host::instrument::recorder::{Samples, turning_rows};
-use host::instrument::{Carrier as _, Run, Trial, TurntablePlan, TurntableRun, flash_file};
+use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun, flash_file};
 use host::methods::rotating::Replay;
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
-use host::outcome::run::RunDetails;
+use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::{Body, GIVEN, Truth};
 use simulated::fault::Fault;
 use simulated::flash::Flash;
@@ -30,7 +29,7 @@ use crate::command::whole;
 #[derive(Args, Clone, Debug)]
 pub struct TurntableOptions {
     #[command(flatten)]
-    common: Common,
+    pub(super) common: Common,
     #[command(flatten)]
     place: Place,
     #[command(flatten)]
@@ -141,10 +140,6 @@ impl TurntableOptions {
 }
 
 impl Simulated for TurntableOptions {
-    fn common(&self) -> &Common {
-        &self.common
-    }
-
     /// The file of the flash, and the one in which it is written first.
     fn files(&self) -> Vec<Option<Written>> {
         let beside = self.flash.as_deref().map(flash_file::beside);
@@ -183,8 +178,12 @@ impl Simulated for TurntableOptions {
         let recorded = self.common.write(&scenario, &run, &recorder.taken);
         let written = self.put_away(store).and(recorded);
         let TurntableRun { run, .. } = run;
-        let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
-        details.recalled = Some(recalled(&run).map(Into::into).collect());
+        let recalled = run.events.iter().filter_map(|(_, event)| match event {
+            Event::Recalled(misalignment) => Some(*misalignment),
+            _ => None,
+        });
+        let beside = OfPlatform::Recalled(recalled.collect());
+        let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &beside);
         let azimuth_deg = run.azimuth_deg(scenario.base.azimuth_deg);
         let is_aligned = run.replay.conclusion().is_some();
         let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
@@ -199,12 +198,4 @@ impl Simulated for TurntableOptions {
             written,
         })
     }
-}
-
-/// The stored axis misalignments that the board used.
-fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
-    run.events.iter().filter_map(|(_, event)| match event {
-        Event::Recalled(misalignment) => Some(misalignment),
-        _ => None,
-    })
 }

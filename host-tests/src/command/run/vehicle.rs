@@ -1,17 +1,14 @@
 //! `meridian run vehicle`: the board in a vehicle that goes from stop to stop.
 
 use clap::Args;
-use firmware::ports::Recorder;
 use host::instrument::Trial;
-use host::instrument::recorder::Samples;
-use host::methods::stops::{Method, Replay, Watched};
+use host::methods::stops::{Method, Replay};
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
-use host::outcome::run::RunDetails;
+use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::{GIVEN, Truth};
 use orientation::alignment::stops::session::Session;
-use orientation::signal::InertialSample;
 use simulated::fault::Fault;
 use simulated::hold::STOP_SECONDS;
 use simulated::scenario::Scenario;
@@ -27,17 +24,17 @@ use crate::command::whole;
 #[derive(Args, Clone, Debug)]
 pub struct VehicleOptions {
     #[command(flatten)]
-    common: Common,
+    pub(super) common: Common,
     #[command(flatten)]
     place: Place,
     /// How often the vehicle stops (3).
     #[arg(long, value_parser = whole::<2, 8>)]
     stops: Option<u64>,
     /// Seconds for which the board levels at each stop (60).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds::<10, 3600>)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
     stop_seconds: Option<f64>,
     /// Seconds of driving from stop to stop (600).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds::<10, 3600>)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
     drive_seconds: Option<f64>,
     /// The board is not given how far it has come.
     #[arg(long)]
@@ -62,24 +59,7 @@ impl VehicleOptions {
     }
 }
 
-/// What the session is seen to get: the stop criteria on the way, and the samples where they are recorded.
-struct Seen {
-    watched: Watched,
-    wanted: Samples<InertialSample>,
-}
-
-impl Recorder<InertialSample> for &mut Seen {
-    async fn record(&mut self, sample: &InertialSample) {
-        self.watched.push(sample);
-        (&mut self.wanted).record(sample).await;
-    }
-}
-
 impl Simulated for VehicleOptions {
-    fn common(&self) -> &Common {
-        &self.common
-    }
-
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let hold = self.scenario().base.hold;
         self.keeping.check(
@@ -94,12 +74,13 @@ impl Simulated for VehicleOptions {
         let scenario = self.scenario();
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
-        let watched = Watched::new(beside.map_err(|error| error.to_string())?);
-        let mut seen = Seen { watched, wanted: self.common.wanted() };
+        let beside = beside.map_err(|error| error.to_string())?;
+        let mut seen = Replay::begun(Method::Siap, beside, 0.0, vec![GIVEN.to_owned()]);
+        let mut wanted = self.common.wanted();
         let (run, wall) = Terminal::watching("stops", |watch| {
-            Trial::of(&scenario).fault(fault).record(&mut seen).watch(watch).run()
+            Trial::of(&scenario).fault(fault).record((&mut seen, &mut wanted)).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &run, &seen.wanted.taken);
+        let written = self.common.write(&scenario, &run, &wanted.taken);
         let azimuth_rad = run.azimuth_rad();
         let run = run.run;
         let truth = Truth {
@@ -107,14 +88,9 @@ impl Simulated for VehicleOptions {
             start_azimuth_deg: Some(scenario.base.azimuth_deg),
             ..Truth::default()
         };
-        let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
-        let replay = Replay {
-            method: Method::Siap,
-            session: run.replay,
-            zero_s: 0.0,
-            criteria: seen.watched.into_criteria(),
-            assumed: vec![GIVEN.to_owned()],
-        };
+        let details =
+            RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &OfPlatform::Nothing);
+        let replay = Replay { session: run.replay, ..seen };
         let is_aligned = replay.session.conclusion().is_some();
         let finished: Box<dyn Finished> =
             if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };

@@ -18,12 +18,11 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 use self::part::Part;
 use crate::assumptions;
 use crate::median::median;
-use crate::methods::asked::Asked;
+use crate::methods::asked::{Asked, or_assumed};
 use crate::methods::error::ReplayError;
 use crate::methods::limits::{limits, saturated};
 use crate::recording::period::period_s;
 use crate::recording::{self, Body, GIVEN, Given, Header, RotatingRow};
-use crate::setting::Described;
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -78,7 +77,8 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
         return again(given, rows, asked);
     }
-    let Described { mut site, mut assumed } = asked.describe(header, body)?;
+    let mut assumed = Vec::new();
+    let mut site = asked.describe(header, body, &mut assumed)?;
     let sensor = sensor(header, &mut assumed);
     // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
     let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);
@@ -87,8 +87,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
     let setting = Setting::new(site, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
-    let session = follow(setting, rows, 1.0 / rate);
-    let session = session.map_err(ReplayError::Procedure)?;
+    let session = follow(setting, rows, 1.0 / rate)?;
     assumed.extend(assumptions::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session, zero_s, assumed })
@@ -105,7 +104,7 @@ fn again(
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, procedure, ended } = given;
     asked.change(&mut setting.site);
-    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut session = Session::new(setting, procedure)?;
     for row in rows {
         let rate = recording::rate(row.rate_rad_s);
         session.feed(Input::Sample(&Sample { rate, ..sample(row, 0.0) }));
@@ -149,22 +148,16 @@ const ZERO_SIGMA_DEG: f64 = 0.15;
 
 /// 1σ of the encoder's zero, rad; no key states its harmonics.
 fn encoder_zero(header: &Header, assumed: &mut Vec<String>) -> f64 {
-    let sigma_deg = header.encoder_zero_sigma_deg.unwrap_or_else(|| {
-        assumed.push("encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned());
-        ZERO_SIGMA_DEG
-    });
-    sigma_deg.to_radians()
+    let words = || "encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned();
+    or_assumed(header.encoder_zero_sigma_deg, ZERO_SIGMA_DEG, assumed, words).to_radians()
 }
 
 /// The kind of sensor that the header names.
 fn sensor(header: &Header, assumed: &mut Vec<String>) -> Sensor {
-    match header.sensor {
-        Some(recording::Sensor::Met) => Sensor::MOLECULAR,
-        Some(recording::Sensor::Gyro) => Sensor::GYRO,
-        None => {
-            assumed.push("a gyro, not a molecular-electronic sensor".to_owned());
-            Sensor::GYRO
-        }
+    let words = || "a gyro, not a molecular-electronic sensor".to_owned();
+    match or_assumed(header.sensor, recording::Sensor::Gyro, assumed, words) {
+        recording::Sensor::Met => Sensor::MOLECULAR,
+        recording::Sensor::Gyro => Sensor::GYRO,
     }
 }
 

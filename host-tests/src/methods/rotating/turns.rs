@@ -62,20 +62,20 @@ pub fn phasors(rows: &[RotatingRow], signal: Signal<'_>) -> Vec<(f64, Complex<f6
 /// Samples in a second; zero of fewer than two rows.
 #[must_use]
 pub fn rate_hz(rows: &[RotatingRow]) -> f64 {
-    match [rows.first(), rows.last()] {
-        [Some(first), Some(last)] if last.time_s > first.time_s => {
-            (rows.len() - 1) as f64 / (last.time_s - first.time_s)
-        }
-        _ => 0.0,
-    }
+    in_a_second(rows, |_, _| (rows.len() - 1) as f64)
 }
 
 /// Mean frequency of the turn, Hz, clockwise positive; zero of fewer than two rows.
 #[must_use]
 pub fn turn_hz(rows: &[RotatingRow]) -> f64 {
+    in_a_second(rows, |first, last| (last.stage_rad - first.stage_rad) / TAU)
+}
+
+/// How much of something between the first row and the last comes to pass in a second; zero of fewer than two rows.
+fn in_a_second(rows: &[RotatingRow], of: impl Fn(&RotatingRow, &RotatingRow) -> f64) -> f64 {
     match [rows.first(), rows.last()] {
         [Some(first), Some(last)] if last.time_s > first.time_s => {
-            (last.stage_rad - first.stage_rad) / TAU / (last.time_s - first.time_s)
+            of(first, last) / (last.time_s - first.time_s)
         }
         _ => 0.0,
     }

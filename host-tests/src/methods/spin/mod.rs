@@ -16,7 +16,7 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use self::limit::{Noise, Turns};
 use self::track::Track;
-use crate::methods::asked::Asked;
+use crate::methods::asked::{Asked, or_assumed};
 use crate::methods::error::ReplayError;
 use crate::recording::period::Steps;
 use crate::recording::{Body, GIVEN, Given, Header, SpinRow};
@@ -102,7 +102,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let period_s = steps.ok_or(ReplayError::TooFewSamples(rows.len()))?.period_s(header.rate_hz);
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
-    let replay = follow(&samples, Known { setting, required_sigma, assumed });
+    let replay = follow(&samples, setting, required_sigma, assumed);
     Ok(Replay { stuck_gyro: stuck_gyro(rows), ..replay })
 }
 
@@ -112,7 +112,7 @@ fn again(given: &Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Repla
     let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds).collect();
     let ended = ended.map(|reason| Progress::Ended(reason).to_string());
     let assumed = vec![GIVEN.to_owned()];
-    Replay { ended, ..follow(&samples, Known { setting, required_sigma, assumed }) }
+    Replay { ended, ..follow(&samples, setting, required_sigma, assumed) }
 }
 
 /// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.
@@ -134,21 +134,15 @@ fn stuck_gyro(rows: &[SpinRow]) -> Option<String> {
     })
 }
 
-/// What is known of a body and asked for, beside its samples.
-#[derive(Clone, Debug)]
-pub struct Known {
-    /// The sample period and the gyro; the method is not looked at.
-    pub setting: Setting,
-    /// Greatest accepted standard deviation, rad.
-    pub required_sigma: f64,
-    /// What had to be assumed.
-    pub assumed: Vec<String>,
-}
-
-/// Follows samples by all methods.
+/// Follows samples by all methods, whatever the setting's; `required_sigma`, rad, is the greatest standard deviation
+/// that is accepted.
 #[must_use]
-pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
-    let Known { setting, required_sigma, assumed } = known;
+pub fn follow(
+    samples: &[SpinSample],
+    setting: Setting,
+    required_sigma: f64,
+    assumed: Vec<String>,
+) -> Replay {
     let turns = Turns::of(samples);
     let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk };
     let has_lift = !turns.lifts.is_empty();
@@ -179,23 +173,16 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
         },
         |n| n * DEGREE_PER_SQRT_HOUR,
     );
-    let scale_sigma = header.gyro_scale_sigma.unwrap_or_else(|| {
-        assumed.push(format!("gyro scale to {SCALE_SIGMA} (1σ)"));
-        SCALE_SIGMA
-    });
+    let scale = || format!("gyro scale to {SCALE_SIGMA} (1σ)");
+    let scale_sigma = or_assumed(header.gyro_scale_sigma, SCALE_SIGMA, &mut assumed, scale);
     assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
     assumed.push("forces and rates of the same moment".to_owned());
     assumed.push("signs of both accelerometers: with the other ones 180° away".to_owned());
     assumed.push(
         "no gyro error that follows the roll, and a scale that is steady for some turns".to_owned(),
     );
-    let bias_sigma = header.gyro_bias_deg_h.map_or_else(
-        || {
-            let field = usual.bias_sigma / DEGREE_PER_HOUR;
-            assumed.push(format!("gyro bias to {field:.0} °/h (1σ)"));
-            usual.bias_sigma
-        },
-        |bias| bias * DEGREE_PER_HOUR,
-    );
+    let bias = || format!("gyro bias to {:.0} °/h (1σ)", usual.bias_sigma / DEGREE_PER_HOUR);
+    let stated = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
+    let bias_sigma = or_assumed(stated, usual.bias_sigma, &mut assumed, bias);
     (Setting { angle_random_walk, scale_sigma, bias_sigma, ..usual }, assumed)
 }

@@ -28,7 +28,6 @@ use crate::assumptions;
 use crate::median::median;
 use crate::recording::period::period_s;
 use crate::recording::{self, Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
-use crate::setting::Described;
 
 /// Name on the command line of an alignment in positions.
 pub const STEPWISE: &str = "stepwise";
@@ -54,8 +53,6 @@ pub struct Replay {
     pub method: &'static str,
     /// The session, with its conclusion.
     pub session: Session,
-    /// The setting it ran in.
-    pub setting: Setting,
     /// What had to be assumed.
     pub assumed: Vec<String>,
 }
@@ -70,7 +67,7 @@ impl Replay {
     /// Whether the gyro's white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
-        self.setting.site.noise.is_white_known()
+        self.session.setting().site.noise.is_white_known()
             || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
     }
 }
@@ -85,24 +82,36 @@ pub fn replay(
     asked: &Asked,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
-    let stops = Stops::of(body)?;
-    if let (Stops::Samples(rows), Some(given)) =
-        (&stops, Given::of(header).map_err(ReplayError::Session)?)
-    {
-        return again(given, rows, asked, progress);
+    match body {
+        Body::Stage(rows) => match Given::of(header).map_err(ReplayError::Session)? {
+            Some(given) => again(given, rows, asked, progress),
+            None => followed(header, body, asked, |setting, criterion| {
+                stage(header, rows, setting, criterion, progress)
+            }),
+        },
+        Body::Dwells(rows) => followed(header, body, asked, |setting, criterion| {
+            dwells(rows, setting, criterion, progress)
+        }),
+        other => Err(ReplayError::Kind(other.kind())),
     }
-    let Described { site, mut assumed } = asked.describe(header, body)?;
+}
+
+/// Replays a recording with what its header and the user state, by a session that follows its rows.
+fn followed(
+    header: &Header,
+    body: &Body,
+    asked: &Asked,
+    session: impl FnOnce(Setting, Criterion) -> Result<Session, ReplayError>,
+) -> Result<Replay, ReplayError> {
+    let mut assumed = Vec::new();
+    let site = asked.describe(header, body, &mut assumed)?;
     let setting = Setting { half: asked.half, ..Setting::new(site) };
     assumed.extend(asked.half.map(|_| HALF.to_owned()));
-    let criterion = asked.criterion.unwrap_or_default();
-    let session = match stops {
-        Stops::Samples(rows) => stage(header, rows, setting, criterion, progress),
-        Stops::Averages(rows) => dwells(rows, setting, criterion, progress),
-    }?;
-    late::check_stage(&session).map_err(ReplayError::Late)?;
+    let session = session(setting, asked.criterion.unwrap_or_default())?;
+    late::check_stage(&session)?;
     assumed.extend(assumptions::of_stage(&session));
     assumed.extend(late::assumption(&session).filter(|_| body.kind() == Kind::Stage));
-    Ok(Replay { method: asked.method.unwrap_or(STEPWISE), session, setting, assumed })
+    Ok(Replay { method: asked.method.unwrap_or(STEPWISE), session, assumed })
 }
 
 /// Replays a run by giving its session what the board's was given. Elevations show a mount of two frames.
@@ -123,7 +132,7 @@ fn again(
     if let Some(survey) = &mut procedure.survey {
         survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
     }
-    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut session = Session::new(setting, procedure)?;
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     let given =
         |row: &StageRow| Sample { rate: recording::rate(row.rate_rad_s), ..sample(row, 0.0) };
@@ -131,28 +140,12 @@ fn again(
     let shown = if is_mounted { POSITIONS } else { name_of(&session) };
     let method = asked.method.unwrap_or(shown);
     let assumed = given_with(session.setting().half);
-    Ok(Replay { method, setting: *session.setting(), session, assumed })
+    Ok(Replay { method, session, assumed })
 }
 
 /// What an azimuth rests on where the board was given what it needs, and this half of the circle.
 pub(crate) fn given_with(half: Option<Half>) -> Vec<String> {
     [GIVEN].into_iter().chain(half.map(|_| HALF)).map(str::to_owned).collect()
-}
-
-/// The rows of a recording whose stage stops.
-enum Stops<'a> {
-    Samples(&'a [StageRow]),
-    Averages(&'a [DwellRow]),
-}
-
-impl<'a> Stops<'a> {
-    fn of(body: &'a Body) -> Result<Self, ReplayError> {
-        match body {
-            Body::Stage(rows) => Ok(Self::Samples(rows)),
-            Body::Dwells(rows) => Ok(Self::Averages(rows)),
-            other => Err(ReplayError::Kind(other.kind())),
-        }
-    }
 }
 
 fn stage(
@@ -171,10 +164,10 @@ fn stage(
     let still = still(rows);
     let positions = standstills(rows, sample_seconds, still)?;
     let ends = [&positions[0], &positions[positions.len() - 1]].map(|position| position.seconds);
-    late::check_gyro(rows, sample_seconds, ends).map_err(ReplayError::Late)?;
-    let followed = followed(&positions, sample_seconds, criterion)?;
-    let procedure = Procedure { still, ..followed };
-    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    late::check_gyro(rows, sample_seconds, ends)?;
+    let following = following(&positions, sample_seconds, criterion)?;
+    let procedure = Procedure { still, ..following };
+    let mut session = Session::new(setting, procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), 0.0);
     let shown = |row: &StageRow| saturated(limits, row.rate_rad_s, sample(row, begin));
@@ -183,7 +176,7 @@ fn stage(
 }
 
 /// The procedure that goes where a recording went.
-fn followed(
+fn following(
     positions: &[Position],
     sample_seconds: f64,
     criterion: Criterion,
@@ -304,8 +297,8 @@ fn dwells(
     let positions: Vec<Position> = rows.iter().map(position).collect();
     // No sample passes the filter; any rate at which the shortest dwell lets it settle will do.
     let shortest = positions.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min);
-    let procedure = followed(&positions, shortest / 100.0, criterion)?;
-    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let procedure = following(&positions, shortest / 100.0, criterion)?;
+    let mut session = Session::new(setting, procedure)?;
     let mut end = 0.0;
     for row in rows {
         let middle = row.mid_s.unwrap_or(end + 0.5 * row.seconds);

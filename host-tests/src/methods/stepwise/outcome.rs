@@ -10,32 +10,11 @@ use crate::cause;
 use crate::methods::asked::Asked;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
+use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{columns, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
-
-/// What an alignment at standstills adds.
-#[derive(Clone, Debug, Serialize)]
-pub struct StageDetails {
-    /// How the azimuth was found, as the command line names it.
-    pub criterion: String,
-    /// `free` where the Earth rate was estimated, `known` where it was taken from the latitude.
-    pub horizontal_earth_rate: Option<&'static str>,
-    /// N of the gyro, °/√h, that the fit was weighted by.
-    pub gyro_n_deg_sqrt_h: f64,
-    /// Where that comes from: `stated`, `estimated` or `surveyed`.
-    pub gyro_noise: &'static str,
-    /// Chi-square of the residuals.
-    pub chi_square: Option<f64>,
-    /// Degrees of freedom of chi-square.
-    pub degrees_of_freedom: Option<usize>,
-    /// The positions and what plain least squares makes of them; of method `positions`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub autocompensation: Option<Autocompensation>,
-    /// Every dwell in the order of time.
-    pub dwells: Vec<DwellDetails>,
-}
 
 /// A dwell, with what the fit leaves of it.
 #[derive(Clone, Debug, Serialize)]
@@ -92,37 +71,80 @@ impl Replay {
     fn excluded(&self, conclusion: &Conclusion) -> Vec<Excluded> {
         let dwells = self.session.dwells().iter().zip(&conclusion.disturbances).enumerate();
         let left_out = dwells.filter_map(|(index, (dwell, why))| {
-            why.map(|why| Excluded {
-                dwell: Some(index + 1),
-                stage_deg: Some(degrees(dwell.stage.rad())),
-                from_s: Some(dwell.start().max(0.0)),
-                to_s: Some(dwell.end()),
-                reason: why.to_string(),
-                ..Excluded::default()
-            })
+            let reason = why.as_ref()?.to_string();
+            let (number, stage) = (index + 1, degrees(dwell.stage.rad()));
+            let (from, to) = (dwell.start().max(0.0), dwell.end());
+            let place = Keys::default()
+                .with("dwell", number)
+                .with("stage_deg", stage)
+                .with("from_s", from)
+                .with("to_s", to);
+            let words = format!("dwell {number}, {stage:.2}°, {from:.1}…{to:.1} s: ");
+            Some(Excluded { place, words, reason })
         });
         left_out.collect()
     }
 
-    fn details(&self, conclusion: &Conclusion) -> StageDetails {
-        let fit = conclusion.fit.as_ref();
-        let gyro_noise = match (self.session.surveyed(), self.noise_is_known()) {
+    /// The positions and what plain least squares makes of them; of method `positions`.
+    fn autocompensation(&self, conclusion: &Conclusion) -> Option<Autocompensation> {
+        (self.method == POSITIONS).then(|| autocompensation(&self.session, conclusion))
+    }
+
+    /// Where the noise comes from that the fit was weighted by.
+    fn noise_source(&self) -> &'static str {
+        match (self.session.surveyed(), self.noise_is_known()) {
             (Some(_), _) => "surveyed",
             (None, true) => "stated",
             (None, false) => "estimated",
-        };
-        StageDetails {
-            criterion: self.criterion_name(),
-            horizontal_earth_rate: fit.map(earth_rate),
-            gyro_n_deg_sqrt_h: degrees(conclusion.angle_random_walk) * 60.0,
-            gyro_noise,
-            chi_square: fit.map(|fit| fit.chi_square),
-            degrees_of_freedom: fit.map(|fit| fit.degrees),
-            autocompensation: (self.method == POSITIONS)
-                .then(|| autocompensation(&self.session, conclusion)),
-            dwells: DwellDetails::all(&self.session, conclusion),
         }
     }
+
+    fn details(&self, conclusion: &Conclusion, dwells: &[DwellDetails]) -> Keys {
+        let fit = conclusion.fit.as_ref();
+        Keys::default()
+            .with("criterion", self.criterion_name())
+            .with("horizontal_earth_rate", fit.map(earth_rate))
+            .with("gyro_n_deg_sqrt_h", walk_deg_sqrt_h(conclusion))
+            .with("gyro_noise", self.noise_source())
+            .with("chi_square", fit.map(|fit| fit.chi_square))
+            .with("degrees_of_freedom", fit.map(|fit| fit.degrees))
+            .with_found("autocompensation", self.autocompensation(conclusion))
+            .with("dwells", dwells)
+    }
+
+    fn lines(&self, conclusion: &Conclusion) -> Lines {
+        let fit = conclusion.fit.as_ref();
+        let mut lines = Lines::new("Fit");
+        lines.add("criterion", self.criterion_name());
+        lines.add("Earth rate is", fit.map_or("not fitted", earth_rate));
+        let (noise, source) = (walk_deg_sqrt_h(conclusion), self.noise_source());
+        lines.add("gyro noise N", format!("{noise:.6} °/√h ({source})"));
+        let residuals =
+            |fit: &Fit| format!("χ² {:.1} for {} degrees of freedom", fit.chi_square, fit.degrees);
+        lines.add_found("residuals", fit.map(residuals));
+        self.autocompensation(conclusion).iter().for_each(|found| positions(&mut lines, found));
+        lines
+    }
+}
+
+/// N of the gyro, °/√h, that a fit was weighted by.
+fn walk_deg_sqrt_h(conclusion: &Conclusion) -> f64 {
+    degrees(conclusion.angle_random_walk) * 60.0
+}
+
+/// Every dwell in the order of time.
+fn table(dwells: &[DwellDetails]) -> Part {
+    Columns::of("Dwells", dwells)
+        .numbered("dwell")
+        .fixed("stage, °", 4, |dwell| dwell.stage_deg)
+        .fixed("from, s", 2, |dwell| dwell.from_s)
+        .fixed("for, s", 2, |dwell| dwell.seconds)
+        .fixed("rate, °/h", 5, |dwell| dwell.rate_deg_h)
+        .fixed("1σ, °/h", 5, |dwell| dwell.sigma_deg_h)
+        .found("residual, °/h", 5, |dwell| dwell.residual_deg_h)
+        .found("studentised", 2, |dwell| dwell.studentised)
+        .column("left out", |dwell| dwell.excluded.as_deref().unwrap_or_default())
+        .into()
 }
 
 /// How the Earth rate entered a fit.
@@ -138,6 +160,8 @@ impl Finished for Replay {
         let fit = conclusion.fit.as_ref();
         let seen = fit.filter(|fit| !fit.model.is_single_axis);
         let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
+        let details = DwellDetails::all(&self.session, conclusion);
+        let parts = vec![self.lines(conclusion).into(), table(&details)];
         let dwells = self.session.dwells().iter().zip(&conclusion.disturbances);
         let kept: Vec<&Dwell> =
             dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
@@ -154,41 +178,15 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(self.method, self.details(conclusion))
+            ..Outcome::new(self.method, self.details(conclusion, &details), parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Some(details) = outcome.details::<StageDetails>() else { return Vec::new() };
-        let mut lines = Lines::new("Fit");
-        lines.add("criterion", &details.criterion);
-        lines.add("Earth rate is", details.horizontal_earth_rate.unwrap_or("not fitted"));
-        let noise = details.gyro_n_deg_sqrt_h;
-        lines.add("gyro noise N", format!("{noise:.6} °/√h ({})", details.gyro_noise));
-        let residuals = details.chi_square.zip(details.degrees_of_freedom);
-        let words = |(chi, degrees)| format!("χ² {chi:.1} for {degrees} degrees of freedom");
-        lines.add_found("residuals", residuals.map(words));
-        details.autocompensation.iter().for_each(|found| positions(&mut lines, found));
-        let dwells = Columns::of("Dwells", &details.dwells)
-            .numbered("dwell")
-            .fixed("stage, °", 4, |dwell| dwell.stage_deg)
-            .fixed("from, s", 2, |dwell| dwell.from_s)
-            .fixed("for, s", 2, |dwell| dwell.seconds)
-            .fixed("rate, °/h", 5, |dwell| dwell.rate_deg_h)
-            .fixed("1σ, °/h", 5, |dwell| dwell.sigma_deg_h)
-            .found("residual, °/h", 5, |dwell| dwell.residual_deg_h)
-            .found("studentised", 2, |dwell| dwell.studentised)
-            .column("left out", |dwell| dwell.excluded.as_deref().unwrap_or_default());
-        vec![lines.into(), dwells.into()]
-    }
-
-    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let Some(details) = outcome.details::<StageDetails>() else { return Vec::new() };
-        if details.chi_square.is_none() {
-            return Vec::new();
-        }
-        vec![rates(details).into(), residuals(details).into()]
+    fn figures(&self, _: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Figure> {
+        let conclusion = self.session.conclusion().filter(|conclusion| conclusion.fit.is_some());
+        let dwells = conclusion.map(|conclusion| DwellDetails::all(&self.session, conclusion));
+        dwells.map_or_else(Vec::new, |dwells| vec![rates(&dwells), residuals(&dwells)])
     }
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
@@ -210,12 +208,12 @@ fn positions(lines: &mut Lines, found: &Autocompensation) {
 }
 
 /// The rates over the stage angle, with what the whole model of the fit makes of each.
-fn rates(details: &StageDetails) -> Figure {
+fn rates(dwells: &[DwellDetails]) -> Figure {
     let at = |dwell: &DwellDetails| (dwell.stage_deg, dwell.rate_deg_h);
     let fitted =
         |dwell: &DwellDetails| Some((dwell.stage_deg, dwell.rate_deg_h - dwell.residual_deg_h?));
     let (kept, left_out): (Vec<_>, Vec<_>) =
-        details.dwells.iter().partition(|dwell| dwell.excluded.is_none());
+        dwells.iter().partition(|dwell| dwell.excluded.is_none());
     let mut model: Vec<(f64, f64)> = kept.iter().filter_map(|dwell| fitted(dwell)).collect();
     model.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut series = vec![
@@ -229,8 +227,8 @@ fn rates(details: &StageDetails) -> Figure {
 }
 
 /// What the fit leaves of each dwell over time, with the 1σ that white noise gives the dwell.
-fn residuals(details: &StageDetails) -> Figure {
-    let points = details.dwells.iter().filter_map(|dwell| {
+fn residuals(dwells: &[DwellDetails]) -> Figure {
+    let points = dwells.iter().filter_map(|dwell| {
         let (residual, sigma) = (dwell.residual_deg_h?, dwell.sigma_deg_h);
         let middle = dwell.from_s + 0.5 * dwell.seconds;
         Some(Point::within(middle, residual, sigma))

@@ -32,24 +32,23 @@ pub struct Autocompensation {
 /// Looks at the dwells that took part in a conclusion.
 #[must_use]
 pub fn autocompensation(session: &Session, conclusion: &Conclusion) -> Autocompensation {
-    let (mut angles, mut visits): (Vec<f64>, Vec<usize>) = (Vec::new(), Vec::new());
+    let mut positions: Vec<(f64, usize)> = Vec::new();
     let kept =
         session.dwells().iter().zip(&conclusion.disturbances).filter(|(_, why)| why.is_none());
     for (dwell, _) in kept {
         let angle = dwell.stage.rad();
-        if let Some(index) =
-            angles.iter().position(|other| wrapped(angle - other + SAME) < 2.0 * SAME)
-        {
-            visits[index] += 1;
-        } else {
-            angles.push(angle);
-            visits.push(1);
+        let is_same = |other: f64| wrapped(angle - other + SAME) < 2.0 * SAME;
+        match positions.iter_mut().find(|(other, _)| is_same(*other)) {
+            Some((_, visits)) => *visits += 1,
+            None => positions.push((angle, 1)),
         }
     }
+    let (angles_deg, visits) =
+        positions.into_iter().map(|(angle, visits)| (degrees(angle), visits)).unzip();
     let shift = shift(session, conclusion);
     let found = conclusion.verdict.ok().zip(shift);
     Autocompensation {
-        angles_deg: angles.into_iter().map(degrees).collect(),
+        angles_deg,
         visits,
         plain_azimuth_deg: found.map(|(azimuth, shift)| degrees(wrapped(azimuth.angle + shift))),
         plain_off_sigmas: found.map(|(azimuth, shift)| shift / azimuth.sigma),

@@ -6,8 +6,7 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use crate::spectrum::transformed;
 
 /// Nuttall's window of four terms with a continuous first derivative: side lobes of −93 dB, which fall by 18 dB
 /// an octave (A. H. Nuttall 1981), so that a sway of degrees does not hide arcseconds.
@@ -64,12 +63,9 @@ impl Spectrum {
     /// Adds the spectrum of a stretch of samples.
     pub fn push(&mut self, signal: &[f64]) {
         let count = signal.len();
-        let mean = signal.iter().sum::<f64>() / count.max(1) as f64;
         let weights: Vec<f64> = (0..count).map(|index| weight(index, count)).collect();
         let power: f64 = weights.iter().map(|weight| weight * weight).sum();
-        let weighted = signal.iter().zip(&weights).map(|(x, weight)| (x - mean) * weight);
-        let mut buffer: Vec<Complex<f64>> = weighted.map(Complex::from).collect();
-        FftPlanner::new().plan_fft_forward(count).process(&mut buffer);
+        let buffer = transformed(signal, &weights);
         let line = |index: usize| {
             let frequency = index as f64 / (count as f64 * self.period_s);
             (frequency, buffer[index].norm_sqr() * self.period_s / power)

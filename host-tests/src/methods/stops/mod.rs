@@ -32,7 +32,6 @@ use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
 use crate::recording::period::{Steps, period_s};
 use crate::recording::{Body, GIVEN, Given, Header, ImuRow, Kind};
-use crate::setting::Described;
 
 /// How a vehicle's azimuth is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,10 +82,43 @@ pub struct Replay {
 }
 
 impl Replay {
+    /// A replay whose session has got no sample yet.
+    #[must_use]
+    pub fn begun(method: Method, session: Session, zero_s: f64, assumed: Vec<String>) -> Self {
+        Self { method, session, zero_s, criteria: Vec::new(), assumed }
+    }
+
+    /// Feeds a sample to the session, and keeps the stop criteria where they are new.
+    fn push(&mut self, sample: &InertialSample) {
+        self.session.feed(Input::Sample(sample));
+        if let Some((criteria, limits)) = self.session.criteria()
+            && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
+        {
+            self.criteria.push((sample.time.seconds(), criteria, limits));
+        }
+    }
+
+    /// The replay after all samples and their end.
+    fn fed(
+        mut self,
+        samples: impl Iterator<Item = InertialSample>,
+        end: Input<'_, InertialSample>,
+    ) -> Self {
+        samples.for_each(|sample| self.push(&sample));
+        self.session.feed(end);
+        self
+    }
+
     /// Whether the gyros' white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
         self.session.setting().site.noise.is_white_known()
+    }
+}
+
+impl Recorder<InertialSample> for &mut Replay {
+    async fn record(&mut self, sample: &InertialSample) {
+        self.push(sample);
     }
 }
 
@@ -127,13 +159,10 @@ fn again(
     asked.change(&mut setting.site);
     procedure.displacements = displacements(header, asked)?;
     let period_s = procedure.sample_seconds;
-    let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-    let mut watched = Watched::new(session);
-    samples::given(rows, period_s).for_each(|sample| watched.push(&sample));
-    let Watched { mut session, criteria } = watched;
-    session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
-    let assumed = vec![GIVEN.to_owned()];
-    Ok(Replay { method: Method::Siap, session, zero_s: 0.0, criteria, assumed })
+    let session = Session::new(setting, procedure)?;
+    let replay = Replay::begun(Method::Siap, session, 0.0, vec![GIVEN.to_owned()]);
+    let end = ended.as_ref().map_or(Input::End, Input::Failed);
+    Ok(replay.fed(samples::given(rows, period_s), end))
 }
 
 /// Refuses displacements that the forces on the way contradict, and states where they cannot.
@@ -200,7 +229,8 @@ fn follow(
     let displacements = displacements(header, asked)?;
     let mut substituted = Vec::new();
     let header = &grade::filled(header, &mut substituted);
-    let Described { mut site, mut assumed } = asked.describe(header, body)?;
+    let mut assumed = Vec::new();
+    let mut site = asked.describe(header, body, &mut assumed)?;
     assumed.append(&mut substituted);
     assumed.push(assumptions::AXES_OF_A_VEHICLE.to_owned());
     // Within what is accepted, the difference of a stated rate from the times is a scale error of every rotation.
@@ -208,13 +238,10 @@ fn follow(
     site.scale_sigma = site.scale_sigma.hypot(rate_error);
     let setting = setting(header, site, rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
-    let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-    let mut watched = Watched::new(session);
-    samples::samples(rows, period_s).for_each(|sample| watched.push(&sample));
-    let Watched { mut session, criteria } = watched;
-    session.feed(Input::End);
-    check_displacements(&session)?;
-    Ok(Replay { method, session, zero_s, criteria, assumed })
+    let replay = Replay::begun(method, Session::new(setting, procedure)?, zero_s, assumed);
+    let replay = replay.fed(samples::samples(rows, period_s), Input::End);
+    check_displacements(&replay.session)?;
+    Ok(replay)
 }
 
 /// N below which rates have no noise but rounding, rad/√s: 10⁻⁶ °/√h.
@@ -377,41 +404,4 @@ fn walk(site: &Site, white: Option<&White>, assumed: &mut Vec<String>) -> Result
         "gyro noise N {walk:.2e} °/√h as the recording shows it, which is more than the stated {stated:.2e}"
     ));
     Ok(shown)
-}
-
-/// A session, and how its stop criteria went.
-#[derive(Clone, Debug)]
-pub struct Watched {
-    session: Session,
-    criteria: Vec<(f64, Criteria, Limits)>,
-}
-
-impl Watched {
-    /// A session that has not begun.
-    #[must_use]
-    pub fn new(session: Session) -> Self {
-        Self { session, criteria: Vec::new() }
-    }
-
-    /// Gives it a sample.
-    pub fn push(&mut self, sample: &InertialSample) {
-        self.session.feed(Input::Sample(sample));
-        if let Some((criteria, limits)) = self.session.criteria()
-            && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
-        {
-            self.criteria.push((sample.time.seconds(), criteria, limits));
-        }
-    }
-
-    /// The criteria and what they are held to over the time, s.
-    #[must_use]
-    pub fn into_criteria(self) -> Vec<(f64, Criteria, Limits)> {
-        self.criteria
-    }
-}
-
-impl Recorder<InertialSample> for &mut Watched {
-    async fn record(&mut self, sample: &InertialSample) {
-        self.push(sample);
-    }
 }

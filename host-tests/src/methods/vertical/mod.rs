@@ -15,7 +15,7 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;
 
-use crate::methods::asked::Asked;
+use crate::methods::asked::{Asked, or_assumed};
 use crate::methods::error::ReplayError;
 use crate::methods::stops::{check_stuck, missing, samples};
 use crate::output::{azimuth_error, degrees};
@@ -80,21 +80,22 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let mut assumed = Vec::new();
     let latitude = latitude(header, asked, &mut assumed);
     let mut keeper = Keeper::new(&setting(header, latitude, period_s, &mut assumed));
-    let mut watched = Watched::new(keeper.report(), period_s);
+    let mut replay = Replay::begun(keeper.report(), assumed);
     for (sample, row) in samples::samples(&rows, period_s).zip(rows.iter()) {
         keeper.push(&sample);
-        watched.push(row.time_s, &keeper.report());
+        replay.push(row.time_s, &keeper.report(), period_s);
     }
-    Ok(watched.ended(assumed, asked.required_sigma()))
+    let seconds = replay.states.iter().map(|met| met.seconds).sum();
+    let refusal = refusal(&replay.last, asked.required_sigma());
+    Ok(Replay { seconds, refusal, ..replay })
 }
 
 /// The user's latitude, the header's, or the one that is assumed.
 fn latitude(header: &Header, asked: &Asked, assumed: &mut Vec<String>) -> Latitude {
     let stated = header.latitude_deg.and_then(Latitude::from_degrees);
-    asked.latitude.or(stated).unwrap_or_else(|| {
-        assumed.push(format!("latitude {LATITUDE_DEG}°: none is stated"));
-        Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!())
-    })
+    let usual = Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!());
+    let words = || format!("latitude {LATITUDE_DEG}°: none is stated");
+    or_assumed(asked.latitude.or(stated), usual, assumed, words)
 }
 
 /// What is known of the sensors: a coarse unit's, where the header does not say otherwise.
@@ -107,23 +108,18 @@ fn setting(
     let coarse = Setting::coarse(latitude, period_s);
     let gyros = coarse.gyros.map(|gyro| known(header, gyro));
     let [gyro, ..] = gyros;
-    if header.gyro_n_deg_sqrt_h.is_none() {
-        let walk = gyro.noise.angle_random_walk / DEGREE_PER_SQRT_HOUR;
-        assumed.push(format!("gyro noise of a coarse unit: N {walk:.2} °/√h"));
-    }
-    if header.gyro_bias_deg_h.is_none() {
-        let bias = gyro.bias_sigma / DEGREE_PER_HOUR;
-        assumed.push(format!("gyro biases of a coarse unit: {bias:.0} °/h"));
-    }
-    if header.gyro_scale_sigma.is_none() {
-        let percent = 100.0 * gyro.scale_sigma;
-        assumed.push(format!("gyro scale and axes of a coarse unit: {percent:.1} %"));
-    }
-    let force_bias_sigma = header.accelerometer_bias_m_s2.unwrap_or(coarse.force_bias_sigma);
-    if header.accelerometer_bias_m_s2.is_none() {
-        let bias = Short(force_bias_sigma);
-        assumed.push(format!("accelerometer biases of a coarse unit: {bias} m/s²"));
-    }
+    let walk = gyro.noise.angle_random_walk / DEGREE_PER_SQRT_HOUR;
+    let (bias, percent) = (gyro.bias_sigma / DEGREE_PER_HOUR, 100.0 * gyro.scale_sigma);
+    let of_gyros = [
+        (header.gyro_n_deg_sqrt_h, format!("gyro noise of a coarse unit: N {walk:.2} °/√h")),
+        (header.gyro_bias_deg_h, format!("gyro biases of a coarse unit: {bias:.0} °/h")),
+        (header.gyro_scale_sigma, format!("gyro scale and axes of a coarse unit: {percent:.1} %")),
+    ];
+    let unknown = of_gyros.into_iter().filter(|(stated, _)| stated.is_none());
+    assumed.extend(unknown.map(|(_, words)| words));
+    let usual = coarse.force_bias_sigma;
+    let words = || format!("accelerometer biases of a coarse unit: {} m/s²", Short(usual));
+    let force_bias_sigma = or_assumed(header.accelerometer_bias_m_s2, usual, assumed, words);
     Setting { gyros, force_bias_sigma, ..coarse }
 }
 
@@ -151,22 +147,16 @@ fn known_noise(header: &Header, assumed: GyroNoise) -> GyroNoise {
     }
 }
 
-/// What the keeper says, sample by sample.
-struct Watched {
-    moments: Vec<Moment>,
-    last: Report,
-    states: Vec<Met>,
-    turned: f64,
-    period_s: f64,
-}
-
-impl Watched {
-    fn new(first: Report, period_s: f64) -> Self {
-        Self { moments: Vec::new(), last: first, states: Vec::new(), turned: 0.0, period_s }
+impl Replay {
+    /// A replay of no sample yet.
+    fn begun(first: Report, assumed: Vec<String>) -> Self {
+        let (moments, states) = (Vec::new(), Vec::new());
+        Self { moments, last: first, states, turned: 0.0, seconds: 0.0, assumed, refusal: None }
     }
 
-    fn push(&mut self, time_s: f64, report: &Report) {
-        let seconds = self.moments.last().map_or(self.period_s, |before| time_s - before.time_s);
+    /// Adds what the keeper says after a sample.
+    fn push(&mut self, time_s: f64, report: &Report, period_s: f64) {
+        let seconds = self.moments.last().map_or(period_s, |before| time_s - before.time_s);
         self.meet(name(report.state.trust), seconds);
         if let Some(before) =
             self.moments.last().filter(|_| self.last.state.trust != Trust::Starting)
@@ -189,13 +179,6 @@ impl Watched {
             Some(met) => met.seconds += seconds,
             None => self.states.push(Met { state, seconds }),
         }
-    }
-
-    fn ended(self, assumed: Vec<String>, required_sigma: f64) -> Replay {
-        let Self { moments, last, states, turned, .. } = self;
-        let refusal = refusal(&last, required_sigma);
-        let seconds = states.iter().map(|met| met.seconds).sum();
-        Replay { moments, last, states, turned, seconds, assumed, refusal }
     }
 }
 

@@ -1,56 +1,42 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
 use orientation::attitude::quaternion::angles;
-use serde::Serialize;
 
 use crate::cause;
 use crate::methods::asked::Asked;
 use crate::methods::vertical::errors::{Errors, Off};
-use crate::methods::vertical::{Met, Moment, Replay};
-use crate::outcome::{Finished, Outcome};
+use crate::methods::vertical::{Moment, Replay};
+use crate::outcome::keys::Keys;
+use crate::outcome::{Finished, Outcome, of_biases};
 use crate::output::{degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
-/// What a kept level adds.
-#[derive(Clone, Debug, Serialize)]
-pub struct VerticalDetails {
-    /// Turned about the vertical since the first sample, clockwise from above, whole turns included, °.
-    pub turned_deg: f64,
-    /// The state at the end, in words.
-    pub state: String,
-    /// The states that were met, and for how long.
-    pub states: Vec<Met>,
-    /// Biases of the gyros forward, right, down, °/h.
-    pub bias_dph: [f64; 3],
-    /// 1σ of the biases, °/h.
-    pub bias_sigma_dph: [f64; 3],
-    /// Whether a bias is beyond five of the 1σ stated or assumed for it, which is not believed any more then.
-    pub bias_beyond_stated: bool,
-    /// The errors, where the recording carries a truth.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub errors: Option<Errors>,
-}
-
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (last, is_found) = (&self.last, self.refusal.is_none());
-        let details = VerticalDetails {
-            turned_deg: degrees(self.turned),
-            state: last.state.to_string(),
-            states: self.states.clone(),
-            bias_dph: last.biases.map(degrees_per_hour),
-            bias_sigma_dph: last.bias_sigmas.map(degrees_per_hour),
-            bias_beyond_stated: last.is_bias_beyond_stated,
-            errors: Errors::of(&self.moments, &truth.attitude),
-        };
+        let errors = Errors::of(&self.moments, &truth.attitude);
+        let biases = [last.biases, last.bias_sigmas].map(|each| each.map(degrees_per_hour));
+        let details = Keys::default()
+            .with("turned_deg", degrees(self.turned))
+            .with("state", last.state.to_string())
+            .with("states", &self.states)
+            .with("bias_dph", biases[0])
+            .with("bias_sigma_dph", biases[1])
+            .with("bias_beyond_stated", last.is_bias_beyond_stated)
+            .with_all(errors.as_ref());
+        let states = Columns::of("States that were met", &self.states)
+            .column("state", |met| met.state)
+            .fixed("time, s", 2, |met| met.seconds);
+        let lines = [Some(self.lines(biases)), errors.as_ref().map(of_errors)];
+        let parts = lines.into_iter().flatten().map(Part::from).chain([states.into()]).collect();
         Outcome {
             sigma_deg: is_found.then(|| degrees(last.level_sigma)),
             pitch_deg: is_found.then(|| degrees(last.pitch)),
             roll_deg: is_found.then(|| degrees(last.roll)),
             seconds: self.seconds,
             assumed: self.assumed.clone(),
-            ..Outcome::new("vertical", details)
+            ..Outcome::new("vertical", details, parts)
         }
         .settled(self.refusal.clone())
     }
@@ -59,24 +45,13 @@ impl Finished for Replay {
         ["Pitch and roll kept in", "No pitch and roll from"]
     }
 
-    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Some(details) = outcome.details::<VerticalDetails>() else { return Vec::new() };
-        let states = Columns::of("States that were met", &details.states)
-            .column("state", |met| met.state)
-            .fixed("time, s", 2, |met| met.seconds);
-        let errors = details.errors.as_ref().map(of_errors);
-        let lines = [Some(lines(outcome, details)), errors].into_iter().flatten().map(Part::from);
-        lines.chain([states.into()]).collect()
-    }
-
-    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let details = outcome.details::<VerticalDetails>();
-        let first = match details.and_then(|details| details.errors.as_ref()) {
+    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Figure> {
+        let mut page = match Errors::of(&self.moments, &truth.attitude) {
             Some(errors) => vec![inclination(&errors.off), heading(&errors.off)],
             None => vec![sigma(&self.moments)],
         };
-        let figures = first.into_iter().chain([level(&self.moments), biases(&self.moments)]);
-        figures.map(Part::from).collect()
+        page.extend([level(&self.moments), biases(&self.moments)]);
+        page
     }
 
     fn attitude(&self) -> Option<&[Moment]> {
@@ -88,24 +63,24 @@ impl Finished for Replay {
     }
 }
 
-fn lines(outcome: &Outcome, details: &VerticalDetails) -> Lines {
-    let mut lines = Lines::default();
-    let level = outcome.pitch_deg.zip(outcome.roll_deg).zip(outcome.sigma_deg);
-    if let Some(((pitch, roll), sigma)) = level {
-        let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
-        lines.add("pitch, roll", format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
+impl Replay {
+    fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
+        let (last, mut lines) = (&self.last, Lines::default());
+        if self.refusal.is_none() {
+            let [pitch, roll] = [last.pitch, last.roll].map(|it| positive_zero(degrees(it), 5e-5));
+            let sigma = degrees(last.level_sigma);
+            lines.add("pitch, roll", format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
+        }
+        let turned = positive_zero(degrees(self.turned), 5e-5);
+        lines.add("turned", format!("{turned:+.4}° about the vertical since the beginning"));
+        lines.add("gyro biases", of_biases(biases_dph, 1));
+        if last.is_bias_beyond_stated {
+            let beyond = "five of the 1σ stated or assumed, which are not believed any more";
+            lines.add("  beyond", beyond);
+        }
+        lines.add("state at the end", last.state.to_string());
+        lines
     }
-    let turned = positive_zero(details.turned_deg, 5e-5);
-    lines.add("turned", format!("{turned:+.4}° about the vertical since the beginning"));
-    let both = details.bias_dph.iter().zip(details.bias_sigma_dph);
-    let all: Vec<String> = both.map(|(bias, sigma)| format!("{bias:+.1} ± {sigma:.1}")).collect();
-    lines.add("gyro biases", format!("{} °/h forward, right, down", all.join(", ")));
-    if details.bias_beyond_stated {
-        let beyond = "five of the 1σ stated or assumed, which are not believed any more";
-        lines.add("  beyond", beyond);
-    }
-    lines.add("state at the end", &details.state);
-    lines
 }
 
 fn of_errors(errors: &Errors) -> Lines {

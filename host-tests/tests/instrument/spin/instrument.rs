@@ -4,7 +4,7 @@
 use firmware::event::Event;
 use host::instrument::{SpinRun, Trial};
 use host::methods::spin::errors::wrapped;
-use host::methods::spin::{Known, follow};
+use host::methods::spin::follow;
 use orientation::alignment;
 use orientation::roll::Progress::{Begun, Changed, Ended, Flown, LiftBack};
 use orientation::roll::{Condition, State};
@@ -73,9 +73,7 @@ fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
 fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
     let scenario = short();
     let run = flown(&scenario, None);
-    let known =
-        Known { setting: scenario.setting(), required_sigma: f64::INFINITY, assumed: Vec::new() };
-    let replay = follow(&run.samples, known);
+    let replay = follow(&run.samples, scenario.setting(), f64::INFINITY, Vec::new());
     let end = &replay.answer().end;
     let flight = run.run.replay.spin();
     assert_eq!(end.roll_rad.to_bits(), flight.roll().rad().to_bits());

@@ -1,6 +1,6 @@
 //! The defmt stream of a handmade image.
 
-use host::emulate::decode::{self, Decoder, Line};
+use host::emulate::decode::{self, Line};
 use host::emulate::sections::Memory;
 
 use super::handmade::{self, ABSOLUTE, PROGBITS};
@@ -36,14 +36,14 @@ fn a_stream_is_decoded_wherever_it_is_cut() {
     let table = decode::table(&image).expect("strings");
     let stream = [frame(), frame()].concat();
     for cut in 0..=stream.len() {
-        let mut decoder = Decoder::new(&table);
+        let mut decoder = table.new_stream_decoder();
         let mut lines = Vec::new();
         for part in [&stream[..cut], &stream[cut..]] {
             let keep = |line: &Line| {
                 lines.push(line.clone());
                 Ok(())
             };
-            decoder.take(part, keep).expect("whole frames");
+            decode::take(&mut *decoder, part, keep).expect("whole frames");
         }
         let line = Line {
             time: "1.500000".to_owned(),
@@ -59,7 +59,7 @@ fn bytes_that_are_no_frame_are_an_error() {
     let image = image_with_a_sentence();
     let table = decode::table(&image).expect("strings");
     let bytes = b"printed by something else";
-    assert!(Decoder::new(&table).take(bytes, |_| Ok(())).is_err());
+    assert!(decode::take(&mut *table.new_stream_decoder(), bytes, |_| Ok(())).is_err());
 }
 
 #[test]

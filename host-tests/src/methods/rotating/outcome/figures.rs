@@ -81,8 +81,7 @@ pub(crate) fn platform(parts: &[Part<'_>]) -> Figure {
 /// The phasor of each turn of each even part in the complex plane.
 pub(crate) fn plane(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {
-        let Turns { near } = Turns::of(part);
-        let points = near.into_iter().map(|(_, at)| (at.re, at.im));
+        let points = near(part).into_iter().map(|at| (at.re, at.im));
         Series::new(&part.to_string(), Style::Points, points)
     };
     let series = parts.iter().filter(|part| part.is_even).map(of);
@@ -110,21 +109,15 @@ pub(crate) fn residuals(turns: &[TurnDetails]) -> Figure {
 /// Distances from the middle, in the median of all, beyond which a turn would hide the others.
 const FAR: f64 = 20.0;
 
-/// Times and phasors of a part's turns, °/h.
-struct Turns {
-    near: Vec<(f64, Complex<f64>)>,
-}
-
-impl Turns {
-    fn of(part: &Part<'_>) -> Self {
-        let turns = phasors(part.rows, &|row| row.rate_rad_s).into_iter();
-        let all: Vec<_> = turns.map(|(time, at)| (time, at * degrees_per_hour(1.0))).collect();
-        let median_of = |of: &dyn Fn(Complex<f64>) -> f64| {
-            median(&mut all.iter().map(|(_, at)| of(*at)).collect::<Vec<_>>())
-        };
-        let middle = Complex::new(median_of(&|at| at.re), median_of(&|at| at.im));
-        let usual = median_of(&|at| (at - middle).norm());
-        let is_near = |(_, at): &(f64, Complex<f64>)| (at - middle).norm() <= FAR * usual;
-        Self { near: all.iter().copied().filter(is_near).collect() }
-    }
+/// Phasors of a part's turns, °/h, without those that lie far from the others.
+fn near(part: &Part<'_>) -> Vec<Complex<f64>> {
+    let turns = phasors(part.rows, &|row| row.rate_rad_s).into_iter();
+    let mut all: Vec<_> = turns.map(|(_, at)| at * degrees_per_hour(1.0)).collect();
+    let median_of = |of: &dyn Fn(Complex<f64>) -> f64| {
+        median(&mut all.iter().map(|at| of(*at)).collect::<Vec<_>>())
+    };
+    let middle = Complex::new(median_of(&|at| at.re), median_of(&|at| at.im));
+    let usual = median_of(&|at| (at - middle).norm());
+    all.retain(|at| (at - middle).norm() <= FAR * usual);
+    all
 }

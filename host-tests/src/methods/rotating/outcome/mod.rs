@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use orientation::alignment::rotating::average::Average;
 use orientation::alignment::rotating::conclusion::Conclusion;
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
-use orientation::alignment::rotating::solution::Fit;
+use orientation::alignment::rotating::solution::{Fit, Stages};
 use orientation::alignment::rotating::turn::{Stretch, Turn};
 use serde::Serialize;
 
@@ -15,87 +15,17 @@ use crate::cause;
 use crate::methods::asked::Asked;
 use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
+use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, RotatingRow, Truth};
-use crate::report::{Columns, Lines, Part};
-
-/// What an alignment on a turning platform adds.
-#[derive(Clone, Debug, Serialize)]
-pub struct RotatingDetails {
-    /// `gyro`, or `met` for a molecular-electronic sensor.
-    pub sensor: &'static str,
-    /// Cramér–Rao bound of a sensor whose gain, lag and g-sensitivity are known, °.
-    pub plain_limit_deg: Option<f64>,
-    /// Axis misalignment at the first speed; none where no rate-modulated turn showed it.
-    #[serde(flatten)]
-    pub misalignment: Option<MisalignmentDetails>,
-    /// Axis misalignment at each speed, in the order of the speeds.
-    pub axis_misalignments: Vec<MisalignmentDetails>,
-    /// Tilt of the platform's axis, °.
-    pub tilt_deg: Option<f64>,
-    /// Integrated g-sensitivity over the Earth rate at the slower speed, ρ; of a molecular-electronic sensor.
-    pub met_ratio: Option<f64>,
-    /// What the slower speed alone is off by for that, °; its 1σ where there is only one speed.
-    pub one_speed_bias_deg: Option<f64>,
-    /// The azimuth after each stage of compensation.
-    pub stages: Option<Stages>,
-    /// Averages of both senses at each speed.
-    pub stretches: Vec<StretchDetails>,
-    /// Every turn, in the order of its stretch.
-    pub turns: Vec<TurnDetails>,
-}
-
-/// How the sensitive axis stands, as rate-modulated turns at a speed showed it.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct MisalignmentDetails {
-    /// How far it stands from the platform's plane, up positive, °.
-    #[serde(rename = "coupling_deg")]
-    pub angle_deg: f64,
-    /// 1σ of that angle, °.
-    #[serde(rename = "coupling_sigma_deg")]
-    pub sigma_deg: f64,
-    /// By how much the sensor lags behind the encoder there, s.
-    pub lag_s: f64,
-    /// Speed of these turns, turns a second.
-    pub speed_hz: f64,
-}
-
-/// The azimuth after each stage of compensation, °.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Stages {
-    /// Clockwise at the first speed, as it came.
-    pub raw_deg: f64,
-    /// Azimuth without what the axis misalignment makes of the platform's unevenness.
-    pub without_unevenness_deg: f64,
-    /// Azimuth of both senses together.
-    pub both_senses_deg: f64,
-    /// Azimuth with all compensations.
-    pub full_deg: f64,
-}
-
-/// Turns in one sense at one speed.
-#[derive(Clone, Debug, Serialize)]
-pub struct StretchDetails {
-    /// `clockwise` or `counter-clockwise`.
-    pub sense: String,
-    /// Turns a second.
-    pub speed_hz: f64,
-    /// Turns that took part.
-    pub turns: u32,
-    /// Turns left out.
-    pub left_out: u32,
-    /// Time in those that took part, s.
-    pub seconds: f64,
-    /// Unevenness once per turn, relative to the speed.
-    pub unevenness: f64,
-}
+use crate::report::{Columns, Figure, Lines, Part};
 
 /// A turn of the platform, with what the mean of its stretch leaves of it.
 #[derive(Clone, Debug, Serialize)]
 pub struct TurnDetails {
     /// `clockwise` or `counter-clockwise`.
-    pub sense: String,
+    pub sense: &'static str,
     /// Turns a second.
     pub speed_hz: f64,
     /// Middle of the turn since the stretch began, s.
@@ -112,40 +42,15 @@ pub struct TurnDetails {
 /// Why turns are left out.
 const DISTURBED: &str = "disturbed: too far from the other turns";
 
-impl From<&Average> for StretchDetails {
-    fn from(average: &Average) -> Self {
-        Self {
-            sense: average.sense.to_string(),
-            speed_hz: average.speed / TAU,
-            turns: average.turns,
-            left_out: average.left_out,
-            seconds: average.seconds,
-            unevenness: average.turning.size() / average.speed,
-        }
-    }
-}
-
-impl Stages {
-    /// The stages in words, with their azimuths.
-    fn named(&self) -> [(&'static str, f64); 4] {
-        [
-            ("raw, clockwise", self.raw_deg),
-            ("without the unevenness", self.without_unevenness_deg),
-            ("both senses", self.both_senses_deg),
-            ("everything", self.full_deg),
-        ]
-    }
-}
-
-impl From<&Fit> for Stages {
-    fn from(fit: &Fit) -> Self {
-        Self {
-            raw_deg: degrees(fit.stages.raw),
-            without_unevenness_deg: degrees(fit.stages.misalignment),
-            both_senses_deg: degrees(fit.stages.senses),
-            full_deg: degrees(fit.stages.full),
-        }
-    }
+/// The azimuth after each stage of compensation, rad, with its key and in words.
+fn stages(fit: &Fit) -> [(&'static str, &'static str, f64); 4] {
+    let Stages { raw, misalignment, senses, full } = fit.stages;
+    [
+        ("raw_deg", "raw, clockwise", raw),
+        ("without_unevenness_deg", "without the unevenness", misalignment),
+        ("both_senses_deg", "both senses", senses),
+        ("full_deg", "everything", full),
+    ]
 }
 
 /// The averages of a conclusion, clockwise and counter-clockwise at each speed.
@@ -160,6 +65,11 @@ fn pitch_and_roll(fit: &Fit) -> [f64; 2] {
 }
 
 impl Replay {
+    /// Whether the sensor is a gyro, not a molecular-electronic one.
+    fn is_flat(&self) -> bool {
+        self.session.setting().sensor.is_flat
+    }
+
     /// Whether the sensor may have a g-sensitivity that integrates acceleration.
     fn is_molecular(&self) -> bool {
         self.session.setting().sensor.molecular_sigma > 0.0
@@ -178,14 +88,6 @@ impl Replay {
         names
     }
 
-    /// What one speed leaves of an integrated g-sensitivity, rad: what the second speed showed, or the 1σ
-    /// that a single one leaves.
-    fn one_speed(&self, conclusion: &Conclusion, fit: &Fit) -> Option<f64> {
-        let has_two = conclusion.pairs.len() > 1;
-        let bias = if has_two { fit.one_speed } else { fit.budget.g_sensitivity };
-        self.is_molecular().then_some(bias)
-    }
-
     /// The turns of all even stretches.
     fn turns(&self, conclusion: &Conclusion) -> Vec<TurnDetails> {
         let stretches = self.session.turn_accumulator().stretches().iter();
@@ -195,40 +97,95 @@ impl Replay {
             .collect()
     }
 
-    fn details(&self, conclusion: &Conclusion) -> RotatingDetails {
+    /// Integrated g-sensitivity over the Earth rate at the slower speed, and what that speed alone leaves of it, rad:
+    /// what the second speed showed, or the 1σ that a single one leaves; of a molecular-electronic sensor.
+    fn g_sensitivity(&self, conclusion: &Conclusion) -> Option<[f64; 2]> {
+        let fit = conclusion.fit.as_ref().filter(|_| self.is_molecular())?;
+        let has_two = conclusion.pairs.len() > 1;
+        let bias = if has_two { fit.one_speed } else { fit.budget.g_sensitivity };
+        Some([fit.molecular.size(), bias])
+    }
+
+    /// Cramér–Rao bound, rad, of a sensor whose gain, lag and g-sensitivity are known.
+    fn plain_limit(&self, conclusion: &Conclusion) -> Option<f64> {
+        conclusion.fit.as_ref().filter(|_| self.noise_is_known()).map(|fit| fit.plain_limit)
+    }
+
+    fn details(&self, conclusion: &Conclusion) -> Keys {
         let fit = conclusion.fit.as_ref();
-        let bounded = fit.filter(|_| self.noise_is_known());
-        let axis_misalignments: Vec<MisalignmentDetails> =
-            conclusion.misalignments.iter().map(Into::into).collect();
-        RotatingDetails {
-            sensor: if self.session.setting().sensor.is_flat { "gyro" } else { "met" },
-            plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
-            misalignment: axis_misalignments.first().copied(),
-            axis_misalignments,
-            tilt_deg: fit.map(|fit| degrees(fit.tilt.size().min(1.0).asin())),
-            met_ratio: fit.filter(|_| self.is_molecular()).map(|fit| fit.molecular.size()),
-            one_speed_bias_deg: fit.and_then(|fit| self.one_speed(conclusion, fit)).map(degrees),
-            stages: fit.map(Into::into),
-            stretches: averages(conclusion).map(Into::into).collect(),
-            turns: self.turns(conclusion),
+        let misalignments: Vec<Keys> = conclusion.misalignments.iter().map(misalignment).collect();
+        let of_stages = |fit| {
+            let all = stages(fit).into_iter();
+            all.fold(Keys::default(), |keys, (key, _, azimuth)| keys.with(key, degrees(azimuth)))
+        };
+        let g_sensitivity = self.g_sensitivity(conclusion);
+        Keys::default()
+            .with("sensor", if self.is_flat() { "gyro" } else { "met" })
+            .with("plain_limit_deg", self.plain_limit(conclusion).map(degrees))
+            .with_all(misalignments.first())
+            .with("axis_misalignments", misalignments)
+            .with("tilt_deg", fit.map(tilt_deg))
+            .with("met_ratio", g_sensitivity.map(|[ratio, _]| ratio))
+            .with("one_speed_bias_deg", g_sensitivity.map(|[_, bias]| degrees(bias)))
+            .with("stages", fit.map(of_stages))
+            .with("stretches", averages(conclusion).map(stretch).collect::<Vec<_>>())
+            .with("turns", self.turns(conclusion))
+    }
+
+    /// What turned: tilt, axis misalignment, g-sensitivity.
+    fn lines(&self, conclusion: &Conclusion) -> Lines {
+        let mut lines = Lines::new("Platform and sensor");
+        if let Some(limit) = self.plain_limit(conclusion).filter(|_| !self.is_flat()) {
+            let limit = degrees(limit);
+            let known = "were the sensor's gain, lag and g-sensitivity known";
+            lines.add("limit", format!("{limit:.4}° {known}"));
         }
+        let tilt = conclusion.fit.as_ref().map(tilt_deg);
+        lines.add_found("tilt", tilt.map(|tilt| format!("{tilt:.4}° of the platform")));
+        let misalignments = conclusion.misalignments.iter();
+        misalignments.for_each(|found| lines.add("axis misalignment", words(found)));
+        if let Some([ratio, bias]) = self.g_sensitivity(conclusion) {
+            of_g_sensitivity(&mut lines, conclusion.pairs.len() < 2, ratio, degrees(bias));
+        }
+        lines
     }
 }
 
-impl From<&AxisMisalignment> for MisalignmentDetails {
-    fn from(found: &AxisMisalignment) -> Self {
-        let [angle_deg, sigma_deg] = [found.angle(), found.sine_sigma].map(degrees);
-        Self { angle_deg, sigma_deg, lag_s: found.lag(), speed_hz: found.frequency / TAU }
-    }
+/// How the sensitive axis stands, as rate-modulated turns at a speed showed it.
+fn misalignment(found: &AxisMisalignment) -> Keys {
+    Keys::default()
+        .with("coupling_deg", degrees(found.angle()))
+        .with("coupling_sigma_deg", degrees(found.sine_sigma))
+        .with("lag_s", found.lag())
+        .with("speed_hz", found.frequency / TAU)
 }
 
-impl MisalignmentDetails {
-    /// The axis misalignment with its lag, in words.
-    fn words(&self) -> String {
-        let Self { angle_deg: angle, sigma_deg: sigma, lag_s, speed_hz } = self;
-        let lag = 1e3 * lag_s;
-        format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed_hz:.3} Hz")
-    }
+/// The axis misalignment with its lag, in words.
+fn words(found: &AxisMisalignment) -> String {
+    let [angle, sigma] = [found.angle(), found.sine_sigma].map(degrees);
+    let (lag, speed) = (1e3 * found.lag(), found.frequency / TAU);
+    format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed:.3} Hz")
+}
+
+/// Tilt of the platform's axis, °.
+fn tilt_deg(fit: &Fit) -> f64 {
+    degrees(fit.tilt.size().min(1.0).asin())
+}
+
+/// Turns in one sense at one speed.
+fn stretch(average: &Average) -> Keys {
+    Keys::default()
+        .with("sense", average.sense.to_string())
+        .with("speed_hz", average.speed / TAU)
+        .with("turns", average.turns)
+        .with("left_out", average.left_out)
+        .with("seconds", average.seconds)
+        .with("unevenness", unevenness(average))
+}
+
+/// Unevenness once per turn, relative to the speed.
+fn unevenness(average: &Average) -> f64 {
+    average.turning.size() / average.speed
 }
 
 /// The turns of a stretch about their mean; a random walk in rad/√s gives either part of a phasor 1σ of
@@ -246,7 +203,7 @@ fn of_stretch<'a>(
         let sense = if turn.speed < 0.0 { "counter-clockwise" } else { "clockwise" };
         let seconds = f64::from(turn.seconds);
         TurnDetails {
-            sense: sense.to_owned(),
+            sense,
             speed_hz: f64::from(turn.speed.abs()) / TAU,
             middle_s: f64::from(turn.middle),
             seconds,
@@ -277,6 +234,9 @@ impl Finished for Replay {
         let attitude = fit.map(|fit| pitch_and_roll(fit).map(degrees));
         let turns: u32 = averages(conclusion).map(|average| average.turns).sum();
         let left_out = averages(conclusion).filter(|average| average.left_out > 0);
+        let stages = fit.map(table_of_stages);
+        let parts = [self.lines(conclusion).into()].into_iter().chain(stages);
+        let parts = parts.chain([table_of_stretches(conclusion)]).collect();
         Outcome {
             limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| degrees(fit.limit)),
             pitch_deg: attitude.map(|[pitch, _]| pitch),
@@ -290,21 +250,14 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new("rotating", self.details(conclusion))
+            ..Outcome::new("rotating", self.details(conclusion), parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
-        let stages = details.stages.as_ref().map(stages);
-        let parts = [Some(lines(details).into()), stages, Some(stretches(&details.stretches))];
-        parts.into_iter().flatten().collect()
-    }
-
-    fn figures(&self, outcome: &Outcome, _: &Truth, body: Option<&Body>) -> Vec<Part> {
-        match body {
-            Some(Body::Rotating(rows)) => figures(self, outcome, rows),
+    fn figures(&self, _: &Outcome, _: &Truth, body: Option<&Body>) -> Vec<Figure> {
+        match (self.session.conclusion(), body) {
+            (Some(conclusion), Some(Body::Rotating(rows))) => figures(self, conclusion, rows),
             _ => Vec::new(),
         }
     }
@@ -316,77 +269,65 @@ impl Finished for Replay {
 }
 
 fn excluded(average: &Average) -> Excluded {
-    let StretchDetails { sense, speed_hz, left_out, .. } = average.into();
-    let (sense, speed_hz, turns) = (Some(sense), Some(speed_hz), Some(left_out));
-    Excluded { sense, speed_hz, turns, reason: DISTURBED.to_owned(), ..Excluded::default() }
+    let Average { sense, left_out: turns, .. } = average;
+    let speed = average.speed / TAU;
+    let place = Keys::default()
+        .with("sense", sense.to_string())
+        .with("speed_hz", speed)
+        .with("turns", turns);
+    let words = format!("{turns} turn(s) {sense} at {speed:.5} Hz: ");
+    Excluded { place, words, reason: DISTURBED.to_owned() }
 }
 
-/// What turned: tilt, axis misalignment, g-sensitivity.
-fn lines(details: &RotatingDetails) -> Lines {
-    let mut lines = Lines::new("Platform and sensor");
-    if let Some(limit) = details.plain_limit_deg.filter(|_| details.sensor == "met") {
-        let known = "were the sensor's gain, lag and g-sensitivity known";
-        lines.add("limit", format!("{limit:.4}° {known}"));
-    }
-    let tilt = details.tilt_deg.map(|tilt| format!("{tilt:.4}° of the platform"));
-    lines.add_found("tilt", tilt);
-    let misalignments = details.axis_misalignments.iter();
-    misalignments.for_each(|speed| lines.add("axis misalignment", speed.words()));
-    if let Some((ratio, bias)) = details.met_ratio.zip(details.one_speed_bias_deg) {
-        let is_one = details.stretches.len() < 3;
-        let seen =
-            if is_one { "of which one speed shows a part alone" } else { "at the slower speed" };
-        lines.add("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"));
-        let what = if is_one {
-            format!(
-                "the g-sensitivity turns the azimuth, by {bias:.4}° (1σ): turn at a second speed"
-            )
-        } else {
-            format!("would be off by {bias:+.4}° for the g-sensitivity")
-        };
-        lines.add("one speed alone", what);
-    }
-    lines
+/// What an integrated g-sensitivity makes of the azimuth, °, where there is one speed, and where there are two.
+fn of_g_sensitivity(lines: &mut Lines, is_one: bool, ratio: f64, bias: f64) {
+    let seen = if is_one { "of which one speed shows a part alone" } else { "at the slower speed" };
+    lines.add("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"));
+    let what = if is_one {
+        format!("the g-sensitivity turns the azimuth, by {bias:.4}° (1σ): turn at a second speed")
+    } else {
+        format!("would be off by {bias:+.4}° for the g-sensitivity")
+    };
+    lines.add("one speed alone", what);
 }
 
-fn stages(stages: &Stages) -> Part {
-    let off = |azimuth| format!("{:+.4}", azimuth_error(azimuth, stages.full_deg));
-    Columns::of("Azimuth after each stage of compensation", &stages.named())
+fn table_of_stages(fit: &Fit) -> Part {
+    let stages = stages(fit).map(|(_, name, azimuth)| (name, degrees(azimuth)));
+    let off = |azimuth| azimuth_error(azimuth, degrees(fit.stages.full));
+    Columns::of("Azimuth after each stage of compensation", &stages)
         .column("stage", |(stage, _)| stage)
         .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
-        .column("from the last, °", |(_, azimuth)| off(*azimuth))
+        .column("from the last, °", |(_, azimuth)| format!("{:+.4}", off(*azimuth)))
         .into()
 }
 
-fn stretches(stretches: &[StretchDetails]) -> Part {
-    Columns::of("Even turns", stretches)
-        .column("sense", |stretch| &stretch.sense)
-        .fixed("speed, Hz", 5, |stretch| stretch.speed_hz)
-        .column("turns", |stretch| stretch.turns)
-        .column("left out", |stretch| stretch.left_out)
-        .fixed("time, s", 2, |stretch| stretch.seconds)
-        .fixed("uneven by, %", 4, |stretch| 100.0 * stretch.unevenness)
+fn table_of_stretches(conclusion: &Conclusion) -> Part {
+    Columns::of("Even turns", &averages(conclusion).collect::<Vec<_>>())
+        .column("sense", |average| average.sense)
+        .fixed("speed, Hz", 5, |average| average.speed / TAU)
+        .column("turns", |average| average.turns)
+        .column("left out", |average| average.left_out)
+        .fixed("time, s", 2, |average| average.seconds)
+        .fixed("uneven by, %", 4, |average| 100.0 * unevenness(average))
         .into()
 }
 
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
-fn figures(replay: &Replay, outcome: &Outcome, rows: &[RotatingRow]) -> Vec<Part> {
-    let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
-    let conclusion = replay.session.conclusion();
-    let without = match conclusion.and_then(|found| found.misalignments.first()) {
+fn figures(replay: &Replay, conclusion: &Conclusion, rows: &[RotatingRow]) -> Vec<Figure> {
+    let without = match conclusion.misalignments.first() {
         Some(found) => freed(rows, found.sine, found.quadrature),
         None => rows.to_vec(),
     };
     let (parts, freed) = (replay.parts(rows), replay.parts(&without));
-    let mut page: Vec<Part> = Vec::new();
+    let mut page = Vec::new();
     for (part, freed) in parts.iter().zip(&freed) {
         if !part.is_even {
-            page.push(figures::profile(part).into());
+            page.push(figures::profile(part));
         }
-        page.push(figures::spectra(part, freed).into());
+        page.push(figures::spectra(part, freed));
     }
-    page.push(figures::platform(&parts).into());
-    page.push(figures::plane(&freed).into());
-    page.push(figures::residuals(&details.turns).into());
+    page.push(figures::platform(&parts));
+    page.push(figures::plane(&freed));
+    page.push(figures::residuals(&replay.turns(conclusion)));
     page
 }

@@ -1,12 +1,13 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
 //! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
 
+use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::plain::Plain;
 use orientation::earth::Latitude;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::wrapped;
 
-use super::PlainDetails;
+use super::plain_azimuths;
 use crate::methods::stops::Replay;
 use crate::outcome::Outcome;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
@@ -19,9 +20,9 @@ const REACH_SIGMAS: f64 = 4.0;
 const LEAST_REACH_DEG: f64 = 0.02;
 
 /// The azimuths at the end by both methods; none where there is neither.
-pub(crate) fn azimuths(outcome: &Outcome, plain: Option<&PlainDetails>) -> Option<Figure> {
+pub(crate) fn azimuths(outcome: &Outcome, found: Option<&Found>) -> Option<Figure> {
     let full = outcome.azimuth_deg.zip(outcome.sigma_deg);
-    let plain = plain.map(|plain| (plain.azimuth_deg, plain.sigma_deg));
+    let plain = found.map(|found| (plain_azimuths(found)[0], degrees(found.plain.sigma)));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {

@@ -12,66 +12,30 @@ use serde::Serialize;
 use crate::cause;
 use crate::methods::asked::Asked;
 use crate::methods::stops::Replay;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
+use crate::outcome::keys::Keys;
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases};
 use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Columns, Lines, Part};
+use crate::report::{Columns, Figure, Lines, Part};
 
-/// What an alignment from stops adds.
-#[derive(Clone, Debug, Serialize)]
-pub struct StopsDetails {
-    /// Azimuth of body x at the beginning, [0, 360) °; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub start_azimuth_deg: Option<f64>,
-    /// 1σ of the azimuth at the beginning, °; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub start_sigma_deg: Option<f64>,
-    /// Error of the azimuth at the beginning, °, where the truth is known; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub start_error_deg: Option<f64>,
-    /// Biases of the gyros forward, right, down, °/h, where they could be distinguished from the Earth rate.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bias_dph: Option<[f64; 3]>,
-    /// 1σ of the biases, °/h.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bias_sigma_dph: Option<[f64; 3]>,
-    /// What the method of Szymanowski 2003 makes of the first and the last stop.
-    pub plain: Option<PlainDetails>,
-    /// Every stop.
-    pub stops: Vec<StopDetails>,
+/// Azimuths of the least inclination U between the first stop and the last, as the method of Szymanowski 2003 finds
+/// them, °: at the end, to which what the gyros turned leads, and at the first stop.
+fn plain_azimuths(found: &Found) -> [f64; 2] {
+    let turned = found.azimuth.angle - found.start.angle;
+    [wrapped(found.plain.azimuth + turned), found.plain.azimuth].map(degrees)
 }
 
-/// The method of Szymanowski 2003: azimuths of the least inclination U between the first stop and the last. It
-/// finds that at the first stop; what the gyros turned leads to the end.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct PlainDetails {
-    /// Azimuth at the end, in closed form, [0, 360) °.
-    pub azimuth_deg: f64,
-    /// 1σ of the azimuth at the end, °.
-    pub sigma_deg: f64,
-    /// At the first stop, in closed form, °.
-    pub start_azimuth_deg: f64,
-    /// At the first stop, where Brent's search finds the least U in the angle form, °.
-    pub brent_deg: f64,
-    /// At the first stop, where Brent's search finds the least √(ΔΘ² + ΔΦ²), °.
-    pub euler_deg: f64,
-    /// The least U itself, in the angle form, °.
-    pub inclination_deg: f64,
-}
-
-impl From<&Found> for PlainDetails {
-    fn from(found: &Found) -> Self {
-        let plain = &found.plain;
-        let turned = found.azimuth.angle - found.start.angle;
-        Self {
-            azimuth_deg: degrees(wrapped(plain.azimuth + turned)),
-            sigma_deg: degrees(plain.sigma),
-            start_azimuth_deg: degrees(plain.azimuth),
-            brent_deg: degrees(plain.angle.at),
-            euler_deg: degrees(plain.euler.at),
-            inclination_deg: degrees(plain.angle.value),
-        }
-    }
+/// What the method of Szymanowski 2003 makes of the first and the last stop: in closed form, and where Brent's search
+/// finds the least U in the angle form, and the least √(ΔΘ² + ΔΦ²).
+fn plain(found: &Found) -> Keys {
+    let (plain, [azimuth_deg, start_azimuth_deg]) = (&found.plain, plain_azimuths(found));
+    Keys::default()
+        .with("azimuth_deg", azimuth_deg)
+        .with("sigma_deg", degrees(plain.sigma))
+        .with("start_azimuth_deg", start_azimuth_deg)
+        .with("brent_deg", degrees(plain.angle.at))
+        .with("euler_deg", degrees(plain.euler.at))
+        .with("inclination_deg", degrees(plain.angle.value))
 }
 
 /// A stop.
@@ -143,9 +107,10 @@ impl Replay {
     fn excluded(&self, found: Option<&Found>) -> Vec<Excluded> {
         let stops = self.session.stops().iter().enumerate();
         let blown = stops.filter(|(_, stop)| stop.left_out > 0).map(|(index, stop)| {
-            let seconds = stop.left_out;
+            let (stop, seconds) = (index + 1, stop.left_out);
             let reason = format!("{seconds} s: a blow, or an accelerometer at its limit");
-            Excluded { stop: Some(index + 1), reason, ..Excluded::default() }
+            let words = format!("at stop {stop}, ");
+            Excluded { place: Keys::default().with("stop", stop), words, reason }
         });
         let of_found = found.into_iter().flat_map(|found| {
             let (left_out, of) = (found.tally.left_out, found.blocks);
@@ -153,34 +118,45 @@ impl Replay {
             let turning =
                 format!("rest rates of {} stop(s): the vehicle turned", found.tally.turning);
             let both = [(left_out > 0, means), (found.tally.turning > 0, turning)];
-            let excluded =
-                both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason));
-            excluded.map(|reason| Excluded { reason, ..Excluded::default() })
+            both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason))
+        });
+        let of_found = of_found.map(|reason| {
+            let (place, words) = Default::default();
+            Excluded { place, words, reason }
         });
         blown.chain(of_found).collect()
     }
 
-    fn details(&self, found: Option<&Found>, is_ok: bool, truth: &Truth) -> StopsDetails {
-        let start = found.filter(|_| is_ok).map(|found| found.start);
-        let start_deg = start.map(|azimuth| degrees(azimuth.angle));
-        let observed = found.filter(|found| found.are_biases_observed);
+    fn stops(&self) -> Vec<StopDetails> {
         let stops = self.session.stops().iter().enumerate();
-        let stop = |(index, stop)| StopDetails::of(stop, self.session.residual(index), self.zero_s);
-        StopsDetails {
-            start_azimuth_deg: start_deg,
-            start_sigma_deg: start.map(|azimuth| degrees(azimuth.sigma)),
-            start_error_deg: start_deg
-                .zip(truth.start_azimuth_deg)
-                .map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
-            bias_dph: observed.map(|found| found.biases.map(degrees_per_hour)),
-            bias_sigma_dph: observed.map(|found| found.bias_sigmas.map(degrees_per_hour)),
-            plain: found.map(Into::into),
-            stops: stops.map(stop).collect(),
-        }
+        let of = |(index, stop)| StopDetails::of(stop, self.session.residual(index), self.zero_s);
+        stops.map(of).collect()
     }
 
-    fn found(&self) -> Option<&Found> {
-        self.session.conclusion()?.found.as_ref()
+    /// The azimuth at the beginning and the biases of the gyros, as keys and in words, and as keys what else an
+    /// alignment from stops adds.
+    fn details(&self, found: Option<&Found>, is_ok: bool, truth: &Truth) -> (Keys, Lines) {
+        let start = found.filter(|_| is_ok).map(|found| found.start);
+        let start = start.map(|azimuth| [azimuth.angle, azimuth.sigma].map(degrees));
+        let error = start.zip(truth.start_azimuth_deg);
+        let error = error.map(|([azimuth, _], truth)| azimuth_error(azimuth, truth));
+        let observed = found.filter(|found| found.are_biases_observed);
+        let biases = observed
+            .map(|found| [found.biases, found.bias_sigmas].map(|each| each.map(degrees_per_hour)));
+        let keys = Keys::default()
+            .with_found("start_azimuth_deg", start.map(|[azimuth, _]| azimuth))
+            .with_found("start_sigma_deg", start.map(|[_, sigma]| sigma))
+            .with_found("start_error_deg", error)
+            .with_found("bias_dph", biases.map(|[biases, _]| biases))
+            .with_found("bias_sigma_dph", biases.map(|[_, sigmas]| sigmas))
+            .with("plain", found.map(plain))
+            .with("stops", self.stops());
+        let mut lines = Lines::new("Start and gyros");
+        let words = |[angle, sigma]: [f64; 2]| format!("{angle:.4}° ± {sigma:.4}° (1σ)");
+        lines.add_found("at the start", start.map(words));
+        lines.add_found("  truth", error.map(|error| format!("the error is {error:+.4}°")));
+        lines.add_found("gyro biases", biases.map(|biases| of_biases(biases, 4)));
+        (keys, lines)
     }
 }
 
@@ -192,7 +168,9 @@ impl Finished for Replay {
         };
         let found = conclusion.found.as_ref();
         let stops = self.session.stops();
-        let details = self.details(found, conclusion.verdict.is_ok(), truth);
+        let (details, lines) = self.details(found, conclusion.verdict.is_ok(), truth);
+        let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
+        let parts = lines.chain([table(&self.stops())]).collect();
         Outcome {
             limit_deg: found.filter(|_| self.noise_is_known()).map(|found| degrees(found.limit)),
             pitch_deg: found.map(|found| degrees(found.level[0])),
@@ -206,46 +184,22 @@ impl Finished for Replay {
                 ..FitDetails::of(found.map(|found| &found.budget), stops.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(method, details)
+            ..Outcome::new(method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Some(details) = outcome.details::<StopsDetails>() else { return Vec::new() };
-        let lines = lines(details);
-        let lines = (!lines.lines.is_empty()).then_some(lines);
-        let papers = details.plain.as_ref().map(of_plain);
-        let stops = Columns::of("Stops", &details.stops)
-            .numbered("stop")
-            .fixed("from, s", 2, |stop| stop.from_s)
-            .fixed("to, s", 2, |stop| stop.to_s)
-            .fixed("pitch, °", 4, |stop| positive_zero(stop.pitch_deg, 5e-5))
-            .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[0])
-            .fixed("roll, °", 4, |stop| positive_zero(stop.roll_deg, 5e-5))
-            .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[1])
-            .column("north, m", |stop| stop.displaced(0, "not known"))
-            .column("east, m", |stop| stop.displaced(1, ""))
-            .found("residual north, °", 5, |stop| stop.residual_deg.map(|[north, _]| north))
-            .found("east, °", 5, |stop| stop.residual_deg.map(|[_, east]| east))
-            .found("1σ of white noise, °", 5, |stop| stop.residual_sigma_deg);
-        let both = [lines, papers].into_iter().flatten().map(Part::from);
-        both.chain([stops.into()]).collect()
-    }
-
-    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let Some(details) = outcome.details::<StopsDetails>() else { return Vec::new() };
-        let mut parts: Vec<Part> = Vec::new();
-        parts.extend(figures::azimuths(outcome, details.plain.as_ref()).map(Part::from));
-        if let Some(found) = self.found() {
-            let plain = &found.plain;
-            parts.extend(figures::inclinations(plain).map(Part::from));
+    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Figure> {
+        let found = self.session.conclusion().and_then(|conclusion| conclusion.found.as_ref());
+        let mut page = Vec::from_iter(figures::azimuths(outcome, found));
+        if let Some(Found { plain, .. }) = found {
+            page.extend(figures::inclinations(plain));
             let latitude = self.session.setting().site.latitude;
-            let drive = seconds(&details.stops).map(|seconds| (plain, seconds));
-            parts.push(figures::heading_error(latitude, drive).into());
+            let drive = seconds(&self.stops()).map(|seconds| (plain, seconds));
+            page.push(figures::heading_error(latitude, drive));
         }
-        parts.extend(figures::criteria(self).into_iter().map(Part::from));
-        parts
+        page.extend(figures::criteria(self));
+        page
     }
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
@@ -260,36 +214,35 @@ fn seconds(stops: &[StopDetails]) -> Option<f64> {
     Some(0.5 * (last.from_s + last.to_s - first.from_s - first.to_s))
 }
 
-/// The azimuth at the beginning, and the biases of the gyros.
-fn lines(details: &StopsDetails) -> Lines {
-    let mut lines = Lines::new("Start and gyros");
-    let start = details.start_azimuth_deg.zip(details.start_sigma_deg);
-    let words = |(angle, sigma)| format!("{angle:.4}° ± {sigma:.4}° (1σ)");
-    lines.add_found("at the start", start.map(words));
-    let error = details.start_error_deg.map(|error| format!("the error is {error:+.4}°"));
-    lines.add_found("  truth", error);
-    if let Some((biases, sigmas)) = details.bias_dph.zip(details.bias_sigma_dph) {
-        let both = biases.into_iter().zip(sigmas);
-        let all: Vec<String> =
-            both.map(|(bias, sigma)| format!("{bias:+.4} ± {sigma:.4}")).collect();
-        lines.add("gyro biases", format!("{} °/h forward, right, down", all.join(", ")));
-    }
-    lines
+fn table(stops: &[StopDetails]) -> Part {
+    Columns::of("Stops", stops)
+        .numbered("stop")
+        .fixed("from, s", 2, |stop| stop.from_s)
+        .fixed("to, s", 2, |stop| stop.to_s)
+        .fixed("pitch, °", 4, |stop| positive_zero(stop.pitch_deg, 5e-5))
+        .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[0])
+        .fixed("roll, °", 4, |stop| positive_zero(stop.roll_deg, 5e-5))
+        .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[1])
+        .column("north, m", |stop| stop.displaced(0, "not known"))
+        .column("east, m", |stop| stop.displaced(1, ""))
+        .found("residual north, °", 5, |stop| stop.residual_deg.map(|[north, _]| north))
+        .found("east, °", 5, |stop| stop.residual_deg.map(|[_, east]| east))
+        .found("1σ of white noise, °", 5, |stop| stop.residual_sigma_deg)
+        .into()
 }
 
 /// What the method of Szymanowski 2003 finds from the first stop and the last.
-fn of_plain(plain: &PlainDetails) -> Lines {
-    let PlainDetails { azimuth_deg, sigma_deg, start_azimuth_deg, brent_deg, euler_deg, .. } =
-        *plain;
+fn of_plain(found: &Found) -> Lines {
+    let (plain, [azimuth, start]) = (&found.plain, plain_azimuths(found));
     let [brent, euler] =
-        [brent_deg, euler_deg].map(|angle| azimuth_error(angle, start_azimuth_deg));
+        [plain.angle, plain.euler].map(|least| azimuth_error(degrees(least.at), start));
     let mut lines = Lines::new(
         "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias",
     );
-    lines.add("azimuth", format!("{azimuth_deg:.4}° ± {sigma_deg:.4}° (1σ)"));
-    lines.add("at the start", format!("{start_azimuth_deg:.7}° in closed form"));
+    lines.add("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", degrees(plain.sigma)));
+    lines.add("at the start", format!("{start:.7}° in closed form"));
     lines.add("least angle", format!("{brent:+.2e}° from that, by Brent's search"));
     lines.add("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"));
-    lines.add("U there", format!("{:.5}°", plain.inclination_deg));
+    lines.add("U there", format!("{:.5}°", degrees(plain.angle.value)));
     lines
 }
