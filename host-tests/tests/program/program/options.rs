@@ -21,8 +21,8 @@ const IGNORED: [(&str, &str); 5] = [
     (
         "turntable",
         "--seconds=60 --sigma=1 --survey=60 --passes=1 --half=east --positions=6 --dwell=5 \
-         --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 --realign --handover=1,1 \
-         --flight-seconds=1 --turns-per-second=90 --sway=0.1",
+         --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --flight-seconds=1 \
+         --turns-per-second=90 --sway=0.1 --no-base-imu",
     ),
     ("two-frame", "--positions=6 --turns=3 --stops=3"),
     ("stage", "--passes=1 --turns=3 --stops=3 --flight-seconds=1"),
@@ -79,6 +79,11 @@ fn keeping_and_handing_over_are_refused_where_nothing_comes_of_them() {
         assert_misuse(&["run", "vehicle", "--handover", "1,1", option], "--handover takes");
     }
     assert_misuse(&["run", "--realign", "--hold", "299"], "--realign: the first stop");
+    assert_misuse(&["run", "turntable", "--realign", "--hold", "500"], "--realign: the first stop");
+    assert_misuse(
+        &["run", "turntable", "--flash", "x", "--hold", "60"],
+        "--flash: the next run begins where this one began",
+    );
     assert_misuse(&["run", "--handover", "1,1", "--record", "x.csv"], "leave --handover out");
 }
 
