@@ -6,14 +6,10 @@
 //! cargo run --release --example etalon_exhaustive -- 10000
 //! ```
 
-#[allow(dead_code, reason = "the tests use more of it")]
-#[path = "../tests/support/oracle.rs"]
-mod oracle;
-
 use std::process::ExitCode;
 
 use hal_mock::noise::Generator;
-use oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
+use host::oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
 use rayon::prelude::*;
 
 /// Makes case number `index` of a family.

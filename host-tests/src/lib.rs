@@ -13,6 +13,7 @@ pub mod emulate;
 pub mod instrument;
 pub mod median;
 pub mod methods;
+pub mod oracle;
 pub mod outcome;
 pub mod output;
 pub mod planning;

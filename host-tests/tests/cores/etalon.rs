@@ -3,6 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use hal_mock::noise::Generator;
+use host::oracle::{
+    CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
+};
 use orientation::alignment::stepwise::etalon::series::CAPACITY;
 use orientation::alignment::stepwise::etalon::{
     Acceptance, Accepted, Criterion, Limit, Series, SeriesError, accepted, search,
@@ -12,9 +15,6 @@ use orientation::math::reference_table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
-use crate::support::oracle::{
-    CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
-};
 
 const ARCSECOND: f64 = TAU / 1_296_000.0;
 const GRID: f64 = TAU / 129_600.0;

@@ -8,7 +8,6 @@
 
 pub mod campaign;
 pub mod files;
-pub mod oracle;
 pub mod program;
 pub mod rig;
 
