@@ -180,7 +180,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::NotReady`] while it moves.
     pub async fn set_position(&mut self, microsteps: i32) -> Result<(), Fault> {
         let position = microsteps.cast_unsigned();
-        let state = self.read(&[registers::RAMP_STAT], false).await?;
+        let [state, ..] = self.read(&[registers::RAMP_STAT], false).await?;
         if !is_set(state, ramp_stat::STANDING) {
             return Err(Fault::NotReady);
         }
@@ -194,7 +194,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// The position, microsteps, at which the left switch became active since the last
     /// [`Self::run`]; a soft stop ends beyond it.
     pub async fn left_edge(&mut self) -> Result<Option<i32>, Fault> {
-        let [state, edge] = self.read(&[registers::RAMP_STAT, registers::XLATCH], false).await?;
+        let [state, edge, ..] =
+            self.read(&[registers::RAMP_STAT, registers::XLATCH], false).await?;
         Ok((state & ramp_stat::LATCHED_LEFT != 0).then(|| edge.cast_signed()))
     }
 
@@ -204,7 +205,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         let mut state = [0];
         let look = Pass::Read(&[registers::RAMP_STAT], &mut state);
         self.pass(&mut [Pass::Write(&CLEAR_STALL), look]).await?;
-        if is_set(state, ramp_stat::STALLED) {
+        if is_set(state[0], ramp_stat::STALLED) {
             return Err(Fault::NotAsWritten { register: registers::RAMP_STAT.0 });
         }
         Ok(())
@@ -231,13 +232,13 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(status)
     }
 
-    /// Reads registers of a chip, which may have been reset or not.
-    async fn read<const N: usize>(
+    /// Reads as many registers as a status has at most, of a chip that may have been reset or not.
+    async fn read(
         &mut self,
-        addresses: &[Address; N],
+        addresses: &[Address],
         may_be_reset: bool,
-    ) -> Result<[u32; N], Fault> {
-        let mut values = [0; N];
+    ) -> Result<[u32; LOOKED_AT.len()], Fault> {
+        let mut values = [0; LOOKED_AT.len()];
         self.link.pass(&mut [Pass::Read(addresses, &mut values)], may_be_reset).await?;
         Ok(values)
     }
@@ -270,19 +271,19 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         let mut state = [0];
         let look = Pass::Read(&[registers::RAMP_STAT], &mut state);
         let seen = self.pass(&mut [look]).await?;
-        if is_set(state, ramp_stat::STALLED) || seen & spi_status::DRIVER_ERROR != 0 {
+        if is_set(state[0], ramp_stat::STALLED) || seen & spi_status::DRIVER_ERROR != 0 {
             return Err(Fault::Alarm { status: seen });
         }
         let mut passes =
             [Pass::Write(&HOLD), Pass::Write(first), Pass::Verify(verified), Pass::Write(last)];
-        let moving = usize::from(!is_set(state, ramp_stat::STANDING));
+        let moving = usize::from(!is_set(state[0], ramp_stat::STANDING));
         self.pass(passes.get_mut(moving..).unwrap_or_default()).await.map(|_| ())
     }
 
     /// Verifies that the chip is a TMC5160 in the mode with its internal ramp generator. It may
     /// have been reset.
     async fn identify(&mut self) -> Result<(), Fault> {
-        let [inputs] = self.read(&[registers::IOIN], true).await?;
+        let [inputs, ..] = self.read(&[registers::IOIN], true).await?;
         check_version(inputs)?;
         if inputs & ioin::STEP_MODE != 0 {
             return Err(Fault::Identity { found: inputs });
@@ -297,7 +298,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     async fn come_to_rest(&mut self) -> Result<(), Fault> {
         self.pass_anyhow(&mut [Pass::Write(&STOP)]).await?;
         for _ in 0..STOPPING_LOOKS {
-            let state = self.read(&[registers::RAMP_STAT], true).await?;
+            let [state, ..] = self.read(&[registers::RAMP_STAT], true).await?;
             if is_set(state, ramp_stat::STANDING) {
                 return self.pass_anyhow(&mut [Pass::Write(&HOLD)]).await.map(|_| ());
             }
@@ -340,7 +341,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// Lets the bridges work and reads whether they have detected a short.
     async fn test_bridges(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, BRIDGE_TEST).await;
-        let [driver, global] = self.read(&[registers::DRV_STATUS, registers::GSTAT], false).await?;
+        let [driver, global, ..] =
+            self.read(&[registers::DRV_STATUS, registers::GSTAT], false).await?;
         if driver & drv_status::SHUT_DOWN != 0 || global & gstat::ALL != 0 {
             return Err(Fault::SelfTest);
         }
@@ -349,7 +351,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
 }
 
 /// Whether a bit of a register is set.
-const fn is_set([register]: [u32; 1], bit: u32) -> bool {
+const fn is_set(register: u32, bit: u32) -> bool {
     register & bit != 0
 }
 
