@@ -45,7 +45,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 Request::Continue
             }
             Request::Continue | Request::MayDrive => {
-                if aligner.state() == State::Homing && shared.homed.signaled() {
+                if aligner.state == State::Homing && shared.homed.signaled() {
                     let first = give(&mut aligner, Input::Homed(shared.sway.get()));
                     if first != Request::Continue {
                         request = first;
@@ -53,7 +53,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                     }
                 } else if channels.samples.is_empty() {
                     shared.catch_up();
-                    if aligner.state() != State::Homing {
+                    if aligner.state != State::Homing {
                         Timer::after(REST.min(shared.period.get() * (QUEUE as u32 / 3))).await;
                     }
                 }
@@ -63,7 +63,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                         give(&mut aligner, Input::Ordered(order))
                     }
                     Either::Second(sample) => {
-                        if aligner.state() == State::Aligning {
+                        if aligner.state == State::Aligning {
                             recorder.record(&sample).await;
                         }
                         aligner.sample(&sample, listener)

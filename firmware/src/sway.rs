@@ -222,8 +222,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         if self.base.restarts() != restarts {
             self.silent = Instant::now();
         }
-        let is_subtracted =
-            self.compensates && matches!(self.sway.decision(), Decision::Swaying(..));
+        let is_subtracted = self.compensates && matches!(self.sway.decision, Decision::Swaying(..));
         match outcome {
             Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
             Err(_) => self.lose(shared),
@@ -251,7 +250,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
     /// Reports the decision; called when the decision may have been taken.
     fn report(&self, shared: &Shared<'_>) {
-        let (noise, event) = match self.sway.decision() {
+        let (noise, event) = match self.sway.decision {
             Decision::Watching => return,
             Decision::Still(size) => {
                 (SwayNoise::NONE, Event::BaseStill(f64::from(size.angle) * DEGREES))
@@ -289,7 +288,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     }
 
     fn is_decided(&self) -> bool {
-        !self.compensates || self.is_lost || self.sway.decision() != Decision::Watching
+        !self.compensates || self.is_lost || self.sway.decision != Decision::Watching
     }
 
     async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {

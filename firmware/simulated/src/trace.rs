@@ -1,6 +1,6 @@
 //! The results of a run as bit patterns, by which runs on different machines are compared.
 
-use orientation::alignment::rotating::turn::{Stretch, Turn};
+use orientation::alignment::rotating::turn::Turn;
 use orientation::alignment::stops::stop::Stop;
 use orientation::alignment::{rotating, stepwise, stops};
 use orientation::attitude::Report;
@@ -48,8 +48,8 @@ impl Trace for stepwise::Session {
 
 impl Trace for rotating::Session {
     fn trace(&self, rows: Rows) {
-        let stretches = self.turn_accumulator().stretches().iter();
-        stretches.flat_map(Stretch::turns).for_each(|turn| turn.trace(rows));
+        let stretches = self.turn_accumulator.stretches.iter();
+        stretches.flat_map(|stretch| &stretch.turns).for_each(|turn| turn.trace(rows));
     }
 }
 
@@ -61,10 +61,10 @@ impl Trace for stops::Session {
 
 impl Trace for Flight {
     fn trace(&self, rows: Rows) {
-        let [scale, scale_sigma] = self.spin().scale().unwrap_or([f64::NAN; 2]);
-        let [course, pitch] = [self.attitude().course, self.attitude().pitch];
-        let roll = self.spin().roll().rad();
-        let [sigma, lift] = [self.spin().sigma(), self.spin().lift()].map(or_absent);
+        let [scale, scale_sigma] = self.spin.scale().unwrap_or([f64::NAN; 2]);
+        let [course, pitch] = [self.attitude.course, self.attitude.pitch];
+        let roll = self.spin.roll().rad();
+        let [sigma, lift] = [self.spin.sigma(), self.spin.lift()].map(or_absent);
         let [roll, course, pitch] = [roll, course, pitch].map(f64::to_bits);
         let [scale, scale_sigma] = [scale, scale_sigma].map(f64::to_bits);
         rows(FLIGHT, &[roll, sigma, course, pitch, scale, scale_sigma, lift]);

@@ -46,7 +46,7 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
 pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
-    let turn = conclusion.slow_turn(session.setting(), session.turn_accumulator());
+    let turn = conclusion.slow_turn(session.setting(), &session.turn_accumulator);
     Unseen::of(Motion::Turning, turn, azimuth.sigma).into_iter().collect()
 }
 

@@ -81,7 +81,7 @@ impl Reference {
 
 /// Samples after which a filter is at rest to far below one step of its arithmetic's output.
 fn long_enough<const S: usize>(coefficients: &Coefficients<S>) -> u32 {
-    4 * coefficients.settling() + 64
+    4 * coefficients.settling + 64
 }
 
 /// Pseudo-random numbers (`xorshift64*`), the same in every run.
@@ -228,7 +228,7 @@ fn measured_db<const S: usize>(ratio: f64, cycles: u32, period: u32) -> f64 {
     const AMPLITUDE: f64 = 2e9;
     let coefficients = low_pass::<S>(ratio);
     let mut filter = Filter::at_rest(AngularRate(0));
-    let periods_to_settle = coefficients.settling().div_ceil(period) + 1;
+    let periods_to_settle = coefficients.settling.div_ceil(period) + 1;
     let (mut cosine, mut sine) = (0.0, 0.0);
     for n in 0..(periods_to_settle + 1) * period {
         let (sin, cos) = (2.0 * PI * f64::from(n * cycles % period) / f64::from(period)).sin_cos();
@@ -314,7 +314,7 @@ fn rounding_rms<const S: usize>(
     sections: Vec<(f64, f64)>,
     sigma: f64,
 ) -> f64 {
-    let samples = 60_000.max(5 * coefficients.settling());
+    let samples = 60_000.max(5 * coefficients.settling);
     let mut noise = Noise(0x9e37_79b9_7f4a_7c15);
     let mut filter = Filter::at_rest(AngularRate(0));
     let mut reference = Reference::at_rest(sections, 0.0);
@@ -461,9 +461,9 @@ fn check_facts<const S: usize>(ratio: f64) {
     let close = |ours: f64, sum: f64, tolerance: f64| (ours - sum).abs() < tolerance * sum;
     let lag: f64 = rests.iter().sum();
     let power: f64 = rests.iter().map(|rest| rest * rest).sum();
-    assert!(close(coefficients.lag(), lag, 1e-7), "{} {lag}", coefficients.lag());
-    assert!(close(coefficients.lag_power(), power, 1e-9), "{} {power}", coefficients.lag_power());
-    for count in [1, 7, coefficients.settling() / 2, coefficients.settling() + 5] {
+    assert!(close(coefficients.lag, lag, 1e-7), "{} {lag}", coefficients.lag);
+    assert!(close(coefficients.lag_power, power, 1e-9), "{} {power}", coefficients.lag_power);
+    for count in [1, 7, coefficients.settling / 2, coefficients.settling + 5] {
         let responses = rests.iter().take(count as usize).map(|rest| 1.0 - rest);
         let sums = [responses.clone().sum(), responses.map(|s| s * s).sum::<f64>()];
         for (ours, sum) in coefficients.step_sums(count).into_iter().zip(sums) {
@@ -471,10 +471,10 @@ fn check_facts<const S: usize>(ratio: f64) {
         }
     }
     let last = rests.iter().rposition(|rest| rest.abs() >= 1e-6).expect("the step starts at zero");
-    assert_eq!(coefficients.settling() as usize, last + 1);
+    assert_eq!(coefficients.settling as usize, last + 1);
     let ideal: f64 = exact(S, ratio).iter().map(|(p, loss)| loss / p).sum();
-    assert!(close(coefficients.lag(), ideal, 2e-5), "{} {ideal}", coefficients.lag());
-    let periods = f64::from(coefficients.settling()) * ratio;
+    assert!(close(coefficients.lag, ideal, 2e-5), "{} {ideal}", coefficients.lag);
+    let periods = f64::from(coefficients.settling) * ratio;
     let slow = [3.143, 5.457, 8.049, 10.706][S - 1];
     assert!(periods < 1.6 * slow, "{periods} periods of the cutoff");
     assert!(ratio > 1e-3 || (periods - slow).abs() < 1e-3, "{periods} periods of the cutoff");

@@ -147,8 +147,8 @@ fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(format!("{again:?}"), format!("{:?}", of_spin(scenario, &run, &again.assumed)));
     let end = again.answer().end;
-    assert_eq!(end.roll_rad.to_bits(), run.run.replay.spin().roll().rad().to_bits());
-    assert_eq!(end.sigma_rad, run.run.replay.spin().sigma());
+    assert_eq!(end.roll_rad.to_bits(), run.run.replay.spin.roll().rad().to_bits());
+    assert_eq!(end.sigma_rad, run.run.replay.spin.sigma());
 }
 
 /// What the command line tells of a flight.

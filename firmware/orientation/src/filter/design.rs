@@ -59,12 +59,14 @@ pub struct Section {
 pub struct Coefficients<const SECTIONS: usize> {
     /// Gains of the sections in order of growing quality factor.
     pub(super) gains: [Gains; SECTIONS],
-    /// Lag in samples; see [`Coefficients::lag`].
-    lag: f64,
-    /// Lag power in samples; see [`Coefficients::lag_power`].
-    lag_power: f64,
-    /// Settling in samples; see [`Coefficients::settling`].
-    settling: u32,
+    /// Σ (1 − s(k)) over k ≥ 0 in samples, s being the unit step response and s(0) the output at
+    /// the sample that brings the step: the delay of slow signals. Closed form, Σ (1 − a₂)/p.
+    pub lag: f64,
+    /// Σ (1 − s(k))² over k ≥ 0 in samples, summed until settled, to 10⁻⁹ of its value.
+    pub lag_power: f64,
+    /// The first k from which on |1 − s| stays below 10⁻⁶, in samples: 3.1, 5.5, 8.0 and 10.7
+    /// periods of the cutoff for orders 2, 4, 6 and 8, up to 1.6 times that towards fc/fs = 1/4.
+    pub settling: u32,
 }
 
 impl<const SECTIONS: usize> Coefficients<SECTIONS> {
@@ -88,26 +90,6 @@ impl<const SECTIONS: usize> Coefficients<SECTIONS> {
         let (settling, lag_power) = step_response(&gains);
         let lag = gains.iter().map(|section| section.loss() / section.p()).sum();
         Ok(Self { gains, lag, lag_power, settling })
-    }
-
-    /// Σ (1 − s(k)) over k ≥ 0 in samples, s being the unit step response and s(0) the output at
-    /// the sample that brings the step: the delay of slow signals. Closed form, Σ (1 − a₂)/p.
-    #[must_use]
-    pub fn lag(&self) -> f64 {
-        self.lag
-    }
-
-    /// Σ (1 − s(k))² over k ≥ 0 in samples, summed until settled, to 10⁻⁹ of its value.
-    #[must_use]
-    pub fn lag_power(&self) -> f64 {
-        self.lag_power
-    }
-
-    /// The first k from which on |1 − s| stays below 10⁻⁶, in samples: 3.1, 5.5, 8.0 and 10.7
-    /// periods of the cutoff for orders 2, 4, 6 and 8, up to 1.6 times that towards fc/fs = 1/4.
-    #[must_use]
-    pub fn settling(&self) -> u32 {
-        self.settling
     }
 
     /// Σ s(k) and Σ s(k)² over the first `samples` samples of the unit step response; followed in

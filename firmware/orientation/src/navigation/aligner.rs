@@ -40,7 +40,7 @@ pub struct Aligner<'m, S> {
     /// The method.
     method: &'m mut dyn Method<S>,
     /// State of the alignment.
-    state: State,
+    pub state: State,
     /// Time of the first sample that was passed by, and of the latest that the method has taken.
     since: Option<Instant>,
     taken: Option<Instant>,
@@ -52,12 +52,6 @@ impl<'m, S: Timed> Aligner<'m, S> {
     /// Takes a method that has not begun.
     pub fn new(method: &'m mut dyn Method<S>) -> Self {
         Self { method, state: State::Idle, since: None, taken: None, found: None }
-    }
-
-    /// State of the alignment.
-    #[must_use]
-    pub fn state(&self) -> State {
-        self.state
     }
 
     /// The method, with its verdict where the alignment is over.

@@ -21,9 +21,9 @@ pub struct Flight {
     /// Course and pitch at the begin, rad.
     launch: [f64; 2],
     /// Estimator of the roll by phase lock.
-    spin: Spin,
-    /// Attitude by integration of the gyros, its roll replaced by the estimate.
-    attitude: Attitude,
+    pub spin: Spin,
+    /// Attitude by integration of the gyros, with the roll of the estimator.
+    pub attitude: Attitude,
     /// Duration of the tracking, s; [`None`] for ever.
     seconds: Option<f64>,
     /// Time of the first sample.
@@ -55,18 +55,6 @@ impl Flight {
             reported: State::default(),
             is_over: false,
         }
-    }
-
-    /// The estimator of the roll.
-    #[must_use]
-    pub fn spin(&self) -> &Spin {
-        &self.spin
-    }
-
-    /// The attitude by integration of the gyros, with the roll of the estimator.
-    #[must_use]
-    pub fn attitude(&self) -> &Attitude {
-        &self.attitude
     }
 
     /// Takes a sample.

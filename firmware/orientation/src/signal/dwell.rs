@@ -121,7 +121,7 @@ const REGULAR: f64 = 1.5;
 /// Fewest samples of a dwell: four times the filter's lag, and at least eight.
 #[must_use]
 pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
-    (libm::ceil(4.0 * coefficients.lag()) as u32).max(8)
+    (libm::ceil(4.0 * coefficients.lag) as u32).max(8)
 }
 
 /// Running average of a dwell in progress. The work per sample is one integer filter update and a

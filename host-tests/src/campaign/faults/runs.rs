@@ -137,7 +137,7 @@ fn in_vehicle(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
     let flown = Trial::of(&scenario).fault(Some(fault)).run()?;
-    let spin = flown.run.replay.spin();
+    let spin = &flown.run.replay.spin;
     let verdict = match (flown.run.ended(), spin.sigma().map(degrees)) {
         (Some(reason), _) => Err(reason.to_string()),
         (None, Some(sigma)) if sigma <= ROLL_SIGMA_DEG => {

@@ -47,7 +47,7 @@ impl Replay {
     #[must_use]
     pub fn parts<'a>(&self, rows: &'a [RotatingRow]) -> Vec<Part<'a>> {
         let mut spans: Vec<(f64, f64)> =
-            self.session.turn_accumulator().stretches().iter().filter_map(span).collect();
+            self.session.turn_accumulator.stretches.iter().filter_map(span).collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let begin = spans.first().map_or(f64::INFINITY, |span| span.0);
         let between = |from: f64, to: f64, is_even| {
@@ -61,8 +61,8 @@ impl Replay {
 
 /// When a stretch's first turn began and its last one ended, s.
 fn span(stretch: &Stretch) -> Option<(f64, f64)> {
-    let [first, last] = [stretch.turns().first()?, stretch.turns().last()?];
-    let since = stretch.since() as f64 * 1e-6;
+    let [first, last] = [stretch.turns.first()?, stretch.turns.last()?];
+    let since = stretch.since as f64 * 1e-6;
     let begin = f64::from(first.middle) - 0.5 * f64::from(first.seconds);
     let end = f64::from(last.middle) + 0.5 * f64::from(last.seconds);
     Some((since + begin, since + end))

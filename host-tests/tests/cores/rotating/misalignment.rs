@@ -22,8 +22,7 @@ fn found(seed: u64, lag_s: f64, segment: Segment) -> (Case, Option<AxisMisalignm
         let turning_rate = (seed.is_multiple_of(2)).then_some(turning.stage_rate_rad_s as f32);
         turn_accumulator.push(&sample(&turning), turning_rate);
     }
-    let misalignment =
-        turn_accumulator.modulated()[0].misalignment(case.setting.site.noise.model());
+    let misalignment = turn_accumulator.modulated[0].misalignment(case.setting.site.noise.model());
     (case, misalignment)
 }
 

@@ -220,5 +220,5 @@ fn angles_taken_for_rates_are_no_overflow() {
         // Overflow panics in this profile.
         turn_accumulator.push(&sample, Some(angle as f32));
     }
-    assert!(turn_accumulator.stretches().is_empty());
+    assert!(turn_accumulator.stretches.is_empty());
 }

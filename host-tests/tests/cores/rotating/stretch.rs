@@ -28,8 +28,8 @@ fn stretch(count: u32) -> Stretch {
 #[track_caller]
 fn assert_mean(stretch: &Stretch, of: impl Fn(&Turn) -> f32) {
     let exact: f64 = (0..stretch.count()).map(|number| f64::from(of(&turn(number)))).sum();
-    let found: f64 = stretch.turns().iter().map(|turn| f64::from(of(turn))).sum();
-    let (exact, found) = (exact / f64::from(stretch.count()), found / stretch.turns().len() as f64);
+    let found: f64 = stretch.turns.iter().map(|turn| f64::from(of(turn))).sum();
+    let (exact, found) = (exact / f64::from(stretch.count()), found / stretch.turns.len() as f64);
     assert!((found - exact).abs() <= 3e-7 * exact.abs() + 3e-12, "{found} is not {exact}");
 }
 
@@ -37,7 +37,7 @@ fn assert_mean(stretch: &Stretch, of: impl Fn(&Turn) -> f32) {
 fn joined_turns_keep_means_number_and_order() {
     for count in [1, 2, 31, 32, 33, 34, 63, 64, 65, 100, 129, 1000, 4097] {
         let stretch = stretch(count);
-        let length = stretch.turns().len() as u32;
+        let length = stretch.turns.len() as u32;
         assert!(length as usize <= TURNS && stretch.count() <= count);
         // What waits is less than one joined turn.
         let joined = stretch.count() / length;
@@ -50,14 +50,14 @@ fn joined_turns_keep_means_number_and_order() {
         assert_mean(&stretch, |turn| turn.force[1]);
         assert_mean(&stretch, |turn| turn.mean_force);
         assert_mean(&stretch, |turn| turn.offset);
-        assert!((stretch.speed() - 0.8).abs() < 1e-7 && stretch.since() == 17);
+        assert!((stretch.speed() - 0.8).abs() < 1e-7 && stretch.since == 17);
         assert!(
-            (stretch.turns().iter().map(|turn| f64::from(turn.seconds)).sum::<f64>()
+            (stretch.turns.iter().map(|turn| f64::from(turn.seconds)).sum::<f64>()
                 - 8.0 * f64::from(stretch.count()))
             .abs()
                 < 1e-3
         );
-        for (number, turn) in stretch.turns().iter().enumerate() {
+        for (number, turn) in stretch.turns.iter().enumerate() {
             let middle = 8.0 * f64::from(joined) * (number as f64 + 0.5);
             assert!((f64::from(turn.middle) - middle).abs() < 1e-6 * middle, "{count} {number}");
         }
@@ -72,8 +72,8 @@ fn turns_of_different_lengths_are_weighted_by_them() {
         let offset = if number % 2 == 0 { 1.0 } else { 5.0 };
         stretch.push(Turn { seconds, offset, ..turn(number) });
     }
-    assert_eq!((stretch.turns().len(), stretch.count()), (32, 64));
-    for turn in stretch.turns() {
+    assert_eq!((stretch.turns.len(), stretch.count()), (32, 64));
+    for turn in stretch.turns {
         assert_eq!((turn.seconds, turn.offset), (8.0, 2.0));
     }
 }

@@ -182,7 +182,7 @@ fn the_noise_of_a_mean_is_that_of_the_change_of_a_gauss_markov_angle() {
     for seed in 0..12 {
         let (mut sway, mut chance) = (Sway::new(sensors()), Generator::new(seed));
         feed(&mut sway, &world, &mut chance, [0.0, 100.0], FORWARD);
-        let Decision::Swaying(_, noise) = sway.decision() else { panic!("it sways") };
+        let Decision::Swaying(_, noise) = sway.decision else { panic!("it sways") };
         stated = noise;
         let mut before = None;
         for dwell in 0..20 {
@@ -211,7 +211,7 @@ fn what_the_lever_accelerates_enters_no_more_than_stated() {
         let world = World { amplitude, hertz, height, ..STILL };
         let stated = CoarseSensors { lever: height as f32, ..sensors() };
         let (mut sway, mut chance) = settled(&world, stated, 150.0);
-        let Decision::Swaying(_, noise) = sway.decision() else { panic!("it sways") };
+        let Decision::Swaying(_, noise) = sway.decision else { panic!("it sways") };
         let (mut sum, mut count) = (0.0, 0.0);
         for dwell in 0..20 {
             let begin = 150.0 + 11.37 * f64::from(dwell);
@@ -238,10 +238,10 @@ fn a_base_at_rest_is_left_alone_and_nothing_is_subtracted_before_it_is_decided()
         let world = World { noise: noise(), bias: [0.05, -0.05, 0.03], ..STILL };
         let (mut sway, mut chance) = (Sway::new(sensors()), Generator::new(seed));
         let subtracted = feed(&mut sway, &world, &mut chance, [0.0, 21.9], FORWARD);
-        assert_eq!((subtracted, sway.decision()), (0.0, Decision::Watching));
+        assert_eq!((subtracted, sway.decision), (0.0, Decision::Watching));
         let subtracted = feed(&mut sway, &world, &mut chance, [21.9, 40.0], FORWARD);
         assert_eq!(subtracted, 0.0);
-        assert!(matches!(sway.decision(), Decision::Still(_)), "{:?}", sway.decision());
+        assert!(matches!(sway.decision, Decision::Still(_)), "{:?}", sway.decision);
     }
 }
 
@@ -250,8 +250,8 @@ fn the_size_of_a_sway_is_found() {
     for (degrees, hertz) in [(0.05_f64, 2.0), (0.1, 1.0), (0.5, 0.3)] {
         let world = World { amplitude: degrees.to_radians(), hertz, noise: noise(), ..STILL };
         let (sway, _) = settled(&world, sensors(), 30.0);
-        let Decision::Swaying(Size { angle, rate }, _) = sway.decision() else {
-            panic!("{degrees}° at {hertz} Hz: {:?}", sway.decision())
+        let Decision::Swaying(Size { angle, rate }, _) = sway.decision else {
+            panic!("{degrees}° at {hertz} Hz: {:?}", sway.decision)
         };
         let angle = f64::from(angle).to_degrees() * SQRT_2;
         assert!((angle / degrees - 1.0).abs() < 0.15, "{angle}° of {degrees}°");

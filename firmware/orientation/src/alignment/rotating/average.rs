@@ -88,7 +88,7 @@ impl<'a> Turns<'a> {
         let misalignment = misalignment::nearest(misalignments, frequency);
         let response = misalignment
             .map_or(Complex::default(), |misalignment| misalignment.response(frequency));
-        let all = stretch.turns();
+        let all = &stretch.turns;
         let phasor = |turn: &Turn| {
             Complex::of_signal(turn.rate) - response * Complex::of_signal(turn.turning)
         };
@@ -255,7 +255,7 @@ impl Average {
         mut each: impl FnMut(&Turn, Complex),
     ) -> Option<Self> {
         let mut turns = Turns::of(stretch, misalignments, steady);
-        let since = stretch.since() as f64 * 1e-6;
+        let since = stretch.since as f64 * 1e-6;
         for (phasor, turn) in turns.phasors.iter_mut().zip(turns.all) {
             *phasor = *phasor - tilting.vertical_part(since + f64::from(turn.middle));
         }
@@ -315,7 +315,7 @@ pub(super) fn steady_part(stretches: &[Stretch]) -> f64 {
     let mut regression = Regression::<2>::default();
     for stretch in stretches {
         let mut rates: Vec<f64, TURNS> =
-            stretch.turns().iter().map(|turn| f64::from(turn.offset)).collect();
+            stretch.turns.iter().map(|turn| f64::from(turn.offset)).collect();
         let speed = stretch.sense.signed(stretch.speed());
         regression.push(&[1.0, speed], median(&mut rates));
     }

@@ -39,7 +39,7 @@ impl Mark {
     /// Mark of a turn, or of joined ones, of the first speed of a stretch, with this value.
     pub fn of(stretch: &Stretch, turn: &Turn, value: Complex) -> Self {
         Self {
-            time: (stretch.since() as f64 * 1e-6 + f64::from(turn.middle)) as f32,
+            time: (stretch.since as f64 * 1e-6 + f64::from(turn.middle)) as f32,
             odd: stretch.sense.signed(1.0) as f32,
             is_second: false,
             turns: stretch.joined as f32,

@@ -136,16 +136,16 @@ impl Conclusion {
         let Evidence { setting, turn_accumulator, .. } = evidence;
         let mut noise = *setting.site.noise.model();
         if !setting.site.noise.is_white_known() {
-            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
+            noise.angle_random_walk = estimate(&turn_accumulator.stretches, &self.misalignments);
         }
-        let stretches = turn_accumulator.modulated().iter();
+        let stretches = turn_accumulator.modulated.iter();
         let found = stretches.filter_map(|stretch| stretch.misalignment(&noise));
         self.misalignments = found.collect();
         if self.misalignments.is_empty() {
             self.misalignments = setting.misalignments.iter().flatten().copied().collect();
         }
         if !setting.site.noise.is_white_known() {
-            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
+            noise.angle_random_walk = estimate(&turn_accumulator.stretches, &self.misalignments);
         }
         self.angle_random_walk = noise.angle_random_walk;
         let is_unknown = self.misalignments.is_empty() && !setting.sensor.is_flat;
@@ -174,7 +174,7 @@ impl Conclusion {
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
             if of(sense).next().is_none() {
-                let stretches = evidence.turn_accumulator.stretches();
+                let stretches = &evidence.turn_accumulator.stretches;
                 let count = stretches.iter().filter(|stretch| stretch.sense == sense);
                 return Err(
                     Refusal::TurnsTooFew { sense, turns: count.map(Stretch::count).sum() }.into()
@@ -204,7 +204,7 @@ impl Conclusion {
     /// `marks` with the sign of their sense.
     fn averages(&self, evidence: &Evidence, marks: &mut Marks) -> Vec<Average, STRETCHES> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
-        let (stretches, misalignments) = (turn_accumulator.stretches(), &self.misalignments);
+        let (stretches, misalignments) = (&turn_accumulator.stretches, &self.misalignments);
         let horizontal = setting.site.latitude.horizontal_rate();
         let steady = steady_part(stretches);
         let slow = stretches.first().map_or(0.0, Stretch::speed);
@@ -383,7 +383,7 @@ impl<'a> Evidence<'a> {
         let latitude = setting.site.latitude;
         let [along, across] = setting.site.g_sensitivity;
         let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
-        let tilting = Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt);
+        let tilting = Tilting::of(&turn_accumulator.stretches, latitude.gravity(), per_tilt);
         Self { setting, turn_accumulator, tilting }
     }
 }

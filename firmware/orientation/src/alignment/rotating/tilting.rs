@@ -154,7 +154,7 @@ fn direction(marks: &[Mark]) -> Complex {
 /// Force phasors of all turns over gravity, g.
 fn marks(stretches: &[Stretch], gravity: f64) -> Marks {
     let of = |turn: &Turn| Complex::of_signal(turn.force).scaled(1.0 / gravity);
-    let turns = |stretch| Stretch::turns(stretch).iter().map(move |turn| (stretch, turn));
-    let all = stretches.iter().flat_map(turns);
-    all.map(|(stretch, turn)| Mark::of(stretch, turn, of(turn))).collect()
+    let mark = |stretch, turn| Mark::of(stretch, turn, of(turn));
+    let all = stretches.iter();
+    all.flat_map(|stretch| stretch.turns.iter().map(move |turn| mark(stretch, turn))).collect()
 }

@@ -141,10 +141,10 @@ crate::words! { Sense:
 pub struct Stretch {
     /// Sense of rotation.
     pub sense: Sense,
-    /// Time of the stretch's first reference, µs.
-    since: u64,
-    /// Entries of the stretch.
-    turns: Vec<Turn, TURNS>,
+    /// Beginning of the stretch, the time of its first reference, µs.
+    pub since: u64,
+    /// Entries of the stretch, joined where there were many turns.
+    pub turns: Vec<Turn, TURNS>,
     /// Number of turns that each entry stands for; number of turns waiting to be joined, and their
     /// average.
     pub(super) joined: u32,
@@ -157,18 +157,6 @@ impl Stretch {
     #[must_use]
     pub fn new(sense: Sense, since: u64) -> Self {
         Self { sense, since, turns: Vec::new(), joined: 1, waiting: 0, sum: Turn::default() }
-    }
-
-    /// Beginning of the stretch, µs.
-    #[must_use]
-    pub const fn since(&self) -> u64 {
-        self.since
-    }
-
-    /// Entries of the stretch, joined where there were many turns.
-    #[must_use]
-    pub fn turns(&self) -> &[Turn] {
-        &self.turns
     }
 
     /// Number of turns of the platform.

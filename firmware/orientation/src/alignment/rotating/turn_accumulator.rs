@@ -89,13 +89,13 @@ pub struct TurnAccumulator {
     ellipse_turns: u32,
     /// Rate of the turn's first eighth, rad/s.
     speed: f32,
-    /// Rate-modulated stretches.
-    modulated: Vec<Modulated, SPEEDS>,
+    /// Rate-modulated stretches so far, one for each speed.
+    pub modulated: Vec<Modulated, SPEEDS>,
     /// Whether the next modulated eighth is skipped, because the sensor still responds to the
     /// previous motion.
     is_settling: bool,
-    /// Stretches at constant rate.
-    stretches: Vec<Stretch, STRETCHES>,
+    /// Stretches at constant rate so far.
+    pub stretches: Vec<Stretch, STRETCHES>,
     /// Interruption in progress.
     broken: Option<Broken>,
     /// Greatest slip of the encoder so far, rad; zero without a slip.
@@ -143,18 +143,6 @@ impl TurnAccumulator {
         (self.slip, self.speed) = (0.0, 0.0);
         (self.last_force, self.clipped) = (SpecificForce(0), 0);
         (self.repeated, self.most_repeated) = (0, 0);
-    }
-
-    /// Stretches at constant rate so far.
-    #[must_use]
-    pub fn stretches(&self) -> &[Stretch] {
-        &self.stretches
-    }
-
-    /// Rate-modulated stretches so far, one for each speed.
-    #[must_use]
-    pub fn modulated(&self) -> &[Modulated] {
-        &self.modulated
     }
 
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
@@ -357,7 +345,7 @@ impl TurnAccumulator {
         };
         self.ellipse += self.turn.ellipse.error(seconds);
         self.ellipse_turns += 1;
-        let since = self.stretches[stretch].since();
+        let since = self.stretches[stretch].since;
         let turn = Turn::of(&self.turn.sums, &reference, since, seconds, &forces);
         self.turn = Eighths::default();
         let Some(turn) = turn else { return false };
@@ -369,7 +357,7 @@ impl TurnAccumulator {
     fn stretch(&mut self, sense: Sense, speed: f64, since: u64) -> Option<usize> {
         let is_it = |stretch: &Stretch| {
             let is_same = (stretch.speed() - speed).abs() <= SAME_SPEED * speed;
-            stretch.sense == sense && (is_same || stretch.turns().is_empty())
+            stretch.sense == sense && (is_same || stretch.turns.is_empty())
         };
         let found = self.stretches.iter().position(is_it);
         found.or_else(|| {

@@ -110,13 +110,14 @@ pub struct Allan {
     /// Sum of all samples, nrad/s, modulo 2⁶⁴.
     angle: i64,
     /// Number of samples.
-    samples: u32,
+    pub samples: u32,
     /// Latest sample, nrad/s.
     last: i32,
     /// Smallest non-zero change between neighbouring samples less one, nrad/s; a change of zero
     /// wraps to the greatest value.
     change: u32,
-    saturated: bool,
+    /// Whether any sample stood at a limit of its range.
+    pub is_saturated: bool,
 }
 
 impl Default for Allan {
@@ -136,7 +137,7 @@ impl Allan {
             samples: 0,
             last: 0,
             change: u32::MAX,
-            saturated: false,
+            is_saturated: false,
         }
     }
 
@@ -161,23 +162,11 @@ impl Allan {
 
     /// Notes saturation and the smallest change, which reveal an unusable record.
     fn examine(&mut self, rate: AngularRate) {
-        self.saturated |= rate.is_saturated();
+        self.is_saturated |= rate.is_saturated();
         if self.samples > 0 {
             self.change = self.change.min(rate.0.abs_diff(self.last).wrapping_sub(1));
         }
         self.last = rate.0;
-    }
-
-    /// Number of samples taken.
-    #[must_use]
-    pub fn samples(&self) -> u32 {
-        self.samples
-    }
-
-    /// Whether any sample stood at a limit of its range.
-    #[must_use]
-    pub fn is_saturated(&self) -> bool {
-        self.saturated
     }
 
     /// Whether all samples were equal, as with a stuck gyro or bus; true also for an empty record.

@@ -50,10 +50,10 @@ impl NoiseFit {
     /// [`FitError`] if a sample was saturated, all samples are equal, the record is too short, or
     /// its noise is below the resolution of the samples (a variance of step²/12).
     pub fn of(allan: &Allan, sample_seconds: f64) -> Result<Self, FitError> {
-        if allan.is_saturated() {
+        if allan.is_saturated {
             return Err(FitError::Saturated);
         }
-        if allan.is_constant() && allan.samples() > 1 {
+        if allan.is_constant() && allan.samples > 1 {
             return Err(FitError::Constant);
         }
         let points: Vec<Point, MOST_POINTS> = allan.points(sample_seconds).collect();

@@ -195,7 +195,7 @@ pub struct Sway {
     /// Sums of the observation.
     watch: Watch,
     /// Decision on compensation.
-    decision: Decision,
+    pub decision: Decision,
 }
 
 impl Sway {
@@ -203,12 +203,6 @@ impl Sway {
     #[must_use]
     pub fn new(sensors: CoarseSensors) -> Self {
         Self { sensors, ..Self::default() }
-    }
-
-    /// Present state of the decision.
-    #[must_use]
-    pub fn decision(&self) -> Decision {
-        self.decision
     }
 
     /// Takes a reading `seconds` after the previous one: rates about, and specific forces on, the

@@ -20,7 +20,7 @@ type Pair<'a> = [&'a Stretch; 2];
 /// The azimuth, °; `None` where a stretch has no turns.
 pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
     let latitude = session.setting().site.latitude;
-    let pairs = pairs(session.turn_accumulator().stretches())?;
+    let pairs = pairs(&session.turn_accumulator.stretches)?;
     let first = *pairs.first()?;
     let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
     let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity());
@@ -45,7 +45,7 @@ pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
 
 /// The stretches with turns in pairs; `None` where one has no other.
 fn pairs(stretches: &[Stretch]) -> Option<Vec<Pair<'_>>> {
-    let turned = || stretches.iter().filter(|stretch| !stretch.turns().is_empty());
+    let turned = || stretches.iter().filter(|stretch| !stretch.turns.is_empty());
     let of = |sense: Sense| turned().filter(move |stretch| stretch.sense == sense);
     let both = of(Sense::Clockwise).zip(of(Sense::CounterClockwise));
     let pairs: Vec<Pair> = both.map(|(clockwise, counter)| [clockwise, counter]).collect();
@@ -68,7 +68,7 @@ fn rate(stretch: &Stretch, misalignments: &[AxisMisalignment], settling: usize) 
 
 /// The mean of something over a stretch's turns, but the first ones.
 fn average(stretch: &Stretch, settling: usize, of: impl Fn(&Turn) -> Complex) -> Complex {
-    let turns = stretch.turns();
+    let turns = &stretch.turns;
     let turns = turns.get(settling..).filter(|turns| !turns.is_empty()).unwrap_or(turns);
     let sum = turns.iter().map(of).fold(Complex::default(), |sum, part| sum + part);
     sum.scaled(1.0 / turns.len().max(1) as f64)

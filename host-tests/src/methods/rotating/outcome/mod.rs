@@ -90,7 +90,7 @@ impl Replay {
 
     /// The turns of all even stretches.
     fn turns(&self, conclusion: &Conclusion) -> Vec<TurnDetails> {
-        let stretches = self.session.turn_accumulator().stretches().iter();
+        let stretches = self.session.turn_accumulator.stretches.iter();
         let walk = conclusion.angle_random_walk;
         stretches
             .flat_map(|stretch| of_stretch(stretch, conclusion.misalignments.first(), walk))
@@ -196,10 +196,10 @@ fn of_stretch<'a>(
     walk: f64,
 ) -> impl Iterator<Item = TurnDetails> + 'a {
     let phasors: Vec<[f64; 2]> =
-        stretch.turns().iter().map(|turn| compensated(turn, misalignment)).collect();
+        stretch.turns.iter().map(|turn| compensated(turn, misalignment)).collect();
     let count = phasors.len().max(1) as f64;
     let mean = [0, 1].map(|part: usize| phasors.iter().map(|at| at[part]).sum::<f64>() / count);
-    stretch.turns().iter().zip(phasors).map(move |(turn, phasor)| {
+    stretch.turns.iter().zip(phasors).map(move |(turn, phasor)| {
         let sense = if turn.speed < 0.0 { "counter-clockwise" } else { "clockwise" };
         let seconds = f64::from(turn.seconds);
         TurnDetails {

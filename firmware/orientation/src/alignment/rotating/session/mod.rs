@@ -56,7 +56,7 @@ pub struct Session {
     /// Procedure.
     procedure: Procedure,
     /// Accumulator of the turns that have been made.
-    turn_accumulator: TurnAccumulator,
+    pub turn_accumulator: TurnAccumulator,
     /// State of the session.
     phase: Phase,
     /// State within the phase.
@@ -148,16 +148,10 @@ impl Session {
         &self.procedure
     }
 
-    /// Motion of the platform so far.
-    #[must_use]
-    pub fn turn_accumulator(&self) -> &TurnAccumulator {
-        &self.turn_accumulator
-    }
-
     /// Number of turns at constant rate that are done, and planned.
     #[must_use]
     pub fn turns(&self) -> (u32, u32) {
-        let done = self.turn_accumulator.stretches().iter().map(Stretch::count).sum();
+        let done = self.turn_accumulator.stretches.iter().map(Stretch::count).sum();
         let speeds = 0..self.procedure.speeds.len();
         (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
@@ -171,7 +165,7 @@ impl Session {
     /// Axis misalignments that were measured, with date and temperature, to be stored.
     pub fn misalignments(&self) -> impl Iterator<Item = AxisMisalignment> {
         let temperature = self.level.temperature.unwrap_or(f32::NAN);
-        let found = self.turn_accumulator.modulated().iter();
+        let found = self.turn_accumulator.modulated.iter();
         found
             .filter_map(|stretch| stretch.misalignment(self.setting.site.noise.model()))
             .map(move |it| AxisMisalignment { date: self.procedure.date, temperature, ..it })

@@ -206,7 +206,7 @@ impl Session {
                 average.push(&self.coefficients, sample);
                 return None;
             }
-            Some(_) if self.phase == Phase::Dwell => {
+            Some(_) if matches!(self.phase, Phase::Dwell) => {
                 ended = Some(self.complete(sample.time, listener));
             }
             _ => {}
@@ -401,7 +401,7 @@ impl Method<Sample> for Session {
 
     fn take(&mut self, input: Input<'_, Sample>, listener: Listener) -> Request {
         match input {
-            _ if self.phase == Phase::Done => Request::Done,
+            _ if matches!(self.phase, Phase::Done) => Request::Done,
             _ if matches!(self.phase, Phase::Compute(_)) => Request::Continue,
             Input::Sample(sample) => self.sample(sample, listener),
             Input::Sway(sway) => {
@@ -427,7 +427,7 @@ impl Method<Sample> for Session {
     }
 
     fn verdict(&self) -> Option<Verdict> {
-        let conclusion = self.conclusion.as_ref().filter(|_| self.phase == Phase::Done)?;
+        let conclusion = self.conclusion.as_ref().filter(|_| matches!(self.phase, Phase::Done))?;
         let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
         Some(conclusion.verdict.map(|azimuth| Solution { azimuth, limit }))
     }

@@ -85,7 +85,7 @@ impl Store {
         }
         let Self::Survey(allan) = self else { return u32::MAX };
         allan.push(rate);
-        allan.samples()
+        allan.samples
     }
 }
 
