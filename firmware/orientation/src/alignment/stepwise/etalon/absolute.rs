@@ -7,7 +7,7 @@
 use libm::floor;
 
 use super::answer::{Acceptance, Match};
-use super::arc::{Cover, Judge, Side};
+use super::arc::{Cover, Judge};
 use super::exact;
 use super::series::Series;
 use super::sweep::{Piece, Sweep};
@@ -144,50 +144,29 @@ fn refine(sweep: &Sweep, k: i32) -> f64 {
     place
 }
 
-/// Comparison of one piece's continuous sum with a limit.
-struct Within<'a> {
-    table: Table,
-    series: &'a Series,
-    piece: Piece,
-    limit: u64,
-    rounding: f64,
-    evaluations: u32,
-}
-
-impl Judge for Within<'_> {
-    fn side(&self, k: i32) -> Side {
-        let above = self.piece.at(self.table, k) - self.limit as f64;
-        Side::of(above, -self.rounding, self.rounding)
-    }
-
-    fn accepts(&mut self, k: i32) -> bool {
-        self.evaluations += 1;
-        exact::absolute(self.table, self.series, k) <= self.limit
-    }
-}
-
 /// Arc on which the sum is at most `limit`; see [`super::accepted`].
 #[inline(never)]
 pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
     let mut sweep = Sweep::empty();
     sweep.fill(series);
+    let accepts = |k: i32| exact::absolute(table, series, k) <= limit;
+    let rounding = sweep.rounding;
     let mut cover = Cover::default();
-    let mut evaluations = 0;
     for piece in sweep.pieces() {
-        let rounding = sweep.rounding;
-        let mut judge = Within { table, series, piece, limit, rounding, evaluations };
+        let above = |k: i32| piece.at(table, k) - limit as f64;
+        let judge =
+            Judge { continuous: &above, sure: -rounding, reach: rounding, accepts: &accepts };
         let (first, last) = piece.indices();
         if first <= last && piece.dips_to(limit as f64 + rounding) {
             let mut turns = [piece.minimum(), piece.maximum()].map(|turn| floor(turn) as i32);
             sort(&mut turns, |a, b| a < b);
             let mut from = first;
             for turn in turns.into_iter().filter(|turn| (first..last).contains(turn)) {
-                cover.judge_monotone(&mut judge, from, turn);
+                cover.judge_monotone(&judge, from, turn);
                 from = turn + 1;
             }
-            cover.judge_monotone(&mut judge, from, last);
+            cover.judge_monotone(&judge, from, last);
         }
-        evaluations = judge.evaluations;
     }
-    Acceptance { accepted: cover.finish(), evaluations }
+    cover.finish()
 }

@@ -1,11 +1,11 @@
 //! The smallest arc that covers an accepted set, built while walking once round the circle.
 
-use super::answer::Accepted;
+use super::answer::{Acceptance, Accepted};
 use crate::math::reference_table::TURN;
 
 /// Side of the limit on which the continuous objective and its error bound put one index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Side {
+enum Side {
     /// The index is certainly accepted.
     Inside,
     /// The index is too near the limit and must be evaluated exactly.
@@ -14,23 +14,27 @@ pub(super) enum Side {
     Outside,
 }
 
-impl Side {
-    /// Side of a value that is certain up to one bound, and possible up to another.
-    pub(super) fn of(value: f64, sure: f64, reach: f64) -> Self {
-        match value {
-            value if value <= sure => Self::Inside,
-            value if value <= reach => Self::Unsure,
-            _ => Self::Outside,
-        }
-    }
+/// Comparison of single indices with a limit: by the continuous objective, and exactly.
+pub(super) struct Judge<'a> {
+    /// Continuous objective at an index.
+    pub(super) continuous: &'a dyn Fn(i32) -> f64,
+    /// Largest continuous value at which the exact one is certainly within the limit.
+    pub(super) sure: f64,
+    /// Largest continuous value at which the exact one may be within the limit.
+    pub(super) reach: f64,
+    /// Whether the exact objective at an index is within the limit.
+    pub(super) accepts: &'a dyn Fn(i32) -> bool,
 }
 
-/// Comparison of single indices with a limit: by the continuous bound, and exactly.
-pub(super) trait Judge {
+impl Judge<'_> {
     /// The side on which the continuous objective and its error bound put index `k`.
-    fn side(&self, k: i32) -> Side;
-    /// Whether the exact objective at index `k` is within the limit.
-    fn accepts(&mut self, k: i32) -> bool;
+    fn side(&self, k: i32) -> Side {
+        match (self.continuous)(k) {
+            value if value <= self.sure => Side::Inside,
+            value if value <= self.reach => Side::Unsure,
+            _ => Side::Outside,
+        }
+    }
 }
 
 /// Accepted indices seen so far, in increasing order from the start of the walk.
@@ -46,6 +50,8 @@ pub(super) struct Cover {
     gap: i32,
     /// Index at which the arc after that gap begins.
     start: i32,
+    /// Number of exact evaluations.
+    evaluations: u32,
 }
 
 impl Cover {
@@ -73,22 +79,19 @@ impl Cover {
     }
 
     /// Judges every index from `from` to `to` by itself.
-    pub(super) fn judge_each(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+    pub(super) fn judge_each(&mut self, judge: &Judge, from: i32, to: i32) {
         for k in from..=to {
-            let inside = match judge.side(k) {
-                Side::Inside => true,
-                Side::Unsure => judge.accepts(k),
-                Side::Outside => false,
-            };
-            if inside {
-                self.accept(k, k);
+            match judge.side(k) {
+                Side::Inside => self.accept(k, k),
+                Side::Unsure => self.accept_exactly(judge, k, k),
+                Side::Outside => {}
             }
         }
     }
 
     /// Judges `from` to `to`, between which the continuous objective is monotone, by bisection:
     /// only the indices at the crossing are evaluated exactly.
-    pub(super) fn judge_monotone(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+    pub(super) fn judge_monotone(&mut self, judge: &Judge, from: i32, to: i32) {
         if from > to {
             return;
         }
@@ -109,16 +112,22 @@ impl Cover {
     }
 
     /// Evaluates every index of a run exactly.
-    fn accept_exactly(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+    fn accept_exactly(&mut self, judge: &Judge, from: i32, to: i32) {
         for k in from..=to {
-            if judge.accepts(k) {
+            self.evaluations += 1;
+            if (judge.accepts)(k) {
                 self.accept(k, k);
             }
         }
     }
 
     /// Result after the walk once round the circle.
-    pub(super) fn finish(mut self) -> Accepted {
+    pub(super) fn finish(mut self) -> Acceptance {
+        Acceptance { accepted: self.accepted(), evaluations: self.evaluations }
+    }
+
+    /// The arc, once the walk is done.
+    fn accepted(&mut self) -> Accepted {
         let Some(first) = self.first else { return Accepted::Nothing };
         self.close(first + TURN);
         if self.gap == 0 {
@@ -132,7 +141,7 @@ impl Cover {
 
 /// Last certain index, and last index that is not certainly rejected, on the way from `near`
 /// (beyond the certain end) to `far` (beyond the other).
-fn crossing(judge: &impl Judge, near: i32, far: i32) -> (i32, i32) {
+fn crossing(judge: &Judge, near: i32, far: i32) -> (i32, i32) {
     let sure = last_within(|k| judge.side(k) == Side::Inside, near, far, TURN);
     (sure, last_within(|k| judge.side(k) != Side::Outside, sure, far, 1))
 }

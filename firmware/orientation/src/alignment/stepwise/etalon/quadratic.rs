@@ -7,7 +7,7 @@
 use libm::{fabs, sqrt};
 
 use super::answer::{Acceptance, Match};
-use super::arc::{Cover, Judge, Side, last_within};
+use super::arc::{Cover, Judge, last_within};
 use super::exact::Squares;
 use super::landscape::Landscape;
 use super::series::Series;
@@ -30,8 +30,6 @@ struct Objective<'a> {
     slack: f64,
     /// Continuous value below which the short arithmetic is exact.
     small: f64,
-    /// Number of exact evaluations.
-    evaluations: u32,
 }
 
 impl<'a> Objective<'a> {
@@ -46,7 +44,6 @@ impl<'a> Objective<'a> {
             slack: landscape.slack(),
             // Half the limit leaves room for the difference between continuous and exact.
             small: 0.5 * squares.small_limit(series.count()),
-            evaluations: 0,
         }
     }
 
@@ -61,8 +58,7 @@ impl<'a> Objective<'a> {
     }
 
     /// Exact objective at `k`, where the continuous one is `near`.
-    fn exact(&mut self, k: i32, near: f64) -> u128 {
-        self.evaluations += 1;
+    fn exact(&self, k: i32, near: f64) -> u128 {
         self.squares.at(self.table, self.series, k, near < self.small)
     }
 
@@ -89,18 +85,21 @@ struct Best {
     origin: i32,
     /// Greatest continuous value whose exact value may still win.
     reach: f64,
+    /// Number of exact evaluations.
+    evaluations: u32,
 }
 
 impl Best {
     /// Evaluates the first index.
-    fn at(objective: &mut Objective, k: i32, near: f64) -> Self {
+    fn at(objective: &Objective, k: i32, near: f64) -> Self {
         let value = objective.exact(k, near);
-        Self { index: k, objective: value, origin: k, reach: objective.reach(value as f64) }
+        let reach = objective.reach(value as f64);
+        Self { index: k, objective: value, origin: k, reach, evaluations: 1 }
     }
 
     /// Evaluates `origin` + `sign`, + 2 `sign`, … below `limit` steps as far as they can compete;
     /// returns how far that is.
-    fn walk(&mut self, objective: &mut Objective, origin: i32, sign: i32, limit: i32) -> i32 {
+    fn walk(&mut self, objective: &Objective, origin: i32, sign: i32, limit: i32) -> i32 {
         let place = |distance: i32| (origin + sign * distance).rem_euclid(TURN);
         // The minimum may lie beyond `origin`, by the two steps of rounding or anywhere where it is
         // flat.
@@ -122,18 +121,19 @@ impl Best {
     }
 
     /// Evaluates an index exactly and keeps it if it is better, or equal and lower.
-    fn offer(&mut self, objective: &mut Objective, k: i32, near: f64, origin: i32) {
+    fn offer(&mut self, objective: &Objective, k: i32, near: f64, origin: i32) {
         let value = objective.exact(k, near);
+        self.evaluations += 1;
         if (value, k) < (self.objective, self.index) {
             let reach = self.reach.min(objective.reach(value as f64));
-            *self = Self { index: k, objective: value, origin, reach };
+            *self = Self { index: k, objective: value, origin, reach, ..*self };
         }
     }
 }
 
 /// Index of the least exact objective; see [`super::search`].
 pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
-    let mut objective = Objective::new(table, series, squares);
+    let objective = Objective::new(table, series, squares);
     let bounds = objective.landscape.bounds();
     let [mut first, mut second] = objective.landscape.minima(table, &bounds);
     let (mut near, mut other) = (objective.continuous(first), objective.continuous(second));
@@ -141,40 +141,21 @@ pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
         core::mem::swap(&mut first, &mut second);
         core::mem::swap(&mut near, &mut other);
     }
-    let mut best = Best::at(&mut objective, first, near);
-    let above = best.walk(&mut objective, first, 1, TURN);
-    let below = best.walk(&mut objective, first, -1, TURN - above);
+    let mut best = Best::at(&objective, first, near);
+    let above = best.walk(&objective, first, 1, TURN);
+    let below = best.walk(&objective, first, -1, TURN - above);
     if (second - (first - below)).rem_euclid(TURN) > above + below {
         if other <= best.reach {
-            best.offer(&mut objective, second, other, second);
+            best.offer(&objective, second, other, second);
         }
-        let above = best.walk(&mut objective, second, 1, TURN);
-        best.walk(&mut objective, second, -1, TURN - above);
+        let above = best.walk(&objective, second, 1, TURN);
+        best.walk(&objective, second, -1, TURN - above);
     }
     Match {
         index: best.index,
         objective: best.objective,
         azimuth: objective.landscape.refine(best.origin),
-        evaluations: objective.evaluations,
-    }
-}
-
-/// Comparison of the continuous objective with a limit.
-struct Within<'a> {
-    objective: Objective<'a>,
-    limit: u128,
-    sure: f64,
-    reach: f64,
-}
-
-impl Judge for Within<'_> {
-    fn side(&self, k: i32) -> Side {
-        Side::of(self.objective.continuous(k), self.sure, self.reach)
-    }
-
-    fn accepts(&mut self, k: i32) -> bool {
-        // The exact value is near the limit wherever the side is unsure.
-        self.objective.exact(k, self.reach) <= self.limit
+        evaluations: best.evaluations,
     }
 }
 
@@ -185,27 +166,30 @@ pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u12
     let [first, second] = objective.landscape.minima(table, &bounds);
     let [third, fourth] = objective.landscape.maxima(table, &bounds);
     let (sure, reach) = (objective.surety(limit as f64), objective.reach(limit as f64));
-    let mut judge = Within { objective, limit, sure, reach };
+    // The exact value is near the limit wherever the side is unsure.
+    let accepts = |k: i32| objective.exact(k, reach) <= limit;
+    let continuous = |k: i32| objective.continuous(k);
+    let judge = Judge { continuous: &continuous, sure, reach, accepts: &accepts };
     let mut anchors = [first, second, third, fourth];
     sort(&mut anchors, |a, b| a < b);
     let mut cover = Cover::default();
-    for (from, to) in anchors.into_iter().zip([anchors[1], anchors[2], anchors[3]]) {
-        segment(&mut cover, &mut judge, from, to);
+    let ends = [anchors[1], anchors[2], anchors[3], anchors[0] + TURN];
+    for (from, to) in anchors.into_iter().zip(ends) {
+        segment(&mut cover, &judge, &objective, from, to);
     }
-    segment(&mut cover, &mut judge, anchors[3], anchors[0] + TURN);
-    Acceptance { accepted: cover.finish(), evaluations: judge.objective.evaluations }
+    cover.finish()
 }
 
 /// Judges the indices `from` to `to` − 1 between two stationary points of the objective: one by one
 /// where it is flat, by bisection between.
-fn segment(cover: &mut Cover, judge: &mut Within, from: i32, to: i32) {
+fn segment(cover: &mut Cover, judge: &Judge, objective: &Objective, from: i32, to: i32) {
     // A stationary point is known to one step, and its bounds were rounded by another.
     let mut rise = (from + 2).min(to - 1);
-    while rise < to - 1 && judge.objective.is_flat(rise) {
+    while rise < to - 1 && objective.is_flat(rise) {
         rise += 1;
     }
     let mut fall = (to - 2).max(rise + 1);
-    while fall > rise + 1 && judge.objective.is_flat(fall) {
+    while fall > rise + 1 && objective.is_flat(fall) {
         fall -= 1;
     }
     cover.judge_each(judge, from, rise);
