@@ -14,7 +14,7 @@ use super::progress::Listener;
 use super::refusal::Refusal;
 use super::rotating::misalignment::AxisMisalignment;
 use super::verdict::Verdict;
-use crate::signal::sway::SwayNoise;
+use crate::signal::SwayNoise;
 
 /// Input of an alignment whose samples are of the type `S`.
 #[derive(Clone, Copy, Debug)]

@@ -17,6 +17,7 @@ pub mod verdict;
 pub use method::{Input, Method, Request};
 pub use progress::{Listener, Progress};
 pub use refusal::Refusal;
+pub(crate) use refusal::refuse_if;
 pub use setup::SetupError;
 pub use slow::SlowMotion;
 pub use verdict::{Azimuth, Judged, Passed, Solution, Verdict};

@@ -4,7 +4,7 @@ use super::budget::Source;
 use super::refusal::{Refusal, refuse_if};
 use super::verdict::Passed;
 use crate::earth::Latitude;
-use crate::noise::model::{GyroNoise, StatedNoise};
+use crate::noise::{GyroNoise, StatedNoise};
 use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 /// Site, instrument and requirements. A standard deviation of zero means exact.

@@ -1,7 +1,7 @@
 //! Configuration of the attitude: gyros and accelerometers of a body, and its site.
 
 use crate::earth::Latitude;
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 use crate::units::DEGREE;
 
 /// Configured properties of a gyro.

@@ -7,6 +7,9 @@ pub mod regression;
 pub mod rotation;
 pub mod turn;
 
+pub use reference_table::Table;
+pub use regression::{COLUMNS, Column, Regression, Solution};
+
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 

@@ -1,11 +1,9 @@
 //! The aligner: a method of alignment from power-on to its verdict, and again as it is ordered.
 
 use super::Order;
-use crate::alignment::progress::{Listener, Progress};
-use crate::alignment::refusal::Refusal;
-use crate::alignment::{Azimuth, Method, Request, method};
-use crate::signal::Timed;
-use crate::signal::sway::SwayNoise;
+use crate::alignment::progress::Progress;
+use crate::alignment::{Azimuth, Listener, Method, Refusal, Request, method};
+use crate::signal::{SwayNoise, Timed};
 use crate::units::Instant;
 
 /// Longest time until the mechanism's angles are valid, µs: six searches of a stage for its index

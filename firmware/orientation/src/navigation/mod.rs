@@ -22,7 +22,7 @@ pub use navigator::{Input, Motion, Navigator, Output};
 pub use policy::{Policy, Realignment};
 pub use progress::Progress;
 
-use crate::alignment::refusal::Refusal;
+use crate::alignment::Refusal;
 
 /// Order to the aligner.
 #[derive(Clone, Copy, Debug, PartialEq)]

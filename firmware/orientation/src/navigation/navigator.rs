@@ -4,8 +4,7 @@
 use super::Order;
 use super::policy::{Policy, Realignment};
 use super::progress::{Progress, VerticalGyro};
-use crate::alignment::refusal::Refusal;
-use crate::alignment::{Azimuth, Request};
+use crate::alignment::{Azimuth, Refusal, Request};
 use crate::attitude::restart::{RecallRefusal, Remembered};
 use crate::attitude::{Gyro, Keeper, Realigned, Report, State, Trust};
 use crate::signal::InertialSample;

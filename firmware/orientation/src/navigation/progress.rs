@@ -1,7 +1,6 @@
 //! Progress of the navigator as it is reported, with the sentences of the log.
 
-use crate::alignment::Azimuth;
-use crate::alignment::refusal::Refusal;
+use crate::alignment::{Azimuth, Refusal};
 use crate::attitude::restart::RecallRefusal;
 use crate::attitude::{Realigned, State};
 use crate::units::DEGREES_PER_RADIAN as DEGREES;

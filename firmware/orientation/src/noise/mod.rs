@@ -5,3 +5,5 @@ pub mod allan;
 pub mod fit;
 pub mod model;
 pub mod whitener;
+
+pub use model::{GyroNoise, StatedNoise};

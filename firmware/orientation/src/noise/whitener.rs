@@ -12,7 +12,7 @@
 
 use super::model::GyroNoise;
 use crate::math::Scalar;
-use crate::signal::sway::SwayNoise;
+use crate::signal::SwayNoise;
 
 /// Number of Gauss–Markov processes that make up flicker noise.
 const FLICKER_STATES: usize = 7;

@@ -15,7 +15,7 @@
 //! Noise coefficients are in SI units here. Check: N 0.001 °/√h, R 0.127 °/h², `t_rot` 2 s and
 //! `t_GC` 300 s give n = 11 and Δω = 3.6505e-3 °/h.
 
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 
 /// Fewest positions that compensate a bias.
 const FEWEST: u32 = 2;

@@ -10,7 +10,7 @@ pub mod order;
 pub mod prediction;
 
 use crate::earth::Latitude;
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 use crate::units::TURN;
 use order::{Order, PARTS};
 use prediction::{Visit, rate_sigma};

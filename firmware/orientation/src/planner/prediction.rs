@@ -6,12 +6,11 @@
 //! contributions of tilt, encoder and scale belong to the conclusion.
 
 use super::order::PARTS;
-use crate::math::reference_table::Table;
 use crate::math::reference_table::{ONE, TURN};
-use crate::math::regression::{COLUMNS, Column, Regression};
-use crate::noise::model::GyroNoise;
+use crate::math::{COLUMNS, Column, Regression, Table};
+use crate::noise::GyroNoise;
 use crate::noise::whitener::Whitener;
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 use crate::units::DEGREE_PER_HOUR;
 
 /// Degrees per hour in a rad/s.

@@ -5,8 +5,7 @@ use super::progress::Progress;
 use super::setting::Setting;
 use super::spin::Spin;
 use super::state::{Condition, State};
-use crate::alignment::progress::Listener;
-use crate::alignment::{Input, Method, Request, Verdict};
+use crate::alignment::{Input, Listener, Method, Request, Verdict};
 use crate::signal::SpinSample;
 use crate::units::Instant;
 

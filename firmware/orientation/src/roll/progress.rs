@@ -1,7 +1,7 @@
 //! Progress of the tracking of a roll, with the sentences of the log.
 
 use super::state::{Condition, State};
-use crate::alignment::refusal::Refusal;
+use crate::alignment::Refusal;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN, wrapped};
 use crate::words::Rounded;
 

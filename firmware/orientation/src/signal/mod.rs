@@ -9,6 +9,9 @@ pub mod rest;
 pub mod strapdown;
 pub mod sway;
 
+pub use dwell::{Dwell, SampleFault};
+pub use sway::SwayNoise;
+
 use crate::units::{
     Angle, AngleIncrement, AngularRate, Instant, SpecificForce, SpinForce, Temperature,
 };

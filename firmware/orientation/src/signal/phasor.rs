@@ -12,8 +12,7 @@
 //! cos θ, sin θ over whole turns).
 
 use super::Sample;
-use crate::math::reference_table::Table;
-use crate::math::regression::Regression;
+use crate::math::{Regression, Table};
 use crate::units::Angle;
 
 /// Number of columns that the gyro's rate may be fitted to.

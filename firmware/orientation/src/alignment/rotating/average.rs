@@ -7,8 +7,7 @@ use super::change::MEDIAN_OF_NEIGHBOURS;
 use super::misalignment::{self, AxisMisalignment};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, TURNS, Turn};
-use crate::math::regression::{Column, Regression};
-use crate::math::{Complex, chi_square_tail, median};
+use crate::math::{Column, Complex, Regression, chi_square_tail, median};
 
 /// Squared distance of a turn from the mean of the others, in variances of either part, beyond
 /// which it is excluded (exp(−x/2): one sound turn in 40 000).

@@ -11,8 +11,7 @@
 use heapless::Vec;
 
 use super::turn::{STRETCHES, Stretch, TURNS, Turn};
-use crate::math::regression::{COLUMNS, Column, Regression, Solution};
-use crate::math::{Complex, median, sort};
+use crate::math::{COLUMNS, Column, Complex, Regression, Solution, median, sort};
 
 /// Greatest number of turns of all stretches.
 const MARKS: usize = STRETCHES * TURNS;

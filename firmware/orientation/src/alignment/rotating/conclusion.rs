@@ -12,11 +12,10 @@ use super::tilting::Tilting;
 use super::turn::{SPEEDS, STRETCHES, Sense, Stretch, Turn};
 use super::turn_accumulator::TurnAccumulator;
 use super::{Refusal, Setting};
-use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion};
+use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion, refuse_if};
 use crate::device::Device;
 use crate::math::{Complex, chi_square_tail};
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 
 /// Greatest relative difference between the speeds of both senses.

@@ -9,10 +9,8 @@ use super::change::{Found, Mark, Marks, Record, Shape};
 use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
 use super::{Refusal, misalignment, solution};
-use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Passed, SlowMotion};
-use crate::math::Complex;
-use crate::math::regression::Column;
+use crate::alignment::{self, Passed, SlowMotion, refuse_if};
+use crate::math::{Column, Complex};
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
 
 /// Gain of chi-square from which a drift of the direction is accepted (p = 0.0001).

@@ -9,9 +9,8 @@
 
 use super::part::Modulated;
 use crate::checksum::{numbers, record, record_bytes};
-use crate::math::Complex;
-use crate::math::regression::Column;
-use crate::noise::model::GyroNoise;
+use crate::math::{Column, Complex};
+use crate::noise::GyroNoise;
 use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, TURNING};
 use crate::units::TURN;
 

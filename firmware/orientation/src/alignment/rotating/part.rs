@@ -1,8 +1,7 @@
 //! Parts of the turn accumulator: the eighth of a turn in progress, its forces, a rate-modulated
 //! stretch, an interruption.
 
-use crate::math::Complex;
-use crate::math::regression::Regression;
+use crate::math::{Complex, Regression};
 use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, SINE, Sums};
 use crate::units::Angle;
 

@@ -13,7 +13,7 @@ use super::tilting::Tilting;
 use super::turn::SPEEDS;
 use crate::alignment::budget::Budget;
 use crate::math::Complex;
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 use crate::units::{ARCSECOND, TURN, wrapped};
 
 /// Standard deviation of a flat sensor's lag without a rate-modulated turn, 1σ, s.

@@ -4,8 +4,7 @@
 use super::change::{Mark, Marks, Record, Shape};
 use super::level::Lean;
 use super::turn::{Stretch, Turn};
-use crate::math::Complex;
-use crate::math::regression::Column;
+use crate::math::{Column, Complex};
 use crate::units::DEGREE_PER_HOUR;
 
 /// Prior 1σ of the difference between both senses' forces, g.

@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use super::part::AXES;
-use crate::math::regression::{Column, Regression};
+use crate::math::{Column, Regression};
 use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, RATE, SINE, Sums, TIME, TURNING};
 
 /// Greatest number of entries in a stretch; with more turns, neighbours are joined.

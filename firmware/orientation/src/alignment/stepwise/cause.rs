@@ -11,9 +11,9 @@ use super::quality::{median_of, statistics};
 use super::setting::Setting;
 use crate::alignment;
 use crate::device::{Device, Trouble};
-use crate::math::regression::{Column, Regression};
+use crate::math::{Column, Regression};
 use crate::signal::blocks::BlockStatistics;
-use crate::signal::dwell::{Dwell, SampleFault};
+use crate::signal::{Dwell, SampleFault};
 
 /// Factor within which the noise power of a dwell counts as like the median one; chance makes less
 /// of a dozen blocks.

@@ -13,10 +13,9 @@ use super::quality::{self, Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::tilt::Tilt;
 use super::{CAPACITY, Refusal, cause, different_positions, level};
-use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion};
+use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion, refuse_if};
 use crate::math::chi_square_tail;
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 use crate::units::{Angle, TURN, wrapped};
 
 /// Studentised residual beyond which a dwell is excluded (2.7e-5 two-sided: one sound session of 60

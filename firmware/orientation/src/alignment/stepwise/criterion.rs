@@ -11,9 +11,9 @@ use super::etalon::{Accepted, Limit, Series};
 use super::fit::{Fit, Problem};
 use super::{CAPACITY, Refusal, etalon};
 use crate::alignment::Azimuth;
-use crate::math::reference_table::{ONE, STEP, Table};
-use crate::math::sort;
-use crate::signal::dwell::Dwell;
+use crate::math::reference_table::{ONE, STEP};
+use crate::math::{Table, sort};
+use crate::signal::Dwell;
 use crate::units::wrapped;
 
 /// Criterion by which the azimuth is chosen.

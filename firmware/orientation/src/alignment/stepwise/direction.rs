@@ -8,8 +8,7 @@
 //! is scanned before the best is refined.
 
 use super::setting::{Amplitude, Half};
-use crate::math::reference_table as table;
-use crate::math::reference_table::Table;
+use crate::math::{Table, reference_table as table};
 
 /// The two components with their covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]

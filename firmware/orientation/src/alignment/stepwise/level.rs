@@ -15,8 +15,8 @@
 use super::direction::{inverted, quadratic};
 use super::mount::Mount;
 use super::tilt::{Tilt, TiltRate};
-use crate::math::regression::{COLUMNS, Column, Regression};
-use crate::signal::dwell::Dwell;
+use crate::math::{COLUMNS, Column, Regression};
+use crate::signal::Dwell;
 use crate::units::DEGREE_PER_HOUR;
 
 /// Least uncertainty of a bias that is configured as exact, g.

@@ -26,7 +26,7 @@ pub use refusal::Refusal;
 pub use session::Session;
 
 use crate::planner::POSITIONS;
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 
 /// Greatest number of dwells of an alignment: that of the board, or with the feature `recordings`
 /// as many as a long recording has.

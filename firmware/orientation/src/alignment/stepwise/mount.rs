@@ -20,7 +20,7 @@
 use super::tilt::Tilt;
 use crate::earth::Latitude;
 use crate::math::rotation::{IDENTITY, dot};
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
 use crate::words::Rounded;
 

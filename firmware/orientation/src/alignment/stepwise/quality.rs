@@ -10,9 +10,8 @@ use super::tilt::Tilt;
 use crate::math::rotation::length;
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::BlockStatistics;
-use crate::signal::dwell::{Dwell, SampleFault};
 use crate::signal::rest::{Criteria, Sensors};
-use crate::signal::sway::SwayNoise;
+use crate::signal::{Dwell, SampleFault, SwayNoise};
 use crate::units::DEGREE_PER_HOUR;
 use crate::words::Rounded;
 

@@ -3,7 +3,7 @@
 use super::mount::Mount;
 use crate::alignment::site::Site;
 use crate::earth::Latitude;
-use crate::signal::sway::SwayNoise;
+use crate::signal::SwayNoise;
 
 /// Half circle in which the azimuth is known to lie: the ambiguity that two opposite positions
 /// leave.

@@ -14,8 +14,7 @@ use super::solution::{Belief, Solution, Tally};
 use super::stop_detector::{Rests, StopDetector, WINDOW};
 use super::{Refusal, Setting};
 use crate::alignment::budget::{Budget, Source};
-use crate::alignment::refusal::refuse_if;
-use crate::alignment::{self, Azimuth, Judged, Passed};
+use crate::alignment::{self, Azimuth, Judged, Passed, refuse_if};
 use crate::earth::EARTH_RATE;
 use crate::math::chi_square_tail;
 use crate::math::rotation::{

@@ -13,7 +13,7 @@ use core::num::NonZeroU32;
 
 use super::kernel::Kernel;
 use super::{Point, variance};
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 
 /// How far beyond the corners the flicker covariance is followed, in spans of the longer terms: the
 /// tail falls as the fourth power, and the neglected part is below 0.1 %.

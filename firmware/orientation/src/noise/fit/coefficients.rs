@@ -1,7 +1,7 @@
 //! Noise coefficients as one record shows them, each found or limited.
 
+use crate::noise::GyroNoise;
 use crate::noise::allan::variance;
-use crate::noise::model::GyroNoise;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words::Rounded;
 

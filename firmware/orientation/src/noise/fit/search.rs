@@ -16,9 +16,9 @@ use heapless::Vec;
 use super::average::{Choice, average};
 use super::coefficients::{Estimate, NoiseFit};
 use super::regression::{COLUMNS, Columns, Sums, WHITE, sum};
+use crate::noise::GyroNoise;
 use crate::noise::allan::covariance::degrees_of_freedom;
 use crate::noise::allan::{MOST_POINTS, Point, terms, variance};
-use crate::noise::model::GyroNoise;
 
 /// Price of a coefficient, in deviance: 4, two standard deviations squared, for each of about two
 /// points that carry the same information.

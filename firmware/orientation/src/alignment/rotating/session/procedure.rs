@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use crate::alignment::rotating::turn::SPEEDS;
 use crate::alignment::setup::SetupError;
-use crate::math::reference_table::Table;
+use crate::math::Table;
 use crate::units::TURN;
 
 /// Fewest turns in each sense: a single one cannot be distinguished from a disturbed one.

@@ -11,8 +11,8 @@ use super::arc::{Cover, Judge};
 use super::exact;
 use super::series::Series;
 use super::sweep::{Piece, Sweep};
-use crate::math::reference_table::{STEP, TURN, Table};
-use crate::math::sort;
+use crate::math::reference_table::{STEP, TURN};
+use crate::math::{Table, sort};
 
 /// Best index so far, and the level below which a piece is worth evaluating.
 struct Best<'a> {

@@ -7,7 +7,7 @@
 //! 128-bit form is taken.
 
 use super::series::Series;
-use crate::math::reference_table::Table;
+use crate::math::Table;
 
 /// Kind of the sum of squares that is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -37,7 +37,7 @@ mod sweep;
 pub use answer::{Acceptance, Accepted, Match};
 pub use series::{Series, SeriesError};
 
-use crate::math::reference_table::Table;
+use crate::math::Table;
 use exact::Squares;
 
 /// Objective that is minimised, with d the table's cosines at a candidate azimuth minus the

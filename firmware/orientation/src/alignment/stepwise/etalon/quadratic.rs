@@ -11,8 +11,8 @@ use super::arc::{Cover, Judge, last_within};
 use super::exact::Squares;
 use super::landscape::Landscape;
 use super::series::Series;
-use crate::math::reference_table::{TURN, Table};
-use crate::math::sort;
+use crate::math::reference_table::TURN;
+use crate::math::{Table, sort};
 
 /// Sum of squares over one series, in continuous and exact form.
 struct Objective<'a> {

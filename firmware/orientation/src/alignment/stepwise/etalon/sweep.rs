@@ -11,8 +11,8 @@ use heapless::Vec;
 use libm::{acos, atan2, ceil, fabs, sincos};
 
 use super::series::{CAPACITY, Series};
-use crate::math::reference_table::{ONE, QUARTER, STEP, TURN, Table};
-use crate::math::sort;
+use crate::math::reference_table::{ONE, QUARTER, STEP, TURN};
+use crate::math::{Table, sort};
 
 /// One turn in grid steps.
 const CIRCLE: f64 = TURN as f64;

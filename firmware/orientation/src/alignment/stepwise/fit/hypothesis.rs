@@ -9,9 +9,8 @@
 use super::{Equations, Fit, Model, Problem, ROUNDS, Row, Trial, taper_of};
 use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
-use crate::math::chi_square_tail;
-use crate::math::regression::Column;
-use crate::signal::dwell::Dwell;
+use crate::math::{Column, chi_square_tail};
+use crate::signal::Dwell;
 
 /// Motion or error in addition to the steps of the stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -21,11 +21,10 @@ use super::level::square;
 use super::setting::{Amplitude, Setting};
 use super::tilt::Tilt;
 use crate::alignment::budget::Budget;
-use crate::math::regression::{COLUMNS, Regression, Solution};
-use crate::noise::model::GyroNoise;
+use crate::math::{COLUMNS, Regression, Solution};
+use crate::noise::GyroNoise;
 use crate::noise::whitener::Whitener;
-use crate::signal::dwell::Dwell;
-use crate::signal::sway::SwayNoise;
+use crate::signal::{Dwell, SwayNoise};
 
 /// Row of a dwell in the regression: north and east part of the sensitive axis, constant, time
 /// since the first dwell (h), temperature above that of the first dwell (°C), two columns of a

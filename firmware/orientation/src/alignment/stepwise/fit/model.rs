@@ -4,7 +4,7 @@
 use super::{Equations, Hypothesis, Problem, Trial};
 use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
-use crate::math::regression::{COLUMNS, Column, Solution};
+use crate::math::{COLUMNS, Column, Solution};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;

@@ -5,7 +5,7 @@ use crate::alignment::slow::SlowMotion;
 use crate::alignment::stepwise::direction::quadratic;
 use crate::alignment::stepwise::level;
 use crate::alignment::stepwise::tilt::TiltRate;
-use crate::math::regression::COLUMNS;
+use crate::math::COLUMNS;
 
 /// Rotation rate so slow that the azimuth follows it linearly, rad/h.
 const SLOW: f64 = 1e-4;

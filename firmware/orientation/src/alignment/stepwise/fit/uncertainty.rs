@@ -9,9 +9,8 @@ use crate::alignment::budget::Budget;
 use crate::alignment::stepwise::direction::{Direction, dot, product, quadratic};
 use crate::alignment::stepwise::setting::Amplitude;
 use crate::alignment::stepwise::tilt::TiltRate;
-use crate::math::chi_square_tail;
-use crate::math::regression::Column;
-use crate::noise::model::GyroNoise;
+use crate::math::{Column, chi_square_tail};
+use crate::noise::GyroNoise;
 
 /// Probability of the residuals below which their excess over the stated noise raises σ: with few
 /// degrees of freedom, where the factor would be large, and with more.

@@ -7,10 +7,10 @@ use crate::alignment::budget::Source;
 use crate::alignment::stepwise::Refusal;
 use crate::alignment::stepwise::quality::ExpectedScatter;
 use crate::alignment::{self, Listener, Method, Passed, Request};
-use crate::noise::model::GyroNoise;
+use crate::noise::GyroNoise;
 use crate::planner::POSITIONS;
 use crate::planner::prediction::{Visit, rate_sigma};
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
 
 impl Session {

@@ -33,8 +33,8 @@ use crate::alignment::progress::Progress::Stepwise;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
-use crate::signal::Sample;
-use crate::signal::dwell::{Dwell, DwellAverage};
+use crate::signal::dwell::DwellAverage;
+use crate::signal::{Dwell, Sample};
 use crate::units::{Instant, TURN};
 
 /// Fraction of the planned dwell above which a dwell counts as complete.

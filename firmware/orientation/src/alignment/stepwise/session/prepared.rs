@@ -9,7 +9,7 @@ use super::{Phase, Session};
 use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;
-use crate::math::reference_table::Table;
+use crate::math::Table;
 
 /// Prerequisites of a session. They are small, so that the session itself can be built at its final
 /// place in memory.

@@ -6,7 +6,7 @@ use heapless::Vec;
 use crate::alignment::stepwise::CAPACITY;
 use crate::planner::order::Order;
 use crate::planner::{FEWEST, POSITIONS, Plan};
-use crate::signal::dwell::Dwell;
+use crate::signal::Dwell;
 
 /// One position: stage angle and length of the dwell.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,10 +11,9 @@ use crate::alignment::stepwise::{CAPACITY, Progress, Refusal};
 use crate::alignment::{Listener, Request, SetupError};
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
-use crate::noise::model::{GyroNoise, StatedNoise};
+use crate::noise::{GyroNoise, StatedNoise};
 use crate::planner::{Conditions, FEWEST, PlanError, for_sigma, for_time};
-use crate::signal::Sample;
-use crate::signal::dwell::{Dwell, SampleFault};
+use crate::signal::{Dwell, Sample, SampleFault};
 use crate::units::{AngularRate, Instant};
 
 /// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
