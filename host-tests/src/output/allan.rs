@@ -45,15 +45,19 @@ struct Coefficient {
 
 /// Q, N, B, K and R, in the order of [`orientation::noise::allan::terms`].
 fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
-    let [q, n, b, k, r] = fit.in_field_units().map(|(_, estimate)| estimate);
-    [
-        ("Q quantisation", "arcsec", "q_arcsec", fit.quantisation, q),
-        ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.angle_random_walk, n),
-        ("B bias instability", "°/h", "b_deg_h", fit.bias_instability, b),
-        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h", fit.rate_random_walk, k),
-        ("R rate ramp", "°/h²", "r_deg_h2", fit.rate_ramp, r),
-    ]
-    .map(|(name, unit, key, si, estimate)| Coefficient { name, unit, key, si, estimate })
+    let names = [
+        ("Q quantisation", "arcsec", "q_arcsec"),
+        ("N angle random walk", "°/√h", "n_deg_sqrt_h"),
+        ("B bias instability", "°/h", "b_deg_h"),
+        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h"),
+        ("R rate ramp", "°/h²", "r_deg_h2"),
+    ];
+    let in_field_units = fit.in_field_units();
+    core::array::from_fn(|index| {
+        let (name, unit, key) = names[index];
+        let (si, (_, estimate)) = (fit.estimates[index], in_field_units[index]);
+        Coefficient { name, unit, key, si, estimate }
+    })
 }
 
 impl Coefficient {
@@ -121,7 +125,7 @@ impl Shown<'_> {
              coefficients say little"
                 .to_owned()
         });
-        let hidden = fit.filter(|fit| fit.rate_ramp.value().is_some());
+        let hidden = fit.filter(|fit| matches!(fit.estimates, [.., Estimate::Found { .. }]));
         let hidden = hidden.and_then(|fit| fit.hidden_slope(seconds)).map(|slope| {
             let slope = slope / DEGREE_PER_HOUR * 3600.0;
             format!("a random walk that is not observable may hide beside the ramp: ± {slope:.3} °/h² then")

@@ -151,6 +151,8 @@ impl Moment {
 
 /// One run along the path with one start frame.
 struct Run<'a> {
+    /// Solution that the run updates.
+    solution: &'a mut Solution,
     /// Configuration of the alignment.
     setting: &'a Setting,
     /// Path of the vehicle.
@@ -244,64 +246,62 @@ impl Solution {
         self.filter.begin(&start_covariance(&self.frame), bias_sigma, site);
         let is_exact = site.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
+        let own_density = || self.roughness * self.colour * path.density();
         let mut run = Run {
+            density: if is_ideal { path.least_density() } else { own_density() },
+            solution: self,
             setting,
             path,
-            density: if is_ideal {
-                path.least_density()
-            } else {
-                self.roughness * self.colour * path.density()
-            },
             north: (!is_exact).then(|| Place::moved(site.latitude, LATITUDE_STEP)),
             belief,
             last: Moment { at: path.start, ..Moment::default() },
             before: [0.0; 2],
         };
         for index in 0..path.stops.len() {
-            run.stop(self, index);
+            run.stop(index);
         }
         // The distance driven since the last stop is not known.
         let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to - REMAINDER);
-        self.filter.add_process_noise(setting.speed_sigma * driven.max(0.0));
-        run.carry(self, Moment::of(path.now, &path.carried));
+        run.solution.filter.add_process_noise(setting.speed_sigma * driven.max(0.0));
+        run.carry(Moment::of(path.now, &path.carried));
     }
 }
 
 impl Run<'_> {
     /// Processes one stop, with the drive before it.
-    fn stop(&mut self, solution: &mut Solution, index: usize) {
+    fn stop(&mut self, index: usize) {
         let stop = &self.path.stops[index];
         if index > 0 {
             let driven = (stop.from - self.last.at).max(0.0);
-            self.drive(solution, index, driven);
+            self.drive(index, driven);
             let (known, unknown) = (self.setting.displacement_sigma, self.setting.speed_sigma);
             match stop.displacement {
-                Some(_) => solution.filter.reset(PLACE..PLACE + 2, known),
-                None => solution.filter.add_process_noise(unknown * driven),
+                Some(_) => self.solution.filter.reset(PLACE..PLACE + 2, known),
+                None => self.solution.filter.add_process_noise(unknown * driven),
             }
         }
-        self.carry(solution, Moment::of(stop.from, &stop.begin));
-        solution.filter.anchor();
+        self.carry(Moment::of(stop.from, &stop.begin));
+        self.solution.filter.anchor();
         self.before = [0.0; 2];
         for block in self.path.blocks.of(index) {
             let scale = stop.begin.scale;
-            self.carry(solution, Moment { at: block.middle, bias: block.bias, scale });
-            self.block(solution, block, self.path.displaced(index));
+            self.carry(Moment { at: block.middle, bias: block.bias, scale });
+            self.block(block, self.path.displaced(index));
         }
-        self.carry(solution, Moment::of(stop.to, &stop.end));
-        self.rest(solution, stop);
+        self.carry(Moment::of(stop.to, &stop.end));
+        self.rest(stop);
     }
 
     /// Propagates the filter to a moment.
-    fn carry(&mut self, solution: &mut Solution, to: Moment) {
+    fn carry(&mut self, to: Moment) {
         let seconds = (to.at - self.last.at).max(0.0);
         let noise = self.setting.site.noise.model();
         let walk = noise.angle_random_walk.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
         let has_scale = self.setting.site.scale_sigma > 0.0;
         let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
-        solution.filter.carry(&bias, &scale, walk * walk * seconds);
-        solution.filter.walk(self.bias_walk() * seconds);
+        self.solution.filter.carry(&bias, &scale, walk * walk * seconds);
+        self.solution.filter.walk(self.bias_walk() * seconds);
         self.last = to;
     }
 
@@ -320,35 +320,33 @@ impl Run<'_> {
 
     /// Applies the condition that a drive to a stop, of this many seconds, ends at rest as it began
     /// (zero-velocity update): the integral of its forces beyond gravity is then due to φ.
-    fn drive(&mut self, solution: &mut Solution, index: usize, driven: f64) {
+    fn drive(&mut self, index: usize, driven: f64) {
         let path = self.path;
-        solution.filter.reset(VELOCITY..VELOCITY + 3, 0.0);
+        self.solution.filter.reset(VELOCITY..VELOCITY + 3, 0.0);
         let (mut gained, mut seconds) = ([0.0; 3], 0.0);
         for block in path.drives.of(index - 1) {
-            self.carry(
-                solution,
-                Moment { at: block.middle, bias: block.bias, scale: self.last.scale },
-            );
+            let scale = self.last.scale;
+            self.carry(Moment { at: block.middle, bias: block.bias, scale });
             let displaced = path.underway(index - 1, block.middle);
             let above = up(&path.place.navigation(block.middle - path.start, displaced));
-            let predicted = scaled(&turned(&solution.frame, &above), path.gravity);
+            let predicted = scaled(&turned(&self.solution.frame, &above), path.gravity);
             let length = f64::from(block.seconds);
             let rows: [_; 3] = core::array::from_fn(|axis| {
                 velocity_row(&predicted, axis, &block.attitude, length)
             });
-            solution.filter.add(VELOCITY, &rows);
+            self.solution.filter.add(VELOCITY, &rows);
             let beyond = difference(&block.force.map(f64::from), &predicted);
             gained = sum(&gained, &scaled(&beyond, length));
             seconds += length;
         }
-        self.carry(solution, Moment::of(path.stops[index].from, &path.stops[index].begin));
+        self.carry(Moment::of(path.stops[index].from, &path.stops[index].begin));
         if (seconds - driven).abs() <= COVERED * driven {
-            self.come_to_rest(solution, index, &gained, driven);
+            self.come_to_rest(index, &gained, driven);
         }
     }
 
     /// Updates the filter with the apparent velocity gained by a drive.
-    fn come_to_rest(&self, solution: &mut Solution, index: usize, gained: &Vector, driven: f64) {
+    fn come_to_rest(&mut self, index: usize, gained: &Vector, driven: f64) {
         let path = self.path;
         let middle = path.stops[index].from - 0.5 * driven - path.start;
         let navigation =
@@ -357,15 +355,15 @@ impl Run<'_> {
         let [from, to] = [path.displaced(index - 1), path.displaced(index)];
         let way = sum(&scaled(&along[0], to[0] - from[0]), &scaled(&along[1], to[1] - from[1]));
         let turning = scaled(&cross(&path.place.axis(), &way), EARTH_RATE);
-        let beyond = difference(gained, &turned(&solution.frame, &turning));
+        let beyond = difference(gained, &turned(&self.solution.frame, &turning));
         let variance = self.velocity_variance(index, driven);
         let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
-            let direction = turned(&solution.frame, &along[axis]);
+            let direction = turned(&self.solution.frame, &along[axis]);
             let row = placed(VELOCITY, &direction);
             Measurement { row, value: dot(&beyond, &direction), variance }
         });
-        if self.take(&mut solution.filter, &measurements).is_none() {
-            solution.tally.unsteady += 1;
+        if self.take(&measurements).is_none() {
+            self.solution.tally.unsteady += 1;
         }
     }
 
@@ -393,10 +391,10 @@ impl Run<'_> {
     }
 
     /// Updates the filter with the force of a block.
-    fn block(&mut self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
+    fn block(&mut self, block: &Block, displaced: [f64; 2]) {
         let elapsed = block.middle - self.path.start;
         let navigation = self.path.place.navigation(elapsed, displaced);
-        let above = turned(&solution.frame, &up(&navigation));
+        let above = turned(&self.solution.frame, &up(&navigation));
         let predicted = scaled(&above, self.path.gravity);
         let force = block.force.map(f64::from);
         let variance = self.density / f64::from(block.seconds);
@@ -404,35 +402,35 @@ impl Run<'_> {
         let farther = self.north.map(|place| {
             let moved = up(&place.navigation(elapsed, displaced));
             let change = difference(&moved, &up(&navigation));
-            turned(&solution.frame, &scaled(&change, self.path.gravity / LATITUDE_STEP))
+            turned(&self.solution.frame, &scaled(&change, self.path.gravity / LATITUDE_STEP))
         });
         let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
-            let direction = turned(&solution.frame, &along[axis]);
+            let direction = turned(&self.solution.frame, &along[axis]);
             let mut row = force_row(&predicted, &direction, &block.attitude);
             row[PLACE + axis] = self.path.gravity * self.path.place.per_metre()[axis];
             row[LATITUDE] = farther.map_or(0.0, |change| dot(&change, &direction));
             let value = dot(&difference(&force, &predicted), &direction);
             Measurement { row, value, variance }
         });
-        let beyond = measurements.map(|measurement| solution.filter.beyond(&measurement));
-        let Some(chi_square) = self.take(&mut solution.filter, &measurements) else {
-            solution.tally.left_out += 1;
+        let beyond = measurements.map(|measurement| self.solution.filter.beyond(&measurement));
+        let Some(chi_square) = self.take(&measurements) else {
+            self.solution.tally.left_out += 1;
             return;
         };
-        solution.tally.chi_square += chi_square;
-        solution.tally.degrees += 2.0;
+        self.solution.tally.chi_square += chi_square;
+        self.solution.tally.degrees += 2.0;
         let [north, east] = beyond;
         let before = core::mem::replace(&mut self.before, beyond);
-        let [products, squares] = &mut solution.tally.neighbours;
+        let [products, squares] = &mut self.solution.tally.neighbours;
         *products += north * before[0] + east * before[1];
         *squares += north * north + east * east;
     }
 
     /// Updates the filter with the condition that the body turned with the Earth alone during a
     /// stop (zero angular rate).
-    fn rest(&self, solution: &mut Solution, stop: &Stop) {
+    fn rest(&mut self, stop: &Stop) {
         let turn = EARTH_RATE * stop.seconds();
-        let earth = by(&scaled(&turned(&solution.frame, &self.path.place.axis()), turn));
+        let earth = by(&scaled(&turned(&self.solution.frame, &self.path.place.axis()), turn));
         let [begin, end] = [&stop.begin, &stop.end].map(|carried| carried.attitude.matrix());
         let shown = product(&end, &transposed(&begin));
         let beyond = small(&product(&shown, &transposed(&earth)));
@@ -441,7 +439,7 @@ impl Run<'_> {
         // Farther north the Earth's axis has another direction on the start frame.
         let farther = self.north.map(|place| {
             let change = difference(&place.axis(), &self.path.place.axis());
-            turned(&solution.frame, &scaled(&change, turn / LATITUDE_STEP))
+            turned(&self.solution.frame, &scaled(&change, turn / LATITUDE_STEP))
         });
         // The components are taken on the body's axes, which sway differently.
         let measurements: [Measurement; 3] = core::array::from_fn(|axis| {
@@ -452,14 +450,14 @@ impl Run<'_> {
             row[LATITUDE] = farther.map_or(0.0, |change| dot(&change, &direction));
             Measurement { row, value: dot(&direction, &beyond), variance: sway[axis] }
         });
-        if self.take(&mut solution.filter, &measurements).is_none() {
-            solution.tally.turning += 1;
+        if self.take(&measurements).is_none() {
+            self.solution.tally.turning += 1;
             let rate = length(&beyond) / stop.seconds();
-            solution.tally.turning_rate = solution.tally.turning_rate.max(rate);
+            self.solution.tally.turning_rate = self.solution.tally.turning_rate.max(rate);
             // A rotation within a short time makes its seconds stand out of the others.
             let excess: f64 = self.excess(stop).iter().sum();
             if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
-                solution.steady = solution.steady.max(rate);
+                self.solution.steady = self.solution.steady.max(rate);
             }
         }
     }
@@ -487,7 +485,8 @@ impl Run<'_> {
 
     /// Updates the filter with measurements unless they are outliers; returns their normalised
     /// innovation squared.
-    fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
+    fn take(&mut self, measurements: &[Measurement]) -> Option<f64> {
+        let filter = &mut self.solution.filter;
         let is_ideal = self.belief == Belief::Ideal;
         let normalised_innovation_squared =
             if is_ideal { 0.0 } else { filter.normalised_innovation_squared(measurements) };

@@ -52,16 +52,9 @@ crate::words! { Estimate:
 /// Noise coefficients of a gyro as one record shows them, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseFit {
-    /// Quantisation Q, rad.
-    pub quantisation: Estimate,
-    /// Angle random walk N, rad/√s.
-    pub angle_random_walk: Estimate,
-    /// Bias instability B, rad/s.
-    pub bias_instability: Estimate,
-    /// Rate random walk K, rad/s/√s.
-    pub rate_random_walk: Estimate,
-    /// Rate ramp R, rad/s².
-    pub rate_ramp: Estimate,
+    /// Estimates of the quantisation Q, rad, angle random walk N, rad/√s, bias instability B, rad/s,
+    /// rate random walk K, rad/s/√s, and rate ramp R, rad/s².
+    pub estimates: [Estimate; 5],
     /// Chi-square of the fit: squared deviations of the points from the model over their variances,
     /// summed. Neighbouring points correlate, so its expectation is not `degrees`.
     pub chi_square: f64,
@@ -76,14 +69,7 @@ impl NoiseFit {
             Estimate::Found { value, sigma } => value.is_finite() && sigma.is_finite(),
             Estimate::NotObservable { at_most } => at_most.is_finite(),
         };
-        self.estimates().iter().all(is_finite)
-    }
-
-    /// Estimates of Q, N, B, K and R, in SI units.
-    #[must_use]
-    pub fn estimates(&self) -> [Estimate; 5] {
-        let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
-        [q, n, b, self.rate_random_walk, self.rate_ramp]
+        self.estimates.iter().all(is_finite)
     }
 
     /// Fitted Allan variance at τ = `seconds`, (rad/s)².
@@ -94,13 +80,13 @@ impl NoiseFit {
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.
     pub fn noise(&self) -> GyroNoise {
-        GyroNoise::of(self.estimates().map(|estimate| estimate.value().unwrap_or(0.0)))
+        GyroNoise::of(self.estimates.map(|estimate| estimate.value().unwrap_or(0.0)))
     }
 
     /// All estimates in the field's units, as [`Coefficient`] states them.
     #[must_use]
     pub fn in_field_units(&self) -> [(Coefficient, Estimate); 5] {
-        let [q, n, b, k, r] = self.estimates();
+        let [q, n, b, k, r] = self.estimates;
         [
             (Coefficient::Quantisation, q.in_unit(ARCSECOND)),
             (Coefficient::AngleRandomWalk, n.in_unit(DEGREE_PER_SQRT_HOUR)),

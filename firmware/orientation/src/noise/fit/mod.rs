@@ -86,29 +86,25 @@ impl NoiseFit {
     /// Adds to the σ of a ramp the slope that the random walk found shows over `seconds`, of
     /// variance 6K²/(5T). A random walk that was not found may still contribute:
     /// [`Self::hidden_slope`] gives its bound.
-    fn with_slope_of_walk(self, seconds: f64) -> Self {
-        let (Estimate::Found { value, sigma }, Some(walk)) =
-            (self.rate_ramp, self.rate_random_walk.value())
-        else {
-            return self;
-        };
-        let sigma = libm::sqrt(sigma * sigma + WALK_SLOPE * walk * walk / seconds);
-        let rate_ramp = if value > 2.0 * sigma {
-            Estimate::Found { value, sigma }
-        } else {
-            Estimate::NotObservable { at_most: value + 2.0 * sigma }
-        };
-        Self { rate_ramp, ..self }
+    fn with_slope_of_walk(mut self, seconds: f64) -> Self {
+        let [.., walk, ramp] = &mut self.estimates;
+        if let (Estimate::Found { value, sigma }, Some(walk)) = (*ramp, walk.value()) {
+            let sigma = libm::sqrt(sigma * sigma + WALK_SLOPE * walk * walk / seconds);
+            *ramp = if value > 2.0 * sigma {
+                Estimate::Found { value, sigma }
+            } else {
+                Estimate::NotObservable { at_most: value + 2.0 * sigma }
+            };
+        }
+        self
     }
 
     /// Slope over `seconds`, 1σ, rad/s², that a random walk at its upper limit would show; `None`
     /// where the walk was found, and its slope is part of the ramp's σ.
     #[must_use]
     pub fn hidden_slope(&self, seconds: f64) -> Option<f64> {
-        match self.rate_random_walk {
-            Estimate::Found { .. } => None,
-            Estimate::NotObservable { at_most } => Some(at_most * libm::sqrt(WALK_SLOPE / seconds)),
-        }
+        let [.., Estimate::NotObservable { at_most }, _] = self.estimates else { return None };
+        Some(at_most * libm::sqrt(WALK_SLOPE / seconds))
     }
 }
 

@@ -176,17 +176,8 @@ impl<'p> Search<'p> {
     /// Assembles the result, with chi-square about the averaged model.
     fn conclude(mut self, estimates: [Estimate; COLUMNS]) -> NoiseFit {
         let found = estimates.iter().filter(|estimate| estimate.value().is_some()).count();
-        let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
-            estimates;
-        let mut fit = NoiseFit {
-            quantisation,
-            angle_random_walk,
-            bias_instability,
-            rate_random_walk,
-            rate_ramp,
-            chi_square: 0.0,
-            degrees: self.points.len().saturating_sub(found),
-        };
+        let degrees = self.points.len().saturating_sub(found);
+        let mut fit = NoiseFit { estimates, chi_square: 0.0, degrees };
         self.expect(&fit.noise());
         fit.chi_square = self.chi_square();
         fit

@@ -200,15 +200,9 @@ impl Session {
 /// Noise model for the alignment: coefficients that were found, and for those not observable the
 /// configured ones, limited to the survey's upper limits.
 fn known(found: &NoiseFit, stated: &GyroNoise) -> GyroNoise {
-    let of = |estimate: Estimate, stated: f64| match estimate {
+    let stated = stated.coefficients();
+    GyroNoise::of(core::array::from_fn(|index| match found.estimates[index] {
         Estimate::Found { value, .. } => value,
-        Estimate::NotObservable { at_most } => stated.min(at_most),
-    };
-    GyroNoise {
-        quantisation: of(found.quantisation, stated.quantisation),
-        angle_random_walk: of(found.angle_random_walk, stated.angle_random_walk),
-        bias_instability: of(found.bias_instability, stated.bias_instability),
-        rate_random_walk: of(found.rate_random_walk, stated.rate_random_walk),
-        rate_ramp: of(found.rate_ramp, stated.rate_ramp),
-    }
+        Estimate::NotObservable { at_most } => stated[index].min(at_most),
+    }))
 }
