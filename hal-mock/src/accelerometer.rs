@@ -12,6 +12,8 @@ pub struct AccelerometerConfiguration {
     pub bias_m_s2: [f64; 3],
     /// Bias, m/s²: 1σ of the part drawn anew for every seed and axis.
     pub bias_sigma_m_s2: f64,
+    /// Force at which an axis clips, m/s² (default never; ±2.048 g of an ADXL355 are 20.08).
+    pub full_scale_m_s2: Option<f64>,
 }
 
 /// An accelerometer at work: what it drew at start and the state of its noise.
@@ -21,6 +23,8 @@ pub struct Accelerometer {
     pub bias_m_s2: [f64; 3],
     /// White noise, m/s², drawn for x, y, z in turn.
     white: White,
+    /// Force at which an axis clips, m/s².
+    pub(crate) full_scale_m_s2: f64,
 }
 
 impl Accelerometer {
@@ -34,13 +38,17 @@ impl Accelerometer {
         Self {
             bias_m_s2: configuration.bias_m_s2.map(|bias| bias + sigma * start.gaussian()),
             white: White::new(white, seed, source::ACCELEROMETER_WHITE),
+            full_scale_m_s2: configuration.full_scale_m_s2.unwrap_or(f64::INFINITY),
         }
     }
 
     /// The next output, m/s², for a true specific force in m/s².
     #[inline]
     pub fn sample(&mut self, force_m_s2: [f64; 3]) -> [f64; 3] {
-        core::array::from_fn(|axis| force_m_s2[axis] + self.bias_m_s2[axis] + self.white.sample())
+        core::array::from_fn(|axis| {
+            let felt_m_s2 = force_m_s2[axis] + self.bias_m_s2[axis] + self.white.sample();
+            felt_m_s2.max(-self.full_scale_m_s2).min(self.full_scale_m_s2)
+        })
     }
 }
 

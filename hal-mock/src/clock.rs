@@ -12,7 +12,7 @@ use embassy_time_queue_utils::Queue;
 #[derive(Debug)]
 pub struct VirtualClock {
     /// Ticks since the start, µs.
-    now: u64,
+    pub now: u64,
     /// What is to be woken, and when.
     queue: Queue,
 }
@@ -22,12 +22,6 @@ impl VirtualClock {
     #[must_use]
     pub const fn new() -> Self {
         Self { now: 0, queue: Queue::new() }
-    }
-
-    /// Ticks (µs) since the start.
-    #[must_use]
-    pub fn now(&self) -> u64 {
-        self.now
     }
 
     /// Wakes the waker when the clock reaches `at`, in ticks (µs) since the start; at once where it has.

@@ -34,8 +34,6 @@ pub(crate) struct Strapdown<'a, const N: usize> {
     pub(crate) accelerometer: Accelerometer,
     /// Rates at which the gyros clip, rad/s, > 0.
     pub(crate) rate_limits_rad_s: [f64; 3],
-    /// Force at which an accelerometer clips, m/s², > 0.
-    pub(crate) force_limit_m_s2: f64,
     /// What goes wrong, in any order; channels 0 to 2 are the gyros, those from 3 on the accelerometers.
     pub(crate) faults: &'a [SensorFault],
     /// What was shown last: rates, rad/s, and forces, m/s².
@@ -67,7 +65,7 @@ impl<const N: usize> Strapdown<'_, N> {
     /// What the accelerometers show next, m/s², of a specific force in m/s². Call at their rate.
     pub(crate) fn force(&mut self, time_s: f64, force_m_s2: [f64; 3]) -> [f64; N] {
         let values = self.accelerometer.sample(force_m_s2);
-        let (last, full) = (self.forces_m_s2, self.force_limit_m_s2);
+        let (last, full) = (self.forces_m_s2, self.accelerometer.full_scale_m_s2);
         self.forces_m_s2 = core::array::from_fn(|index| {
             let value = [values[3 - N + index], last[index]];
             SensorFault::spoilt(self.faults, 3 + index, time_s, value, full)
@@ -78,17 +76,8 @@ impl<const N: usize> Strapdown<'_, N> {
     /// Whether one of the latest outputs is at its full scale.
     pub(crate) fn is_clipped(&self) -> bool {
         let mut rates = self.rates_rad_s.iter().zip(self.rate_limits_rad_s);
+        let full_m_s2 = self.accelerometer.full_scale_m_s2;
         rates.any(|(rate, limit)| rate.abs() >= limit)
-            || self.forces_m_s2.iter().any(|force| force.abs() >= self.force_limit_m_s2)
-    }
-
-    /// Turn-on biases of the gyros, rad/s.
-    pub(crate) fn gyro_biases_rad_s(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis: usize| self.gyros[axis].bias_rad_s)
-    }
-
-    /// Scale factor errors of the gyros, 1.
-    pub(crate) fn scale_errors(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error)
+            || self.forces_m_s2.iter().any(|force| force.abs() >= full_m_s2)
     }
 }

@@ -100,8 +100,6 @@ pub struct TurntableConfiguration<'a> {
     pub start_rad: f64,
     /// From the axis to the accelerometer, m, along the gyro's axis and 90° clockwise of it.
     pub accelerometer_lever_m: [f64; 2],
-    /// Where the accelerometer clips, m/s² (default never; ±2.048 g of an ADXL355 are 20.08).
-    pub accelerometer_full_scale_m_s2: Option<f64>,
     /// What goes wrong with the encoder.
     pub slip: EncoderSlip,
     /// How the motor turns, in order; the run ends with the last of them.
@@ -192,8 +190,6 @@ pub struct Turntable<'a> {
     instruments: Instruments,
     /// Where the accelerometer sits.
     lever: Lever,
-    /// Force at which the accelerometer clips, m/s².
-    full_scale_m_s2: f64,
     /// What goes wrong with the encoder.
     slip: EncoderSlip,
     /// How far the encoder has crept, rad.
@@ -216,7 +212,6 @@ impl<'a> Turntable<'a> {
             unevenness: c.unevenness,
             instruments: Instruments::new(&c.instruments, seed),
             lever: Lever::new(c.accelerometer_lever_m),
-            full_scale_m_s2: c.accelerometer_full_scale_m_s2.unwrap_or(f64::INFINITY),
             slip: c.slip,
             crept_rad: 0.0,
             disturbances: c.disturbances,
@@ -243,8 +238,7 @@ impl<'a> Turntable<'a> {
         effect.rate_rad_s += drift_rad_s;
         let rate_rad_s = self.instruments.rate(time_s, &effect);
         self.lever.add(&mut effect, time_s, stage.rate_rad_s);
-        let limit = self.full_scale_m_s2;
-        let force_m_s2 = self.instruments.force(&effect).map(|force| force.max(-limit).min(limit));
+        let force_m_s2 = self.instruments.force(&effect);
         let stage_rad = self.instruments.shown_rad() + self.slipped_rad(time_s, stage.rate_rad_s);
         let stage_rate_rad_s = stage.rate_rad_s;
         Some(TurningSample { time_s, stage_rad, stage_rate_rad_s, rate_rad_s, force_m_s2 })

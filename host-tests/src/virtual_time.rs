@@ -19,7 +19,7 @@ struct ThreadClock;
 
 impl Driver for ThreadClock {
     fn now(&self) -> u64 {
-        CLOCK.with_borrow(VirtualClock::now)
+        CLOCK.with_borrow(|clock| clock.now)
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {

@@ -21,6 +21,7 @@ use core::cell::RefCell;
 
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::Configuration as Converter;
+use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::configuration::Configuration as Motor;
@@ -120,11 +121,7 @@ pub struct Wires<'a, 'w, A>(pub &'a RefCell<dyn Rig + 'a>, pub &'w A);
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a stage or a turntable, whose accelerometer is given this.
     #[must_use]
-    pub fn sensors(
-        &self,
-        scenario: &Scenario,
-        force: adxl355::Configuration,
-    ) -> SimulatedSensors<'a, A> {
+    pub fn sensors(&self, scenario: &Scenario, force: OutputRate) -> SimulatedSensors<'a, A> {
         Sensors {
             gyro: self.gyro(Select::Gyro, scenario),
             accelerometer: self.accelerometer(force),
@@ -161,12 +158,9 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     }
 
     /// The accelerometer.
-    fn accelerometer(
-        &self,
-        configuration: adxl355::Configuration,
-    ) -> chips::PlatformAccelerometer<Bus<'a, A>, Delay> {
+    fn accelerometer(&self, rate: OutputRate) -> chips::PlatformAccelerometer<Bus<'a, A>, Delay> {
         let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, configuration))
+        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, rate))
     }
 
     /// The encoder of a stage or of one of its frames.

@@ -2,7 +2,7 @@
 
 use drivers::ads1262::configuration::{self as converter, DataRate, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
-use drivers::adxl355;
+use drivers::adxl355::registers::OutputRate;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
@@ -39,8 +39,7 @@ pub(super) const FORCE_NOISE: f64 = 25e-6 * 9.80665;
 /// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
 const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
 /// What the accelerometer's driver is given: more outputs than are read.
-pub const FORCE: adxl355::Configuration =
-    adxl355::Configuration { rate: adxl355::registers::OutputRate::Hz125 };
+pub const FORCE: OutputRate = OutputRate::Hz125;
 /// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
 const HARMONICS: [Harmonic; 2] = [
     Harmonic { amplitude_rad: 0.05 * DEGREE, phase_rad: 0.7 },

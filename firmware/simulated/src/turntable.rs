@@ -3,7 +3,6 @@
 //! Site, attitude, gyro and sample rate are those of a [`Scenario`]; slip ring, unevenness, speeds and
 //! the sensor's own dynamics are its own. The chips are the same.
 
-use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::{Duration, Instant};
@@ -28,7 +27,7 @@ const MOTOR: Switches = Switches { left: None, right: None };
 
 /// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
 /// which the platform is not to turn far.
-pub const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
+pub const FORCE: OutputRate = OutputRate::Hz1000;
 /// Output rate of the accelerometer, Hz.
 const FORCE_HERTZ: f64 = 1000.0;
 

@@ -1,8 +1,8 @@
 //! The chips on their wires, as the instrument's ports.
 
 use drivers::ads1262::Ads1262;
+use drivers::adxl355::Adxl355;
 use drivers::adxl355::registers::OutputRate;
-use drivers::adxl355::{self, Adxl355};
 use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate as BaseRate};
 use drivers::lsm6dsl::{self, Lsm6dsl};
 use drivers::mt6835::{self, Mt6835};
@@ -101,17 +101,14 @@ pub fn motor(wires: StageDevice) -> AxisMotor {
     StageMotor(Tmc5160::new(wires, Delay, drive()))
 }
 
-/// Configuration of the accelerometer. Its filter delays a force by two and a half outputs, during
+/// Output rate of the accelerometer. Its filter delays a force by two and a half outputs, during
 /// which a platform must not turn far, nor a vehicle sway; a vehicle's is read 400 times a second.
-fn force() -> adxl355::Configuration {
-    let rate = match CARRIER {
-        Carrier::Stage | Carrier::TwoFrames | Carrier::SpinningBody => {
-            adxl355::Configuration::default().rate
-        }
+fn force() -> OutputRate {
+    match CARRIER {
+        Carrier::Stage | Carrier::TwoFrames | Carrier::SpinningBody => OutputRate::default(),
         Carrier::Turntable => OutputRate::Hz1000,
         Carrier::Vehicle => OutputRate::Hz500,
-    };
-    adxl355::Configuration { rate }
+    }
 }
 
 /// Configuration of the motor driver. A platform that rotates without limit has no switches.

@@ -58,8 +58,6 @@ pub struct SpinConfiguration<'a> {
     pub gyro_full_scale_rad_s: [f64; 3],
     /// The accelerometers; of the three, those along y and z.
     pub accelerometer: AccelerometerConfiguration,
-    /// Force at which an accelerometer clips, m/s² (default never).
-    pub accelerometer_full_scale_m_s2: f64,
     /// What goes wrong with the sensors, in any order; channels 0 to 2 are the gyros about x, y and z, 3
     /// and 4 the accelerometers along y and z.
     pub faults: &'a [SensorFault],
@@ -87,7 +85,6 @@ impl Default for SpinConfiguration<'_> {
             gyros: [GyroConfiguration::default(); 3],
             gyro_full_scale_rad_s: [f64::INFINITY; 3],
             accelerometer: AccelerometerConfiguration::default(),
-            accelerometer_full_scale_m_s2: f64::INFINITY,
             faults: &[],
         }
     }
@@ -128,7 +125,7 @@ impl SpinTruth {
             spin_rad_s: body.spin.value(time_s),
             flight: body.flight,
             lift_m_s2: body.forces.lift_m_s2.value(time_s),
-            gyro_scale_error: sensors.0.scale_errors(),
+            gyro_scale_error: sensors.0.gyros.each_ref().map(|gyro| gyro.scale_error),
         }
     }
 }

@@ -15,6 +15,7 @@ use embassy_time::Instant;
 use super::body::{Body, Felt};
 use super::sensors::Sensors;
 use super::{SpinConfiguration, SpinTruth};
+use crate::accelerometer::AccelerometerConfiguration;
 use crate::chip::Select;
 use crate::converters::Channels;
 use crate::noise::{White, source};
@@ -55,7 +56,10 @@ impl Default for SpinPlantConfiguration<'_> {
             body: SpinConfiguration {
                 rate_hz: 14_400.0,
                 gyro_full_scale_rad_s: [700.0, 20.0, 20.0],
-                accelerometer_full_scale_m_s2: 10_000.0,
+                accelerometer: AccelerometerConfiguration {
+                    full_scale_m_s2: Some(10_000.0),
+                    ..AccelerometerConfiguration::default()
+                },
                 ..SpinConfiguration::default()
             },
             gyro_volts_per_rad_s: [2.0 / 700.0, 0.1, 0.1],

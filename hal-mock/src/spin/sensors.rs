@@ -21,7 +21,6 @@ impl<'a> Sensors<'a> {
             gyros: gyros(&c.gyros, c.rate_hz, seed, source::SPIN_GYROS),
             accelerometer: Accelerometer::new(&c.accelerometer, c.rate_hz, seed),
             rate_limits_rad_s: c.gyro_full_scale_rad_s,
-            force_limit_m_s2: c.accelerometer_full_scale_m_s2,
             faults: c.faults,
             rates_rad_s: [0.0; 3],
             forces_m_s2: [0.0; 2],

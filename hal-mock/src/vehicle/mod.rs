@@ -49,8 +49,6 @@ pub struct VehicleConfiguration<'a> {
     pub gyro_full_scale_rad_s: f64,
     /// The accelerometers.
     pub accelerometer: AccelerometerConfiguration,
-    /// Force at which an accelerometer clips, m/s² (default never).
-    pub accelerometer_full_scale_m_s2: f64,
     /// From the point about which the body sways to the sensors, m, forward, right, down; above it is
     /// negative.
     pub lever_m: [f64; 3],
@@ -74,7 +72,6 @@ impl Default for VehicleConfiguration<'_> {
             gyros: [GyroConfiguration::default(); 3],
             gyro_full_scale_rad_s: f64::INFINITY,
             accelerometer: AccelerometerConfiguration::default(),
-            accelerometer_full_scale_m_s2: f64::INFINITY,
             lever_m: [0.0; 3],
             temperature: TemperatureConfiguration::default(),
             legs: &[],

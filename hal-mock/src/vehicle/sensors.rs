@@ -31,7 +31,6 @@ impl<'a> Sensors<'a> {
             gyros: gyros(&c.gyros, c.rate_hz, seed, source::VEHICLE_GYROS),
             accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
             rate_limits_rad_s: [c.gyro_full_scale_rad_s; 3],
-            force_limit_m_s2: c.accelerometer_full_scale_m_s2,
             faults: c.faults,
             rates_rad_s: [0.0; 3],
             forces_m_s2: [0.0; 3],
@@ -65,13 +64,14 @@ impl<'a> Sensors<'a> {
 
     /// The truth behind them on a motion of this moment.
     pub(super) fn truth(&self, motion: &Motion) -> VehicleTruth {
+        let gyros = self.strapdown.gyros.each_ref();
         VehicleTruth {
             attitude: motion.attitude(),
             position: motion.position,
             displacement_m: motion.displacement_m(),
             velocity_m_s: motion.velocity_m_s(),
-            gyro_bias_rad_s: self.strapdown.gyro_biases_rad_s(),
-            gyro_scale_error: self.strapdown.scale_errors(),
+            gyro_bias_rad_s: gyros.map(|gyro| gyro.bias_rad_s),
+            gyro_scale_error: gyros.map(|gyro| gyro.scale_error),
             accelerometer_bias_m_s2: self.strapdown.accelerometer.bias_m_s2,
         }
     }

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{
-    ATTEMPTS, Adxl355, BUS_HERTZ, BYTES_PER_CHECK, BYTES_PER_SAMPLE, Configuration,
-    READS_UNCHECKED, Reading, TIME_PER_SAMPLE, codec,
+    ATTEMPTS, Adxl355, BUS_HERTZ, BYTES_PER_CHECK, BYTES_PER_SAMPLE, READS_UNCHECKED, Reading,
+    TIME_PER_SAMPLE, codec,
 };
 use drivers::fault::Fault;
 use embassy_time::{Delay, Instant, Timer};
@@ -50,7 +50,7 @@ fn rig_with(force: [f64; 3]) -> Rig {
 
 fn accelerometer(rig: &Rig, rate: OutputRate) -> Accelerometer<'_> {
     let port = SpiPort::new(rig, Select::Accelerometer, BUS_HERTZ);
-    Adxl355::new(port, Delay, Configuration { rate })
+    Adxl355::new(port, Delay, rate)
 }
 
 async fn started(rig: &Rig, rate: OutputRate) -> Accelerometer<'_> {
@@ -362,8 +362,7 @@ fn too_slow_a_bus_is_reported_instead_of_torn_samples() {
     let rig = rig_with([0.0; 3]);
     let fault = run(async {
         let port = SpiPort::new(&rig, Select::Accelerometer, 100_000);
-        let configuration = Configuration { rate: OutputRate::Hz1000 };
-        Adxl355::new(port, Delay, configuration).start().await
+        Adxl355::new(port, Delay, OutputRate::Hz1000).start().await
     });
     assert_eq!(fault, Err(Fault::NotReady));
     assert_eq!(ATTEMPTS, 3);
@@ -511,7 +510,7 @@ fn a_dead_line_is_no_accelerometer() {
         (Some(0xFF), Fault::Identity { found: u32::MAX }, Fault::Checksum),
         (None, Fault::Bus, Fault::Bus),
     ] {
-        let mut accelerometer = Adxl355::new(Stuck(byte), Delay, Configuration::default());
+        let mut accelerometer = Adxl355::new(Stuck(byte), Delay, OutputRate::default());
         assert_eq!(run(accelerometer.start()), Err(started));
         assert_eq!(run(accelerometer.read()), Err(read));
     }

@@ -395,6 +395,7 @@ fn accelerometer_noise_is_its_density_over_the_band_to_nyquist() {
         noise_m_s2_sqrt_hz: 2e-4,
         bias_m_s2: [0.1, -0.2, 0.3],
         bias_sigma_m_s2: 0.0,
+        full_scale_m_s2: None,
     };
     let instruments = InstrumentsConfiguration { accelerometer, ..Default::default() };
     let (mut mean, mut square) = ([0.0; 3], [0.0; 3]);

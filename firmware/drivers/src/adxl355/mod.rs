@@ -102,13 +102,6 @@ const AFTER_TEST: &[(u8, u8)] = &[(SELF_TEST, SELF_TEST_OFF), (POWER_CTL, STANDB
 /// Copies of the factory settings.
 type Shadow = [u8; 5];
 
-/// The selectable configuration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Configuration {
-    /// Output data rate.
-    pub rate: OutputRate,
-}
-
 /// One sample on the chip's own axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
@@ -138,7 +131,7 @@ impl Reading {
 pub struct Adxl355<S, D> {
     spi: S,
     delay: D,
-    configuration: Configuration,
+    rate: OutputRate,
     /// The factory settings as the chip loaded them before the first software reset.
     shadow: Option<Shadow>,
     /// Number of new samples since all registers were found correct; at its limit until they are.
@@ -146,9 +139,10 @@ pub struct Adxl355<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
-    /// Creates the driver of a chip on `spi` (mode 0, at most 10 MHz); nothing is sent yet.
-    pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
-        Self { spi, delay, configuration, shadow: None, reads_unchecked: READS_UNCHECKED }
+    /// Creates the driver of a chip on `spi` (mode 0, at most 10 MHz) with an output data rate; nothing
+    /// is sent yet.
+    pub const fn new(spi: S, delay: D, rate: OutputRate) -> Self {
+        Self { spi, delay, rate, shadow: None, reads_unchecked: READS_UNCHECKED }
     }
 
     /// Brings the chip from any state to measuring: identity, reset, self-test, configuration,
@@ -170,7 +164,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
         self.reset().await?;
         self.test().await?;
         self.configure().await?;
-        let settling = SETTLING + self.configuration.rate.period() * FILTER_PERIODS;
+        let settling = SETTLING + self.rate.period() * FILTER_PERIODS;
         pause(&mut self.delay, settling).await;
         self.check().await
     }
@@ -293,7 +287,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
 
     /// Sets what differs from the reset values; allowed in standby only (Register Map, note).
     async fn configure(&mut self) -> Result<(), Fault> {
-        let rate = (FILTER, self.configuration.rate as u8);
+        let rate = (FILTER, self.rate as u8);
         self.write(&[rate, (RANGE, RANGE_2_G), (POWER_CTL, MEASURING)]).await
     }
 
@@ -301,7 +295,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn check(&mut self) -> Result<(), Fault> {
         let mut found = [0; SETTINGS];
         self.read_from(OFFSET_X_H, &mut found).await?;
-        codec::compare(&found, &codec::settings(self.configuration.rate))?;
+        codec::compare(&found, &codec::settings(self.rate))?;
         self.reads_unchecked = 0;
         Ok(())
     }

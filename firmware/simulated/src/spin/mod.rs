@@ -135,9 +135,9 @@ impl SpinScenario {
             gyro_full_scale_rad_s: FULL_SCALES,
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: self.force_noise_m_s2 / libm::sqrt(0.5 * SAMPLE_RATE),
+                full_scale_m_s2: Some(FORCE_FULL_SCALE),
                 ..AccelerometerConfiguration::default()
             },
-            accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
             faults: &injection.sensors,
             ..World::default()
         };

@@ -7,7 +7,6 @@ mod site;
 
 pub use site::{Place, VehicleAiding};
 
-use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
@@ -275,9 +274,9 @@ impl VehicleScenario {
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: scenario::FORCE_NOISE,
                 bias_sigma_m_s2: FORCE_BIAS_SIGMA,
+                full_scale_m_s2: Some(FORCE_FULL_SCALE),
                 ..AccelerometerConfiguration::default()
             },
-            accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
             ..VehicleConfiguration::default()
         }
     }
@@ -360,7 +359,7 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
             let gyro = self.gyro(select, &scenario.base);
             chips::AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }
         };
-        let configuration = adxl355::Configuration { rate: scenario.output().0 };
-        VehicleSensors { gyros: GYROS.map(gyro), accelerometer: self.accelerometer(configuration) }
+        let accelerometer = self.accelerometer(scenario.output().0);
+        VehicleSensors { gyros: GYROS.map(gyro), accelerometer }
     }
 }

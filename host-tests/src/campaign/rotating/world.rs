@@ -157,6 +157,7 @@ impl World {
             ..InstrumentsConfiguration::default()
         };
         instruments.accelerometer.noise_m_s2_sqrt_hz = FORCE_NOISE;
+        instruments.accelerometer.full_scale_m_s2 = Some(FORCE_FULL_SCALE);
         instruments.leaning(TILT_DEG, self.uphill_deg)
     }
 
@@ -190,7 +191,6 @@ impl World {
         let configuration = TurntableConfiguration {
             instruments: self.instruments(),
             unevenness: self.gear(),
-            accelerometer_full_scale_m_s2: Some(FORCE_FULL_SCALE),
             slip: self.slip,
             segments: &self.segments,
             disturbances: &self.disturbances,

@@ -60,10 +60,9 @@ fn a_platform_that_is_bumped_in_every_turn_is_refused() {
 fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
     let pushed = [Disturbance::force_overload(clockwise_s(0.0), 60.0)];
     assert_refused(&["Device"], |seed, case| {
-        with(seed, &case, |configuration| TurntableConfiguration {
-            disturbances: &pushed,
-            accelerometer_full_scale_m_s2: Some(20.08),
-            ..configuration
+        with(seed, &case, |mut configuration| {
+            configuration.instruments.accelerometer.full_scale_m_s2 = Some(20.08);
+            TurntableConfiguration { disturbances: &pushed, ..configuration }
         })
     });
     assert_refused(&["Device"], |seed, case| {

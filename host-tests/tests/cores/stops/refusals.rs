@@ -83,7 +83,7 @@ fn a_stated_stop_where_the_vehicle_drives_is_none() {
 #[test]
 fn accelerometers_at_their_limit_leave_no_stop() {
     let mut day = two(1);
-    day.scenario.vehicle.accelerometer_full_scale_m_s2 = 9.5;
+    day.scenario.vehicle.accelerometer.full_scale_m_s2 = Some(9.5);
     assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::NoStop));
     day.rests = Kind::Stated;
     assert_refused!(verdict(&day), Refusal::Stops(stops::Refusal::StopTooShort { stop: 1, .. }));

@@ -208,8 +208,8 @@ fn converted(
         let angle = if angle.abs() >= most { 1e3 * angle.signum() } else { angle };
         AngleIncrement::from_rad(angle, &mut carried[axis])
     });
-    let is_clipped = (sample.force_m_s2.iter())
-        .any(|force| force.abs() >= configuration.accelerometer_full_scale_m_s2);
+    let full = configuration.accelerometer.full_scale_m_s2.unwrap_or(f64::INFINITY);
+    let is_clipped = sample.force_m_s2.iter().any(|force| force.abs() >= full);
     let force = (!is_clipped).then(|| sample.force_m_s2.map(SpecificForce::from_m_per_s2));
     InertialSample { time: Instant::from_seconds(sample.time_s), turned, force }
 }

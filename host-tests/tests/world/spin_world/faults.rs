@@ -56,12 +56,12 @@ fn a_channel_sticks_at_its_last_value_and_comes_back() {
 
 #[test]
 fn sensors_clip_at_their_full_scale_and_at_an_overload() {
-    let body = SpinConfiguration {
+    let mut body = SpinConfiguration {
         seconds: 0.02,
         gyro_full_scale_rad_s: [600.0, 1.0, 1.0],
-        accelerometer_full_scale_m_s2: 5000.0,
         ..SpinConfiguration::default()
     };
+    body.accelerometer.full_scale_m_s2 = Some(5000.0);
     let samples: Vec<_> = SpinWorld::new(&body, 1).collect();
     assert!(samples.iter().all(|sample| sample.rate_rad_s[0] == 600.0));
     assert!(samples.iter().all(|sample| sample.force_m_s2[0] == -5000.0));

@@ -105,12 +105,12 @@ fn a_push_takes_the_accelerometer_beyond_its_range_and_leaves_the_gyro_alone() {
     let configuration = PlantConfiguration { disturbances: &disturbances, ..Default::default() };
     let mut plant = Plant::new(&configuration, 1);
     let segments = [Segment::steady(0.0, 3.0)];
-    let clipping = TurntableConfiguration {
+    let mut clipping = TurntableConfiguration {
         segments: &segments,
         disturbances: &disturbances,
-        accelerometer_full_scale_m_s2: Some(20.08),
         ..Default::default()
     };
+    clipping.instruments.accelerometer.full_scale_m_s2 = Some(20.08);
     let (level, still) = (plant.force_g(at(0.0)), plant.volts(at(0.0)));
     for sample in run(&clipping, 1) {
         let pushed = (1.0..1.5).contains(&sample.time_s);

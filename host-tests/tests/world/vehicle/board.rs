@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::{Configuration, DataRate};
+use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
 use embassy_time::{Delay, Duration, Instant, Timer};
 use hal_mock::chip::{Rig, Select};
@@ -131,7 +132,7 @@ fn the_accelerometer_is_fixed_to_the_vehicle() {
     let board = board(&tilted);
     run(async {
         let bus = SpiPort::new(&board, Select::Accelerometer, adxl355::BUS_HERTZ);
-        let mut accelerometer = Adxl355::new(bus, Delay, adxl355::Configuration::default());
+        let mut accelerometer = Adxl355::new(bus, Delay, OutputRate::default());
         accelerometer.start().await.expect("it is healthy");
         Timer::after(Duration::from_millis(100)).await;
         let reading = accelerometer.read().await.expect("it is healthy");

@@ -105,13 +105,10 @@ fn faults_are_where_they_are_asked_for() {
         SensorFault { failure: SensorFailure::Saturated(1), from_s: 4.0, until_s: 4.5 },
         SensorFault { failure: SensorFailure::Stuck(3), from_s: 6.0, until_s: 7.0 },
     ];
-    let mut configuration = VehicleConfiguration {
-        faults: &faults,
-        gyro_full_scale_rad_s: 0.5,
-        accelerometer_full_scale_m_s2: 20.0,
-        ..at_45(&legs, &[])
-    };
+    let mut configuration =
+        VehicleConfiguration { faults: &faults, gyro_full_scale_rad_s: 0.5, ..at_45(&legs, &[]) };
     configuration.accelerometer.noise_m_s2_sqrt_hz = 1e-3;
+    configuration.accelerometer.full_scale_m_s2 = Some(20.0);
     let (samples, _) = run(&configuration, 1);
     assert_eq!(samples.len(), 900);
     let clipped: Vec<_> = samples.iter().filter(|sample| sample.is_clipped).collect();

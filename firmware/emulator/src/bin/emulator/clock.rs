@@ -19,7 +19,7 @@ impl Clock {
 
 impl Driver for Clock {
     fn now(&self) -> u64 {
-        self.with(|clock| clock.now())
+        self.with(|clock| clock.now)
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {

@@ -116,7 +116,8 @@ impl Conclusion {
         }
         let mut found = Found::of(setting, &path(setting, stop_detector));
         while found.tally.correlation() < SWAYS && stop_detector.blocks.list.len() >= MANY {
-            stop_detector.coarsen();
+            // The blocks are joined in pairs, for a sway with a period shorter than two of them.
+            stop_detector.blocks.halve();
             found = Found::of(setting, &path(setting, stop_detector));
         }
         Self {

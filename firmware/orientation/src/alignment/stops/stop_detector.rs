@@ -362,11 +362,6 @@ impl StopDetector {
         }
     }
 
-    /// Joins the blocks at rest in pairs, for a sway with a period shorter than two blocks.
-    pub(super) fn coarsen(&mut self) {
-        self.blocks.halve();
-    }
-
     /// Time from the beginning of the first sample to the end of the last one, s; zero without
     /// samples.
     pub(super) fn elapsed(&self) -> f64 {
