@@ -82,7 +82,8 @@ impl Setting {
     }
 
     /// Sensor properties for the stop criteria.
-    pub(crate) fn sensors(&self) -> Sensors {
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
         Sensors {
             angle_random_walk: self.site.noise.model().angle_random_walk,
             bias_sigma: self.bias_sigma(),

@@ -107,7 +107,7 @@ pub struct StopDetector {
 impl StopDetector {
     /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
     #[inline]
-    pub(crate) fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
+    pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
         Self {
             rests,
             limits: sensors.limits(WINDOW as f64),
