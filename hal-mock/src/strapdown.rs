@@ -13,15 +13,9 @@ pub(crate) fn gyro_seeds(seed: u64, streams: [u64; 3]) -> [u64; 3] {
     streams.map(|index| Generator::stream(seed, index).next_u64())
 }
 
-/// Three gyros read `rate_hz` times a second (> 0), which draw from the seeds of three streams of a seed.
-pub(crate) fn gyros(
-    configurations: &[GyroConfiguration; 3],
-    rate_hz: f64,
-    seed: u64,
-    streams: [u64; 3],
-) -> [Gyro; 3] {
-    let seeds = gyro_seeds(seed, streams);
-    [0, 1, 2].map(|axis: usize| Gyro::new(&configurations[axis], rate_hz, seeds[axis]))
+/// Three gyros read `rate_hz` times a second (> 0), each with a seed of its own.
+pub(crate) fn gyros(of: &[GyroConfiguration; 3], rate_hz: f64, seeds: [u64; 3]) -> [Gyro; 3] {
+    [0, 1, 2].map(|axis: usize| Gyro::new(&of[axis], rate_hz, seeds[axis]))
 }
 
 /// The sensors at work, of which the last `N` axes of the accelerometer are looked at. Each keeps what it

@@ -4,7 +4,7 @@ use super::SpinConfiguration;
 use super::body::Felt;
 use crate::accelerometer::Accelerometer;
 use crate::noise::source;
-use crate::strapdown::{Strapdown, gyros};
+use crate::strapdown::{Strapdown, gyro_seeds, gyros};
 
 /// Temperature of all of it, °C: that at which a gyro's bias is stated.
 const TEMPERATURE_C: f64 = 25.0;
@@ -18,7 +18,7 @@ impl<'a> Sensors<'a> {
     pub(super) fn new(configuration: &SpinConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
         Self(Strapdown {
-            gyros: gyros(&c.gyros, c.rate_hz, seed, source::SPIN_GYROS),
+            gyros: gyros(&c.gyros, c.rate_hz, gyro_seeds(seed, source::SPIN_GYROS)),
             accelerometer: Accelerometer::new(&c.accelerometer, c.rate_hz, seed),
             rate_limits_rad_s: c.gyro_full_scale_rad_s,
             faults: c.faults,

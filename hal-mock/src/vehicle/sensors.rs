@@ -4,7 +4,7 @@ use super::{VehicleConfiguration, VehicleTruth};
 use crate::accelerometer::Accelerometer;
 use crate::earth::{InertialInput, normal_gravity_m_s2};
 use crate::noise::source;
-use crate::strapdown::{Strapdown, gyros};
+use crate::strapdown::{Strapdown, gyro_seeds, gyros};
 use crate::temperature::TemperatureConfiguration;
 use crate::vehicle::motion::Motion;
 
@@ -28,7 +28,7 @@ impl<'a> Sensors<'a> {
     ) -> Self {
         let c = configuration;
         let strapdown = Strapdown {
-            gyros: gyros(&c.gyros, c.rate_hz, seed, source::VEHICLE_GYROS),
+            gyros: gyros(&c.gyros, c.rate_hz, gyro_seeds(seed, source::VEHICLE_GYROS)),
             accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
             rate_limits_rad_s: [c.gyro_full_scale_rad_s; 3],
             faults: c.faults,

@@ -5,9 +5,9 @@ use hal_mock::noise::Generator;
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::direction::Components;
 use orientation::alignment::stepwise::level::tilt;
-use orientation::alignment::stepwise::mount::Mount;
 use orientation::alignment::stepwise::quality::{Disturbance, ExpectedScatter};
 use orientation::alignment::stepwise::setting::{Amplitude, Half, Setting};
+use orientation::alignment::stepwise::tilt::Tilt;
 use orientation::earth::Latitude;
 use orientation::math::regression::{Column, Regression};
 use orientation::noise::model::{GyroNoise, StatedNoise};
@@ -229,14 +229,21 @@ fn two_azimuths_that_fit_alike_have_no_margin() {
     }
 }
 
-/// A dwell with the forces of a tilt and biases, in g of 9.8 m/s².
+/// The tilt of dwells on the stage at the equator, with accelerometers of this bias, 1σ, m/s².
+fn levelled(dwells: &[Dwell], accelerometer_bias_sigma: f64) -> Tilt {
+    let site = Site { accelerometer_bias_sigma, ..Site::at(Latitude::EQUATOR) };
+    tilt(&Setting::new(site), dwells.iter())
+}
+
+/// A dwell with the forces of a tilt and biases, in g of the equator.
 fn leaning(theta_deg: f64, tilt: [f64; 2], bias: [f64; 2]) -> Dwell {
     let (s, c) = theta_deg.to_radians().sin_cos();
     let x = tilt[0] * c - tilt[1] * s + bias[0];
     let y = -(tilt[0] * s + tilt[1] * c) + bias[1];
+    let gravity = Latitude::EQUATOR.gravity();
     Dwell {
         stage: Angle::from_rad(theta_deg.to_radians()),
-        force: Some([9.8 * x, 9.8 * y, -9.8]),
+        force: Some([gravity * x, gravity * y, -gravity]),
         ..Dwell::default()
     }
 }
@@ -248,7 +255,7 @@ fn a_full_circle_frees_the_tilt_of_the_bias_and_an_arc_does_not() {
         angles.iter().map(|&angle| leaning(angle, truth, [0.025, -0.015])).collect()
     };
     let circle = at(&[0.0, 60.0, 120.0, 180.0, 240.0, 300.0]);
-    let found = tilt(&Mount::STAGE, circle.iter(), 9.8, 0.3);
+    let found = levelled(&circle, 0.3);
     assert!((found.real - truth[0]).abs() < 1e-6 && (found.imaginary - truth[1]).abs() < 1e-6);
     assert!((found.bias[0] - 0.025).abs() < 1e-5, "{found:?}");
     // On an arc with some mg of scatter the tilt is known no better than the bias: 0.3/9.8 g.
@@ -256,7 +263,7 @@ fn a_full_circle_frees_the_tilt_of_the_bias_and_an_arc_does_not() {
     for (dwell, push) in arc.iter_mut().zip([0.05, -0.05, -0.05, 0.05]) {
         dwell.force = dwell.force.map(|[x, y, z]| [x + push, y - push, z]);
     }
-    let found = tilt(&Mount::STAGE, arc.iter(), 9.8, 0.3);
+    let found = levelled(&arc, 0.3);
     let sigma = found.covariance[0][0].sqrt();
     assert!((0.5..1.1).contains(&(sigma / (0.3 / 9.8))), "{found:?}");
     assert!((found.real - truth[0]).abs() < 3.5 * sigma, "{found:?}");
@@ -268,9 +275,9 @@ fn pitch_and_roll_come_from_the_phasor() {
     let phasor = [pitch.sin(), roll.sin() * pitch.cos()];
     let dwells: Vec<Dwell> =
         (0..12).map(|i| leaning(f64::from(i) * 30.0, phasor, [0.0, 0.0])).collect();
-    let found = tilt(&Mount::STAGE, dwells.iter(), 9.8, 0.05);
+    let found = levelled(&dwells, 0.05);
     assert!((found.pitch() - pitch).abs() < 1e-8 && (found.roll() - roll).abs() < 1e-8);
-    assert!(!tilt(&Mount::STAGE, [Dwell::default()].iter(), 9.8, 0.0).measured);
+    assert!(!levelled(&[Dwell::default()], 0.0).measured);
 }
 
 /// Blocks of white noise of one unit (in µrad/s) a sample, plus what `add` says for each sample.

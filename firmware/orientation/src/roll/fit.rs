@@ -104,7 +104,7 @@ impl Sums {
         self.samples = self.samples.saturating_add(samples);
     }
 
-    /// Adds a sample. The sums are written out, because they are the main cost of a sample.
+    /// Adds a sample.
     #[inline]
     pub(super) fn push(&mut self, angle: Angle, force: Option<[SpinForce; 2]>) {
         let place = (self.samples as f32 - self.half) * self.scale;
@@ -119,29 +119,22 @@ impl Sums {
         let [sine, cosine] = sine_and_cosine(angle);
         let real = y.0.wrapping_sub(self.base[0]) as f32 * STEP;
         let imaginary = self.base[1].wrapping_sub(z.0) as f32 * STEP;
+        let (turning, force) = (Complex::new(cosine, sine), Complex::new(real, imaginary));
+        let placed = turning.scaled(place);
         // Force rotated back, s e^{−jγ̂}.
-        let turned_real = real * cosine + imaginary * sine;
-        let turned_imaginary = imaginary * cosine - real * sine;
-        let (placed_cosine, placed_sine) = (place * cosine, place * sine);
+        let turned = turning.against(force);
         self.place += place;
         self.place_square += place * place;
-        self.turning[0].re += cosine;
-        self.turning[0].im += sine;
-        self.turning[1].re += placed_cosine;
-        self.turning[1].im += placed_sine;
-        self.turning[2].re += place * placed_cosine;
-        self.turning[2].im += place * placed_sine;
-        self.force[0].re += real;
-        self.force[0].im += imaginary;
-        self.force[1].re += place * real;
-        self.force[1].im += place * imaginary;
-        self.turned_force[0].re += turned_real;
-        self.turned_force[0].im += turned_imaginary;
-        self.turned_force[1].re += place * turned_real;
-        self.turned_force[1].im += place * turned_imaginary;
+        self.turning[0] += turning;
+        self.turning[1] += placed;
+        self.turning[2] += placed.scaled(place);
+        self.force[0] += force;
+        self.force[1] += force.scaled(place);
+        self.turned_force[0] += turned;
+        self.turned_force[1] += turned.scaled(place);
         self.power[0] += real * real;
         self.power[1] += imaginary * imaginary;
-        self.harmonics.push(place, [cosine, sine], [real, imaginary]);
+        self.harmonics.push(place, turning, force);
     }
 
     /// Accelerometers whose reading never changed.

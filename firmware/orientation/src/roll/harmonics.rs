@@ -49,37 +49,20 @@ pub(super) struct Harmonics {
 }
 
 impl Harmonics {
-    /// Adds a sample: place, cosine and sine of its angle, force. The sums are written out, as in
-    /// the caller.
+    /// Adds a sample: its place, e^{jγ̂} and force.
     #[inline]
-    pub(super) fn push(
-        &mut self,
-        place: f32,
-        [cosine, sine]: [f32; 2],
-        [real, imaginary]: [f32; 2],
-    ) {
-        let twice = sine + sine;
-        let (cosine_2, sine_2) = (1.0 - twice * sine, twice * cosine);
-        let cosine_3 = cosine_2 * cosine - sine_2 * sine;
-        let sine_3 = cosine_2 * sine + sine_2 * cosine;
-        self.second[0].re += cosine_2;
-        self.second[0].im += sine_2;
-        self.second[1].re += place * cosine_2;
-        self.second[1].im += place * sine_2;
-        self.third[0].re += cosine_3;
-        self.third[0].im += sine_3;
-        self.third[1].re += place * cosine_3;
-        self.third[1].im += place * sine_3;
-        self.force[0].re += real * cosine - imaginary * sine;
-        self.force[0].im += real * sine + imaginary * cosine;
-        let (direct, crossed) = (real * cosine_2, imaginary * sine_2);
-        let (straight, across) = (imaginary * cosine_2, real * sine_2);
-        self.force[1].re += direct + crossed;
-        self.force[1].im += straight - across;
-        self.force[2].re += direct - crossed;
-        self.force[2].im += straight + across;
-        self.force[3].re += real * cosine_3 + imaginary * sine_3;
-        self.force[3].im += imaginary * cosine_3 - real * sine_3;
+    pub(super) fn push(&mut self, place: f32, first: Complex, force: Complex) {
+        let twice = first.im + first.im;
+        let second = Complex::new(1.0 - twice * first.im, twice * first.re);
+        let third = second * first;
+        self.second[0] += second;
+        self.second[1] += second.scaled(place);
+        self.third[0] += third;
+        self.third[1] += third.scaled(place);
+        self.force[0] += force * first;
+        self.force[1] += second.against(force);
+        self.force[2] += second * force;
+        self.force[3] += third.against(force);
     }
 
     /// Sums of `e^{jkγ̂}` and of that times the place, k from −3 to 3; `even` and `first` are those

@@ -133,9 +133,7 @@ impl Conclusion {
 
     /// Tilt from the dwells that are not excluded.
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
-        let (gravity, bias) =
-            (setting.site.latitude.gravity(), setting.site.accelerometer_bias_sigma);
-        self.tilt = level::tilt(&setting.mount, self.kept(dwells), gravity, bias);
+        self.tilt = level::tilt(setting, self.kept(dwells));
     }
 
     /// Fits, and excludes the dwell with the largest residual, until none stands out.

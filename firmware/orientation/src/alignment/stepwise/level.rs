@@ -14,6 +14,7 @@
 
 use super::direction::{inverted, quadratic};
 use super::mount::Mount;
+use super::setting::Setting;
 use super::tilt::{Tilt, TiltRate};
 use crate::math::{COLUMNS, Column, Regression};
 use crate::signal::Dwell;
@@ -63,18 +64,12 @@ impl TiltRate {
     }
 }
 
-/// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
-/// bias in m/s² (zero: taken as free of bias).
+/// Fits the tilt to the dwells' mean forces; a 1σ of zero takes the accelerometers as free of bias.
 ///
 /// The mount determines whether the accelerometer rides on the stage. The scatter of the dwells about a
 /// first fit weights the second. Without forces the platform is taken as level and the tilt as not measured.
-pub fn tilt<'a>(
-    mount: &Mount,
-    dwells: impl Iterator<Item = &'a Dwell> + Clone,
-    gravity: f64,
-    bias_sigma: f64,
-) -> Tilt {
-    let mut forces = Forces::new(mount, dwells, gravity, bias_sigma);
+pub fn tilt<'a>(setting: &Setting, dwells: impl Iterator<Item = &'a Dwell> + Clone) -> Tilt {
+    let mut forces = Forces::new(setting, dwells);
     let time = forces.time;
     // On an arc, drifting biases and a tilting base look like an encoder that counts the other way.
     let alone = forces.countering([0.0; 2]);
@@ -115,12 +110,10 @@ pub fn tilt<'a>(
 
 /// Rate of tilt that the forces show, significant or not; `None` where they cannot determine it.
 pub(super) fn tilting<'a>(
-    mount: &Mount,
+    setting: &Setting,
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
-    gravity: f64,
-    bias_sigma: f64,
 ) -> Option<TiltRate> {
-    Forces::new(mount, dwells, gravity, bias_sigma).weighted(Beside::Rate).map(|found| found.beside)
+    Forces::new(setting, dwells).weighted(Beside::Rate).map(|found| found.beside)
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
@@ -187,8 +180,9 @@ struct Found {
 
 impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
     /// Forces of these dwells, with rates counted from the end of the last dwell.
-    fn new(mount: &'m Mount, dwells: D, gravity: f64, bias_sigma: f64) -> Self {
-        let bias = (bias_sigma / gravity).max(EXACT_BIAS);
+    fn new(setting: &'m Setting, dwells: D) -> Self {
+        let (mount, gravity) = (&setting.mount, setting.site.latitude.gravity());
+        let bias = (setting.site.accelerometer_bias_sigma / gravity).max(EXACT_BIAS);
         let time = dwells.clone().last().map_or(0.0, Dwell::end);
         Self { mount, bias, dwells, gravity, time, drift: [0.0; 2] }
     }

@@ -170,9 +170,8 @@ fn aligned(session: &Session, truth_deg: f64) -> Aligned {
 /// The azimuth of plain least squares, °.
 fn plain_deg(session: &Session) -> Option<f64> {
     let setting = session.setting();
-    let gravity = setting.site.latitude.gravity();
-    let (dwells, bias_sigma) = (session.dwells(), setting.site.accelerometer_bias_sigma);
-    let tilt = level::tilt(&setting.mount, dwells.iter(), gravity, bias_sigma);
+    let dwells = session.dwells();
+    let tilt = level::tilt(setting, dwells.iter());
     let mut regression = Regression::<3>::default();
     for dwell in dwells {
         let axis = tilt.sensitive_axis(dwell.stage.rad());

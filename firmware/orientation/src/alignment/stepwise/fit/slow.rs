@@ -46,9 +46,7 @@ impl Problem<'_> {
         if self.tilt.rate != TiltRate::default() {
             return None;
         }
-        let (gravity, bias) =
-            (self.setting.site.latitude.gravity(), self.setting.site.accelerometer_bias_sigma);
-        let shown = level::tilting(&self.setting.mount, self.dwells.iter().copied(), gravity, bias);
+        let shown = level::tilting(self.setting, self.dwells.iter().copied());
         let Some(shown) = shown.filter(|_| self.tilt.measured) else {
             let lever = 1.0 / self.setting.site.latitude.horizontal_rate();
             return Some(SlowMotion { sigma: f64::INFINITY, lever });
