@@ -39,13 +39,10 @@ impl Health {
     /// Sum of all faults; samples that were acquired do not count.
     #[must_use]
     pub fn faults(&self) -> u32 {
-        let devices: u32 = self.lost.iter().chain(&self.restarts).map(|n| u32::from(*n)).sum();
-        devices
-            .saturating_add(self.missing)
-            .saturating_add(self.late)
-            .saturating_add(self.overflowed)
-            .saturating_add(self.unkept)
-            .saturating_add(self.unsent)
+        let devices = self.lost.iter().chain(&self.restarts).map(|count| u32::from(*count));
+        [self.missing, self.late, self.overflowed, self.unkept, self.unsent]
+            .into_iter()
+            .fold(devices.sum(), u32::saturating_add)
     }
 }
 

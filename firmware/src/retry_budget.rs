@@ -29,6 +29,8 @@ pub enum Symptom {
     Jumped,
     /// The device does not convert synchronously with the others.
     OutOfStep,
+    /// The device has been at the limit of its range for too long, which no restart mends.
+    Saturated,
 }
 
 words! { Symptom:
@@ -38,6 +40,7 @@ words! { Symptom:
     Self::Slow => "its bus hangs";
     Self::Jumped => "too far from the one before";
     Self::OutOfStep => "out of step with the others";
+    Self::Saturated => "at the limit of its range for too long";
 }
 
 impl From<Symptom> for Trouble {
@@ -54,6 +57,7 @@ impl From<Symptom> for Trouble {
             Symptom::Stuck | Symptom::Jumped => Self::Stuck,
             Symptom::Slow => Self::Slow,
             Symptom::OutOfStep => Self::OutOfStep,
+            Symptom::Saturated => Self::Saturated,
         }
     }
 }
@@ -97,8 +101,11 @@ impl RetryBudget {
     }
 
     /// Records a failed reading and returns the reaction: bus errors are repeated up to three
-    /// times, everything else needs a restart, at most five times.
+    /// times, everything else needs a restart, at most five times. A saturated device is given up.
     pub fn failed(&mut self, symptom: Symptom) -> Remedy {
+        if symptom == Symptom::Saturated {
+            return Remedy::GiveUp(symptom.into());
+        }
         let cause = *self.cause.get_or_insert(symptom);
         let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Checksum));
         if passing && self.lost < LOST_IN_A_ROW {

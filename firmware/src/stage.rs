@@ -8,7 +8,7 @@
 
 use core::convert::Infallible;
 
-use embassy_time::{Duration, Instant, Timer};
+use embassy_time::{Instant, Timer};
 use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
@@ -60,23 +60,15 @@ impl<'a, M: Actuator> Stage<'a, M> {
         Self { motor, configuration: *configuration }
     }
 
-    /// Finds the index and sets the motor's step count by the encoder there. A stall is followed by
-    /// a rest of 0.5 s, doubled with each attempt.
+    /// Finds the index and sets the motor's step count by the encoder there.
     ///
     /// # Errors
     /// The index was not found, or motor or encoder is given up.
     pub(crate) async fn home(&mut self) -> Result<(), Refusal> {
         self.motor.report(Event::Homing);
         for attempt in 0..=RETRIES {
-            match self.find_index().await {
-                Ok(()) => return Ok(()),
-                Err(Break::Refused(reason)) => return Err(reason),
-                Err(Break::Stalled) => {
-                    self.motor.report(Event::Blocked);
-                    Timer::after(STALL_REST * (1 << attempt)).await;
-                }
-                Err(Break::Lost) => {}
-            }
+            let Err(broken) = self.find_index().await else { return Ok(()) };
+            self.rest(broken, attempt).await?;
         }
         Err(self.motor.fail(self.motor.blocked()))
     }
@@ -145,7 +137,10 @@ impl<'a, M: Actuator> Stage<'a, M> {
                 Err(Break::Stalled) if attempt == MOVES => trouble = None,
                 Err(Break::Lost) if attempt == MOVES => trouble = Some(Trouble::Resets),
                 Err(broken) => {
-                    self.recover(broken, STALL_REST * (1 << attempt)).await?;
+                    self.rest(broken, attempt).await?;
+                    // The motor's step count is invalid after a stall or a restart, and the encoder
+                    // has then nothing to agree with: both are referenced at the index again.
+                    self.home().await?;
                     // A correction belongs to the step count before.
                     aim = target;
                 }
@@ -173,19 +168,17 @@ impl<'a, M: Actuator> Stage<'a, M> {
         Ok(off)
     }
 
-    /// Prepares the stage for another attempt. The motor's step count is invalid after a stall or a
-    /// restart, and the encoder has then nothing to agree with, so both are referenced at the index
-    /// again.
-    async fn recover(&mut self, broken: Break, rest: Duration) -> Result<(), Refusal> {
+    /// Rests before another attempt, after a stall for 0.5 s, doubled with each attempt.
+    async fn rest(&mut self, broken: Break, attempt: u32) -> Result<(), Refusal> {
         match broken {
             Break::Refused(reason) => return Err(reason),
             Break::Lost => {}
             Break::Stalled => {
                 self.motor.report(Event::Blocked);
-                Timer::after(rest).await;
+                Timer::after(STALL_REST * (1 << attempt)).await;
             }
         }
-        self.home().await
+        Ok(())
     }
 }
 

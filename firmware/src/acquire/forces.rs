@@ -64,42 +64,35 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         }
         let begun = Instant::now();
         let outcome = self.accelerometer.device.read().await;
-        let outcome = match self.judge(begun, outcome, shared) {
-            Ok(Ok(reading)) => {
+        match self.judge(begun, outcome) {
+            Ok(reading) => {
                 self.absent = None;
-                Ok(reading.is_new.then_some(reading))
+                return Ok(reading.is_new.then_some(reading));
             }
-            Ok(Err(symptom)) if is_on_the_way(shared) => {
+            Err(symptom) if symptom != Symptom::Saturated && is_on_the_way(shared) => {
                 shared.lose(Device::Accelerometer, symptom);
                 self.absent = Some(Instant::now() + PAUSE);
-                Ok(None)
             }
-            Ok(Err(symptom)) => self.accelerometer.mend(symptom, shared).await.map(|()| None),
-            Err(reason) => Err(reason),
-        };
-        if outcome.is_err() && shared.is_holding() {
-            self.renew();
-            self.absent = Some(Instant::now() + RETRY);
-            return Ok(None);
+            Err(symptom) => match self.accelerometer.mend(symptom, shared).await {
+                Err(_) if shared.is_holding() => {
+                    self.renew();
+                    self.absent = Some(Instant::now() + RETRY);
+                }
+                outcome => outcome?,
+            },
         }
-        outcome
+        Ok(None)
     }
 
     /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an
-    /// accelerometer that has stopped; one that stays saturated is given up.
+    /// accelerometer that has stopped.
     fn judge(
         &mut self,
         begun: Instant,
         outcome: Result<ForceReading, Fault>,
-        shared: &Shared<'_>,
-    ) -> Result<Result<ForceReading, Symptom>, Refusal> {
-        let reading = match self.accelerometer.checked(begun, outcome) {
-            Ok(reading) => reading,
-            Err(symptom) => return Ok(Err(symptom)),
-        };
-        match self.plausibility.judge(reading.force, reading.is_clipped, self.due.divider) {
-            Ok(symptom) => Ok(symptom.map_or(Ok(reading), Err)),
-            Err(trouble) => Err(shared.give_up(Device::Accelerometer, trouble)),
-        }
+    ) -> Result<ForceReading, Symptom> {
+        let reading = self.accelerometer.checked(begun, outcome)?;
+        self.plausibility.judge(reading.force, reading.is_clipped, self.due.divider)?;
+        Ok(reading)
     }
 }

@@ -29,7 +29,6 @@ pub use triad::TriadAcquisition;
 use core::convert::Infallible;
 
 use orientation::alignment::refusal::Refusal;
-use orientation::device::Trouble;
 use orientation::units::{AngleIncrement, AngularRate};
 
 use crate::repeat_counter::{RepeatCounter, STUCK};
@@ -131,25 +130,20 @@ impl<T: Copy + PartialEq> Plausibility<T> {
         Self { repeats: RepeatCounter::new(), saturated: 0, longest }
     }
 
-    /// Takes a reading that stands for `samples` samples. One that is repeated too often is a
-    /// symptom of a sensor that has stopped.
+    /// Takes a reading that stands for `samples` samples.
     ///
     /// # Errors
-    /// The sensor has been at the limit of its range for too long.
-    fn judge(
-        &mut self,
-        value: T,
-        is_clipped: bool,
-        samples: u32,
-    ) -> Result<Option<Symptom>, Trouble> {
+    /// [`Symptom::Saturated`] of a sensor that has been at the limit of its range for too long, and
+    /// [`Symptom::Stuck`] of one that repeats itself too often.
+    fn judge(&mut self, value: T, is_clipped: bool, samples: u32) -> Result<(), Symptom> {
         self.saturated = if is_clipped { self.saturated + samples } else { 0 };
         if self.saturated > self.longest {
-            return Err(Trouble::Saturated);
+            return Err(Symptom::Saturated);
         }
         if self.repeats.push(value) < STUCK || is_clipped {
-            return Ok(None);
+            return Ok(());
         }
         self.repeats = RepeatCounter::new();
-        Ok(Some(Symptom::Stuck))
+        Err(Symptom::Stuck)
     }
 }

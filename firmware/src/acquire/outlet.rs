@@ -30,30 +30,30 @@ impl<'a, S> Outlet<'a, S> {
 
     /// Queues a sample for the session, and reports an overflow of the queue.
     pub(super) fn hand_over(&mut self, sample: S) {
-        self.channels.shared.count(|health| health.samples = health.samples.saturating_add(1));
-        self.channels.shared.is_behind.set(true);
+        let shared = self.shared();
+        shared.count(|health| health.samples = health.samples.saturating_add(1));
+        shared.is_behind.set(true);
         if self.channels.samples.try_send(sample).is_err() {
             self.overflowed += 1;
-            self.channels.shared.count(|health| health.overflowed += 1);
+            shared.count(|health| health.overflowed += 1);
         } else if self.overflowed > 0 {
-            self.channels.shared.report(Event::Overflowed(self.overflowed));
+            shared.report(Event::Overflowed(self.overflowed));
             self.overflowed = 0;
         }
     }
 
     /// Counts and reports samples that are missing before one of this time, or that are late.
     pub(super) fn judge(&mut self, time: Instant) {
+        let shared = self.shared();
         match self.timeline.judge(time) {
             Arrival::InTime => {}
             Arrival::Late(microseconds) => {
-                self.channels.shared.count(|health| health.late += 1);
-                self.channels.shared.report(Event::Late(microseconds));
+                shared.count(|health| health.late += 1);
+                shared.report(Event::Late(microseconds));
             }
             Arrival::Missing(count) => {
-                self.channels
-                    .shared
-                    .count(|health| health.missing = health.missing.saturating_add(count));
-                self.channels.shared.report(Event::Missing(count));
+                shared.count(|health| health.missing = health.missing.saturating_add(count));
+                shared.report(Event::Missing(count));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
+use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};
-use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::units::AngularRate;
 
@@ -25,6 +25,9 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
+    /// Arrival of a conversion that is awaited with those of other converters: its end, or the
+    /// fault of the chip; none while it is awaited.
+    pub(super) arrival: Option<Result<Instant, Fault>>,
     /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
@@ -43,6 +46,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             plausibility: Plausibility::new(sample_rate),
             period,
             latest: None,
+            arrival: None,
             has_clipped: false,
         }
     }
@@ -52,6 +56,12 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         self.gyro.renew();
         self.plausibility.saturated = 0;
         self.has_clipped = false;
+    }
+
+    /// Waits for a conversion, and stores its arrival.
+    pub(super) async fn arrive(&mut self) {
+        let outcome = self.gyro.device.ready().await;
+        self.arrival = Some(outcome.map(|()| Instant::now()));
     }
 
     /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.
@@ -83,25 +93,17 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
 
     /// Returns a new rate, checked for saturation and repetition; none where it is not new, or the
     /// symptom to repair.
-    pub(super) async fn read(
-        &mut self,
-        shared: &Shared<'_>,
-    ) -> Result<Result<Option<V>, Symptom>, Refusal> {
+    pub(super) async fn read(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
         let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
-        let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
-            Ok(reading) => reading,
-            Err(symptom) => return Ok(Err(symptom)),
-        };
+        let RateReading { rate, is_new } = self.gyro.checked(begun, outcome)?;
         if !is_new {
-            return Ok(Ok(None));
+            return Ok(None);
         }
         if rate.is_saturated() && !core::mem::replace(&mut self.has_clipped, true) {
             shared.report(Event::Clipped(self.gyro.name));
         }
-        match self.plausibility.judge(rate, rate.is_saturated(), 1) {
-            Ok(symptom) => Ok(symptom.map_or(Ok(Some(rate)), Err)),
-            Err(trouble) => Err(shared.give_up(self.gyro.name, trouble)),
-        }
+        self.plausibility.judge(rate, rate.is_saturated(), 1)?;
+        Ok(Some(rate))
     }
 }

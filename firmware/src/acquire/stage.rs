@@ -8,7 +8,6 @@ use embassy_time::{Duration, Instant, Ticker};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::Sample;
-use orientation::units::AngularRate;
 
 use super::Source;
 use super::coarse::Coarse;
@@ -98,15 +97,6 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
             self.coarse.pass_on(at, &reading, shared);
         }
     }
-
-    /// Reads the precise gyro; none where the reading was lost.
-    async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
-        let shared = self.outlet.shared();
-        match self.rates.read(shared).await? {
-            Ok(rate) => Ok(rate),
-            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None),
-        }
-    }
 }
 
 impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
@@ -132,7 +122,10 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             Ok(time) => time,
             Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|()| None),
         };
-        let rate = self.rate().await?;
+        let rate = match self.rates.read(shared).await {
+            Ok(rate) => rate,
+            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None)?,
+        };
         self.compensation.follow(shared).await?;
         self.coarse.turn(time, rate);
         self.pass_on();

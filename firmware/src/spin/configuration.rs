@@ -67,5 +67,3 @@ pub struct SpinConfiguration {
     /// The accelerometers along y and z.
     pub accelerometers: [Channel; 2],
 }
-
-impl SpinConfiguration {}
