@@ -65,54 +65,48 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
     }
 }
 
-/// Any sensor with an analogue output behind a converter; its reading is the converter's code,
-/// without a unit.
-#[derive(Debug)]
-pub struct AnalogueSensor<S, R, D>(pub Ads1262<S, R, D>);
-
-impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for AnalogueSensor<S, R, D> {
+impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for Ads1262<S, R, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.start()
+        Ads1262::start(self)
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for AnalogueSensor<S, R, D> {
+/// Any sensor with an analogue output behind a converter; its reading is the converter's code,
+/// without a unit.
+impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for Ads1262<S, R, D> {
     fn ready(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.ready()
+        Ads1262::ready(self)
     }
 
     async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
-        let conversion = self.0.read().await?;
+        let conversion = Ads1262::read(self).await?;
         let rate = Code(clipped(conversion.code, conversion.is_clipped));
         Ok(RateReading { rate, is_new: conversion.is_new })
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> InStep<Code> for AnalogueSensor<S, R, D> {
+impl<S: SpiDevice, R: Wait, D: DelayNs> InStep<Code> for Ads1262<S, R, D> {
     fn arm(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.arm()
+        Ads1262::arm(self)
     }
 
     fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.begin()
+        Ads1262::begin(self)
+    }
+}
+
+impl<S: SpiDevice, D: DelayNs> Startable for Adxl355<S, D> {
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        Adxl355::start(self)
     }
 }
 
 /// The accelerometer on the platform: x along the gyro's sensitive axis, y 90° clockwise of it, z
 /// down. On a two-frame mount the accelerometer is fixed to the base, and in a vehicle without a
 /// stage to the body: x forward, y right, z down.
-#[derive(Debug)]
-pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
-
-impl<S: SpiDevice, D: DelayNs> Startable for PlatformAccelerometer<S, D> {
-    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.start()
-    }
-}
-
-impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
+impl<S: SpiDevice, D: DelayNs> Accelerometer for Adxl355<S, D> {
     async fn read(&mut self) -> Result<ForceReading, Fault> {
-        let reading = self.0.read().await?;
+        let reading = Adxl355::read(self).await?;
         Ok(ForceReading {
             force: reading.force,
             temperature: reading.temperature,
@@ -162,25 +156,18 @@ impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
     }
 }
 
-/// The encoder on the axis of the stage; the angle grows clockwise as seen from above.
-#[derive(Debug)]
-pub struct StageEncoder<S, D>(pub Mt6835<S, D>);
-
-impl<S: SpiDevice, D: DelayNs> Startable for StageEncoder<S, D> {
+impl<S: SpiDevice, D: DelayNs> Startable for Mt6835<S, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.start()
+        Mt6835::start(self)
     }
 }
 
-impl<S: SpiDevice, D: DelayNs> Encoder for StageEncoder<S, D> {
-    async fn read(&mut self) -> Result<Angle, Fault> {
-        self.0.read().await
+/// The encoder on the axis of the stage; the angle grows clockwise as seen from above.
+impl<S: SpiDevice, D: DelayNs> Encoder for Mt6835<S, D> {
+    fn read(&mut self) -> impl Future<Output = Result<Angle, Fault>> {
+        Mt6835::read(self)
     }
 }
-
-/// The stepper motor of the stage behind its gear; positive is clockwise as seen from above.
-#[derive(Debug)]
-pub struct StageMotor<S, D>(pub Tmc5160<S, D>);
 
 /// Converts an angle of the stage, rad, to microsteps, rounded to nearest; saturates at the range
 /// of 32 bits. The same factor converts a rate, rad/s, to microsteps/s.
@@ -188,24 +175,25 @@ fn microsteps(angle: f64) -> i32 {
     libm::round(angle / TURN * f64::from(MICROSTEPS_PER_TURN)) as i32
 }
 
-impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
+impl<S: SpiDevice, D: DelayNs> Startable for Tmc5160<S, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
-        self.0.start()
+        Tmc5160::start(self)
     }
 }
 
-impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
+/// The stepper motor of the stage behind its gear; positive is clockwise as seen from above.
+impl<S: SpiDevice, D: DelayNs> Actuator for Tmc5160<S, D> {
     async fn execute(&mut self, request: Command) -> Result<Option<Motion>, Fault> {
         match request {
-            Command::GoTo(angle) => self.0.go_to(microsteps(angle)).await?,
-            Command::Seek(rate) => self.0.run(Velocity(microsteps(rate))).await?,
-            Command::SetAngle(angle) => self.0.set_position(microsteps(angle)).await?,
+            Command::GoTo(angle) => self.go_to(microsteps(angle)).await?,
+            Command::Seek(rate) => self.run(Velocity(microsteps(rate))).await?,
+            Command::SetAngle(angle) => self.set_position(microsteps(angle)).await?,
             Command::Release => {
-                self.0.stop().await?;
-                self.0.clear_stall().await?;
+                self.stop().await?;
+                self.clear_stall().await?;
             }
             Command::Look => {
-                let status = self.0.status().await?;
+                let status = self.status().await?;
                 return Ok(Some(Motion {
                     angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
                     is_standing: status.standing,

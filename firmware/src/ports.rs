@@ -354,14 +354,3 @@ pub struct SpinSensors<C>(
     /// then of the accelerometers along y and z.
     pub [C; 5],
 );
-
-/// The other ports of a board with a stage, a turntable or a mount.
-#[derive(Debug)]
-pub struct Ports<M, L, R> {
-    /// The motor of the stage, or [`Frames`] of motors on a two-frame mount.
-    pub actuator: M,
-    /// Destination of the status lines.
-    pub link: L,
-    /// Destination of the raw samples.
-    pub recorder: R,
-}

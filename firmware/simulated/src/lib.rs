@@ -27,21 +27,21 @@ use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::configuration::Configuration as Motor;
 use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::{Delay, Instant};
-use hal_mock::ads1262::Ads1262 as SimulatedConverter;
-use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
+use hal_mock::ads1262::Ads1262 as ConverterChip;
+use hal_mock::adxl355::Adxl355 as AccelerometerChip;
 use hal_mock::board::{StageBoard, StageChips};
 use hal_mock::chip::{Rig, Select};
-use hal_mock::mt6835::Mt6835 as SimulatedEncoder;
+use hal_mock::mt6835::Mt6835 as EncoderChip;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{Plant, PlantConfiguration};
 use hal_mock::spi::{ReadyPin, SpiPort};
-use hal_mock::tmc5160::{Oscillator, Tmc5160 as SimulatedMotorDriver};
+use hal_mock::tmc5160::{Oscillator, Tmc5160 as MotorDriverChip};
 
 use self::fault::{Injection, PortWrapper};
 use self::scenario::Scenario;
-use firmware::chips;
-use firmware::ports::{NoBase, Ports, Sensors};
+use firmware::chips::AnalogueGyro;
+use firmware::ports::{NoBase, Sensors};
 
 /// Bus clock of the gyro's converter, Hz; it allows 8 MHz.
 const CONVERTER_HERTZ: u32 = 5_000_000;
@@ -50,13 +50,7 @@ const CONVERTER_HERTZ: u32 = 5_000_000;
 const OSCILLATOR: Oscillator = Oscillator::Internal { hertz: 12_240_000 };
 
 /// The simulated chips around their plant.
-pub type Chips<'a> = StageBoard<
-    'a,
-    SimulatedConverter,
-    SimulatedAccelerometer,
-    SimulatedEncoder,
-    SimulatedMotorDriver,
->;
+pub type Chips<'a> = StageBoard<'a, ConverterChip, AccelerometerChip, EncoderChip, MotorDriverChip>;
 
 /// The simulated board of a scenario with what goes wrong with it, on a base that goes along a journey where
 /// there is one.
@@ -86,10 +80,10 @@ fn board_around<'a>(
     StageBoard {
         plant: Plant::new(&configuration, seed),
         chips: StageChips {
-            gyro: SimulatedConverter::default(),
-            accelerometer: SimulatedAccelerometer::new(Instant::MIN),
-            encoder: SimulatedEncoder::new(Instant::MIN),
-            actuator: SimulatedMotorDriver::new(OSCILLATOR, Instant::MIN),
+            gyro: ConverterChip::default(),
+            accelerometer: AccelerometerChip::new(Instant::MIN),
+            encoder: EncoderChip::new(Instant::MIN),
+            actuator: MotorDriverChip::new(OSCILLATOR, Instant::MIN),
         },
         blackouts: &injection.blackouts,
     }
@@ -101,18 +95,24 @@ type Bus<'a, A> = <A as PortWrapper>::Spi<SpiPort<'a>>;
 /// A simulated data-ready line with a wrapper around it.
 type Line<'a, A> = <A as PortWrapper>::Line<ReadyPin<'a>>;
 
+/// A converter behind simulated ports.
+type SimulatedConverter<'a, A> = Ads1262<Bus<'a, A>, Line<'a, A>, Delay>;
+
 /// A gyro behind simulated ports.
-type SimulatedGyro<'a, A> = chips::AnalogueGyro<Bus<'a, A>, Line<'a, A>, Delay>;
+type SimulatedGyro<'a, A> = AnalogueGyro<Bus<'a, A>, Line<'a, A>, Delay>;
 
-/// The sensors of a simulated board.
-pub type SimulatedSensors<'a, A> = Sensors<
-    SimulatedGyro<'a, A>,
-    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
-    chips::StageEncoder<Bus<'a, A>, Delay>,
->;
+/// An accelerometer behind a simulated port.
+type SimulatedAccelerometer<'a, A> = Adxl355<Bus<'a, A>, Delay>;
 
-/// The other ports of a simulated board.
-pub type SimulatedPorts<'a, A, L, R> = Ports<chips::StageMotor<Bus<'a, A>, Delay>, L, R>;
+/// An encoder behind a simulated port.
+type SimulatedEncoder<'a, A> = Mt6835<Bus<'a, A>, Delay>;
+
+/// The sensors of a simulated board with one encoder, or others.
+pub type SimulatedSensors<'a, A, E = SimulatedEncoder<'a, A>> =
+    Sensors<SimulatedGyro<'a, A>, SimulatedAccelerometer<'a, A>, E>;
+
+/// The motor of an axis of a simulated board.
+pub type SimulatedMotor<'a, A> = Tmc5160<Bus<'a, A>, Delay>;
 
 /// The wires of a simulated board: its chips as the drivers reach them, with a wrapper around every port.
 #[expect(missing_debug_implementations, reason = "a rig of any chips is none")]
@@ -130,9 +130,10 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
         }
     }
 
-    /// The other ports of a stage or a turntable, whose motor driver is given this.
-    pub fn ports<L, R>(&self, motor: Motor, link: L, recorder: R) -> SimulatedPorts<'a, A, L, R> {
-        Ports { actuator: self.motor(Select::Actuator, motor), link, recorder }
+    /// The motor of a stage or a turntable, whose driver is given this.
+    #[must_use]
+    pub fn actuator(&self, configuration: Motor) -> SimulatedMotor<'a, A> {
+        self.motor(Select::Actuator, configuration)
     }
 
     /// The bus of one chip, with a clock of `hertz`.
@@ -146,7 +147,7 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
         select: Select,
         hertz: u32,
         configuration: Converter,
-    ) -> Ads1262<Bus<'a, A>, Line<'a, A>, Delay> {
+    ) -> SimulatedConverter<'a, A> {
         let ready = self.1.line(select, ReadyPin::new(self.0, select));
         Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
     }
@@ -154,24 +155,24 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// A gyro with its converter.
     fn gyro(&self, select: Select, scenario: &Scenario) -> SimulatedGyro<'a, A> {
         let converter = self.converter(select, CONVERTER_HERTZ, scenario.converter());
-        chips::AnalogueGyro { converter, scale: scenario::SCALE, limit: scenario::LIMIT }
+        AnalogueGyro { converter, scale: scenario::SCALE, limit: scenario::LIMIT }
     }
 
     /// The accelerometer.
-    fn accelerometer(&self, rate: OutputRate) -> chips::PlatformAccelerometer<Bus<'a, A>, Delay> {
+    fn accelerometer(&self, rate: OutputRate) -> SimulatedAccelerometer<'a, A> {
         let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, rate))
+        Adxl355::new(bus, Delay, rate)
     }
 
     /// The encoder of a stage or of one of its frames.
-    fn encoder(&self, select: Select) -> chips::StageEncoder<Bus<'a, A>, Delay> {
+    fn encoder(&self, select: Select) -> SimulatedEncoder<'a, A> {
         let bus = self.bus(select, mt6835::BUS_HERTZ);
-        chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
+        Mt6835::new(bus, Delay, mt6835::Configuration::default())
     }
 
     /// The motor of a stage or of one of its frames.
-    fn motor(&self, select: Select, configuration: Motor) -> chips::StageMotor<Bus<'a, A>, Delay> {
+    fn motor(&self, select: Select, configuration: Motor) -> SimulatedMotor<'a, A> {
         let bus = self.bus(select, tmc5160::BUS_HERTZ);
-        chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
+        Tmc5160::new(bus, Delay, configuration)
     }
 }

@@ -4,7 +4,6 @@
 //! accelerometer on the base are its own. What a calibration leaves is drawn from the seed.
 
 use drivers::tmc5160::configuration::Configuration as Motor;
-use embassy_time::Delay;
 use hal_mock::chip::Select;
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
@@ -28,10 +27,9 @@ use orientation::units::DEGREE;
 
 use super::fault::{Injection, PortWrapper};
 use super::scenario::{self, Scenario, Turning};
-use super::{Bus, OSCILLATOR, SimulatedGyro, Wires};
-use firmware::chips;
+use super::{OSCILLATOR, SimulatedEncoder, SimulatedMotor, SimulatedSensors, Wires};
 use firmware::configuration::FramesConfiguration;
-use firmware::ports::{Frames, Ports, Sensors};
+use firmware::ports::{Frames, Sensors};
 
 /// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
 /// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
@@ -224,14 +222,7 @@ fn frame<'a>(
 }
 
 /// The sensors of a two-frame mount on simulated chips.
-pub type FrameSensors<'a, A> = Sensors<
-    SimulatedGyro<'a, A>,
-    chips::PlatformAccelerometer<Bus<'a, A>, Delay>,
-    Frames<chips::StageEncoder<Bus<'a, A>, Delay>>,
->;
-
-/// The other ports of a two-frame mount on simulated chips.
-pub type FramePorts<'a, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'a, A>, Delay>>, L, R>;
+pub type FrameSensors<'a, A> = SimulatedSensors<'a, A, Frames<SimulatedEncoder<'a, A>>>;
 
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a two-frame mount.
@@ -243,11 +234,10 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
         Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
     }
 
-    /// The other ports of a two-frame mount.
-    pub fn frame_ports<L, R>(&self, link: L, recorder: R) -> FramePorts<'a, A, L, R> {
-        let motor = |select| self.motor(select, Motor::default());
-        let actuator =
-            Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
-        Ports { actuator, link, recorder }
+    /// The motors of a two-frame mount.
+    #[must_use]
+    pub fn actuators(&self) -> Frames<SimulatedMotor<'a, A>> {
+        Frames { outer: Select::Actuator, inner: Select::InnerActuator }
+            .map(|select| self.motor(select, Motor::default()))
     }
 }

@@ -9,23 +9,23 @@ use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
-use firmware::chips::{
-    AnalogueGyro, AnalogueSensor, BaseImu, PlatformAccelerometer, StageEncoder, StageMotor,
-};
+use firmware::chips::{AnalogueGyro, BaseImu};
 use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 
 use crate::configuration;
 use crate::configuration::{CARRIER, Carrier};
 use crate::wiring::{BaseBus, ConverterWires, Device, Ready, StageDevice};
 
+/// Converter with its data-ready line.
+type Converter = Ads1262<Device, Ready, Delay>;
 /// Gyro behind its converter.
 type Gyro = AnalogueGyro<Device, Ready, Delay>;
 /// Accelerometer on the platform, or in the vehicle.
-type Accelerometer = PlatformAccelerometer<Device, Delay>;
+type Accelerometer = Adxl355<Device, Delay>;
 /// Encoder of an axis.
-type AxisEncoder = StageEncoder<StageDevice, Delay>;
+type AxisEncoder = Mt6835<StageDevice, Delay>;
 /// Motor of an axis.
-pub type AxisMotor = StageMotor<StageDevice, Delay>;
+pub type AxisMotor = Tmc5160<StageDevice, Delay>;
 /// IMU of the board on the base.
 pub type Base = BaseImu<BaseBus, Delay>;
 /// Sensors of a stage or a turntable, and of their base.
@@ -35,7 +35,7 @@ pub type MountInputs<B> = Sensors<Gyro, Accelerometer, Frames<AxisEncoder>, B>;
 /// Sensors of a vehicle.
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
-pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
+pub type Spinning = SpinSensors<Converter>;
 
 /// Connects the sensors on a stage, a turntable or two frames to their wires.
 pub fn inputs<E, B>(
@@ -50,7 +50,7 @@ pub fn inputs<E, B>(
 
 /// Encoder of an axis.
 pub fn encoder(wires: StageDevice) -> AxisEncoder {
-    StageEncoder(Mt6835::new(wires, Delay, mt6835::Configuration::default()))
+    Mt6835::new(wires, Delay, mt6835::Configuration::default())
 }
 
 /// Connects the IMU of the board.
@@ -77,28 +77,28 @@ pub fn triad(converters: [ConverterWires; 3], accelerometer: Device) -> Triad {
 pub fn spinning(converters: [ConverterWires; 5]) -> Spinning {
     SpinSensors(converters.map(|wires| {
         let rate = configuration::SPIN_CONVERTER;
-        AnalogueSensor(Ads1262::new(wires.bus, wires.ready, Delay, rate).clocked())
+        Ads1262::new(wires.bus, wires.ready, Delay, rate).clocked()
     }))
 }
 
 /// Converter with its data-ready line.
-fn converter(wires: ConverterWires) -> Ads1262<Device, Ready, Delay> {
+fn converter(wires: ConverterWires) -> Converter {
     Ads1262::new(wires.bus, wires.ready, Delay, configuration::CONVERTER)
 }
 
 /// Gyro with its scale and saturation limit.
-fn gyro(converter: Ads1262<Device, Ready, Delay>) -> Gyro {
+fn gyro(converter: Converter) -> Gyro {
     AnalogueGyro { converter, scale: configuration::SCALE, limit: configuration::LIMIT }
 }
 
 /// Accelerometer with the output rate of this carrier.
 fn accelerometer(bus: Device) -> Accelerometer {
-    PlatformAccelerometer(Adxl355::new(bus, Delay, force()))
+    Adxl355::new(bus, Delay, force())
 }
 
 /// Connects the motor to its wires.
 pub fn motor(wires: StageDevice) -> AxisMotor {
-    StageMotor(Tmc5160::new(wires, Delay, drive()))
+    Tmc5160::new(wires, Delay, drive())
 }
 
 /// Output rate of the accelerometer. Its filter delays a force by two and a half outputs, during

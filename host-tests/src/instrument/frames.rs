@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use firmware::acquire::{acquire, on_mount};
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, NoBase, Ports, Recorder, Store};
+use firmware::ports::{Frames, NoBase, Recorder, Store};
 use firmware::run::navigate;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
@@ -77,9 +77,8 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let configuration = scenario.base.configuration();
     let wires = Wires(&board, injection);
     let mut sensors = wires.frame_sensors(scenario).with_base(base);
-    let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let Ports { mut actuator, mut link, mut recorder } =
-        wires.frame_ports(harness.wire(), recorder);
+    let mut recorder = FaultyRecorder::new(recorder, injection.hang);
+    let mut actuator = wires.actuators();
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy().ok_or_else(outside)?;
     let ended = harness::run(
@@ -89,7 +88,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
             &mut session,
             Some(Keeping { keeper: &mut keeper, policy, store }),
             &scenario.base.hold.aiding(),
-            (&mut link, &mut recorder),
+            (&mut harness.wire(), &mut recorder),
             &channels,
         ),
     )?;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use drivers::tmc5160::configuration::Configuration as Motor;
 use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
-use firmware::ports::{NoBase, Ports, Recorder, Store};
+use firmware::ports::{NoBase, Recorder, Store};
 use firmware::run::navigate;
 use firmware::stage::Stage;
 use firmware::sway::{CompensatesSway, SwayCompensation};
@@ -70,9 +70,8 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let configuration = scenario.configuration();
     let wires = Wires(&board, injection);
     let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
-    let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let Ports { mut actuator, mut link, mut recorder } =
-        wires.ports(Motor::default(), harness.wire(), recorder);
+    let mut recorder = FaultyRecorder::new(recorder, injection.hang);
+    let mut actuator = wires.actuator(Motor::default());
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let policy = scenario.policy().ok_or_else(outside)?;
     let ended = harness::run(
@@ -82,7 +81,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
             &mut session,
             Some(Keeping { keeper: &mut keeper, policy, store }),
             &scenario.hold.aiding(),
-            (&mut link, &mut recorder),
+            (&mut harness.wire(), &mut recorder),
             &channels,
         ),
     )?;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use firmware::acquire::{acquire, on_stage};
 use firmware::configuration::TurntableConfiguration;
 use firmware::keep::Keeping;
-use firmware::ports::{NoBase, Ports, Recorder, Store};
+use firmware::ports::{NoBase, Recorder, Store};
 use firmware::run::navigate;
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::{CompensatesSway, SwayCompensation};
@@ -100,8 +100,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let wires = Wires(&board, injection);
     let mut sensors = wires.sensors(&scenario.base, turntable::FORCE).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let Ports { mut actuator, mut link, recorder } =
-        wires.ports(turntable::motor(), harness.wire(), recorder);
+    let mut actuator = wires.actuator(turntable::motor());
     let mut keeper = Keeper::new(&scenario.base.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy().ok_or_else(outside)?;
     let calibrations = plan.today.map(|_| CalibrationStore { store, channels });
@@ -112,7 +111,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
             &mut session,
             Some(Keeping { keeper: &mut keeper, policy, store }),
             &scenario.base.hold.aiding(),
-            (&mut link, &mut (recorder, calibrations)),
+            (&mut harness.wire(), &mut (recorder, calibrations)),
             channels,
         ),
     )?;

@@ -6,7 +6,7 @@ pub use course::Course;
 
 use drivers::ads1262::GREATEST_BUS_HERTZ;
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
-use embassy_time::{Delay, Instant};
+use embassy_time::Instant;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::spin::SpinConfiguration as World;
@@ -17,8 +17,7 @@ use orientation::roll::{Flight, Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};
-use super::{Bus, Line, Wires, scenario};
-use firmware::chips::AnalogueSensor;
+use super::{SimulatedConverter, Wires, scenario};
 use firmware::ports::SpinSensors;
 use firmware::spin::budget::SAMPLE_HERTZ;
 use firmware::spin::configuration::{Channel, SpinConfiguration};
@@ -167,7 +166,7 @@ impl SpinScenario {
 }
 
 /// The sensors of a spinning body on simulated chips.
-pub type SimulatedSpin<'a, A> = SpinSensors<AnalogueSensor<Bus<'a, A>, Line<'a, A>, Delay>>;
+pub type SimulatedSpin<'a, A> = SpinSensors<SimulatedConverter<'a, A>>;
 
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a spinning body.
@@ -175,6 +174,6 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     pub fn spinning(&self) -> SimulatedSpin<'a, A> {
         let configuration = Converter { rate: DataRate::Sps14400, ..Converter::default() };
         let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, configuration);
-        SpinSensors(CHIPS.map(|select| AnalogueSensor(converter(select).clocked())))
+        SpinSensors(CHIPS.map(|select| converter(select).clocked()))
     }
 }

@@ -8,7 +8,7 @@ mod site;
 pub use site::{Place, VehicleAiding};
 
 use drivers::adxl355::registers::OutputRate;
-use embassy_time::{Delay, Instant};
+use embassy_time::Instant;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::board::VehicleBoard;
@@ -25,8 +25,8 @@ use orientation::units::DEGREE_PER_HOUR;
 use super::fault::{Fault, Injection, PortWrapper};
 use super::hold::{Hold, STOP_SECONDS};
 use super::scenario::{self, Scenario};
-use super::{Bus, SimulatedGyro, Wires};
-use firmware::chips;
+use super::{SimulatedAccelerometer, SimulatedGyro, Wires};
+use firmware::chips::AnalogueGyro;
 use firmware::configuration;
 use firmware::ports::VehicleSensors;
 
@@ -349,7 +349,7 @@ fn sway() -> SwayConfiguration {
 
 /// The sensors of a vehicle on simulated chips.
 pub type SimulatedTriad<'a, A> =
-    VehicleSensors<SimulatedGyro<'a, A>, chips::PlatformAccelerometer<Bus<'a, A>, Delay>>;
+    VehicleSensors<SimulatedGyro<'a, A>, SimulatedAccelerometer<'a, A>>;
 
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a vehicle.
@@ -357,7 +357,7 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     pub fn triad(&self, scenario: &VehicleScenario) -> SimulatedTriad<'a, A> {
         let gyro = |select| {
             let gyro = self.gyro(select, &scenario.base);
-            chips::AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }
+            AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }
         };
         let accelerometer = self.accelerometer(scenario.output().0);
         VehicleSensors { gyros: GYROS.map(gyro), accelerometer }

@@ -34,7 +34,7 @@ use static_cell::StaticCell;
 
 use job::Job;
 use meter::{Meter, Task};
-use setup::{Finished, Running, Sampling};
+use setup::{Running, Sampling};
 
 /// Reason for which there is no result.
 #[derive(defmt::Format)]
@@ -56,8 +56,8 @@ struct Harness {
     meter: Meter,
     acquisition: Task,
     instrument: Task,
-    /// Session, once it has concluded.
-    finished: OnceCell<Finished>,
+    /// Processing half of the instrument, once it has come to its end.
+    finished: OnceCell<&'static Running>,
 }
 
 static HARNESS: StaticCell<Harness> = StaticCell::new();
@@ -101,17 +101,17 @@ fn run() -> Result<(), Failure> {
 }
 
 #[embassy_executor::task]
-async fn acquisition(harness: &'static Harness, sampling: Sampling) {
+async fn acquisition(harness: &'static Harness, sampling: &'static mut Sampling) {
     let future = pin!(sampling.run());
     harness.acquisition.run(&harness.meter, future).await;
 }
 
 #[embassy_executor::task]
-async fn instrument(harness: &'static Harness, running: Running) {
-    let future = pin!(async {
-        let finished = running.run().await;
+async fn instrument(harness: &'static Harness, running: &'static mut Running) {
+    let future = pin!(async move {
+        running.run().await;
         // The task runs once, so nothing was set before.
-        let _ = harness.finished.set(finished);
+        let _ = harness.finished.set(running);
     });
     harness.instrument.run(&harness.meter, future).await;
 }

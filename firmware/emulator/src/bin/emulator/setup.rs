@@ -1,4 +1,5 @@
-//! The parts of a run in static memory: the simulated board, its ports, the channels and the method.
+//! The parts of a run in static memory: the simulated board with the channels, and the two halves of
+//! the instrument.
 //!
 //! Every carrier has its variant of one `enum`, so the carriers share the same memory, and a part
 //! that is built lies where it stays.
@@ -23,18 +24,20 @@ use firmware::turntable::Turntable;
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::spin::board::SpinBoard;
 use hal_mock::vehicle::board::VehicleBoard;
+use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::{Method, rotating, stepwise, stops};
 use orientation::attitude::Keeper;
+use orientation::navigation::Policy;
 use orientation::roll::Flight;
 use orientation::signal::{InertialSample, Sample, SpinSample, Timed};
 use simulated::fault::Injection;
-use simulated::mount::{FramePorts, FrameSensors, FramesScenario};
+use simulated::mount::{FrameSensors, FramesScenario};
 use simulated::scenario::Scenario;
 use simulated::spin::{Course, SimulatedSpin, SpinScenario};
 use simulated::trace::{AZIMUTH, Trace};
 use simulated::turntable::TurntableScenario;
 use simulated::vehicle::{self, SimulatedTriad, VehicleAiding, VehicleScenario};
-use simulated::{self, Chips, SimulatedPorts, SimulatedSensors, Wires, scenario, turntable};
+use simulated::{self, Chips, SimulatedMotor, SimulatedSensors, Wires, scenario, turntable};
 use static_cell::StaticCell;
 
 use crate::job::Job;
@@ -45,40 +48,24 @@ use crate::outside::{Log, Metering, NoLink};
 /// Injection without faults, for every carrier.
 static HEALTHY: Injection = Injection::NONE;
 
-/// The motor, link and recorder of a stage or a turntable.
-type StageOutputs = SimulatedPorts<'static, Metering, NoLink, NoRecorder>;
-/// The motors, link and recorder of a two-frame mount.
-type FrameOutputs = FramePorts<'static, Metering, NoLink, NoRecorder>;
+/// The two frames, and the latest angles of their encoders.
+type Mount = (FramesConfiguration, Frames<LatestAngle>);
+/// The motor of an axis.
+type AxisMotor = SimulatedMotor<'static, Metering>;
+/// The channels between the two halves of an instrument.
+type Lines<S = Sample> = &'static Channels<'static, S>;
 
-/// The simulated board of any carrier.
+/// What both halves of an instrument use: the simulated board of a carrier, and the channels.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
-enum Rig {
-    Stage(RefCell<Chips<'static>>),
-    Frames(RefCell<GimbalBoard<'static>>),
-    Vehicle(RefCell<VehicleBoard<'static>>),
-    Spin(RefCell<SpinBoard<'static>>),
-}
-
-/// The sensors, the other ports and the channels of any carrier.
-#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
-enum Parts {
-    Stage(SimulatedSensors<'static, Metering>, StageOutputs, Channels<'static>),
-    Frames(
-        FrameSensors<'static, Metering>,
-        FrameOutputs,
-        (FramesConfiguration, Frames<LatestAngle>),
-        Channels<'static>,
-    ),
-    Vehicle(
-        SimulatedTriad<'static, Metering>,
-        VehicleAiding<'static, 'static>,
-        Channels<'static, InertialSample>,
-    ),
-    Spin(SimulatedSpin<'static, Metering>, SpinConfiguration, Channels<'static, SpinSample>),
+enum Ground {
+    Stage(RefCell<Chips<'static>>, Channels<'static>),
+    Frames(RefCell<GimbalBoard<'static>>, Mount, Channels<'static>),
+    Vehicle(RefCell<VehicleBoard<'static>>, Channels<'static, InertialSample>),
+    Spin(RefCell<SpinBoard<'static>>, Channels<'static, SpinSample>),
 }
 
 /// The method of any carrier, the largest object in memory.
-#[expect(clippy::large_enum_variant, reason = "there is one, and it stays where it is")]
+#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum AnyMethod {
     Stepwise(stepwise::Session),
     Rotating(rotating::Session),
@@ -86,113 +73,103 @@ enum AnyMethod {
     Flight(Flight),
 }
 
-static RIG: StaticCell<Rig> = StaticCell::new();
-static COURSE: StaticCell<Course> = StaticCell::new();
-static LOG: StaticCell<Log> = StaticCell::new();
-static PARTS: StaticCell<Parts> = StaticCell::new();
-static METHOD: StaticCell<AnyMethod> = StaticCell::new();
-static KEEPER: StaticCell<Keeper> = StaticCell::new();
-
-/// Builds a part in static memory and takes out its variant. Not inlined, so that temporary copies on
-/// the stack are gone when the method runs.
-macro_rules! built {
-    ($cell:ident, $pattern:pat => $found:expr, $build:expr) => {{
-        #[inline(never)]
-        fn place<T>(cell: &'static StaticCell<T>, build: impl FnOnce() -> T) -> &'static mut T {
-            cell.init_with(build)
-        }
-        let $pattern = place(&$cell, || $build) else { return None };
-        $found
-    }};
-}
-
-/// The sampling half of an instrument.
+/// The sampling half of an instrument: sensors, configuration and channels.
+#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 pub enum Sampling {
     /// On a stage or on a turntable.
-    Stage(
-        &'static mut SimulatedSensors<'static, Metering>,
-        Configuration,
-        &'static Channels<'static>,
-    ),
+    Stage(SimulatedSensors<'static, Metering>, Configuration, Lines),
     /// On a two-frame mount.
-    Frames(
-        &'static mut FrameSensors<'static, Metering>,
-        Configuration,
-        &'static (FramesConfiguration, Frames<LatestAngle>),
-        &'static Channels<'static>,
-    ),
+    Frames(FrameSensors<'static, Metering>, Configuration, &'static Mount, Lines),
     /// In a vehicle.
-    Vehicle(
-        &'static mut SimulatedTriad<'static, Metering>,
-        VehicleConfiguration,
-        &'static Channels<'static, InertialSample>,
-    ),
+    Vehicle(SimulatedTriad<'static, Metering>, VehicleConfiguration, Lines<InertialSample>),
     /// On a spinning body.
-    Spin(
-        &'static mut SimulatedSpin<'static, Metering>,
-        &'static SpinConfiguration,
-        &'static Channels<'static, SpinSample>,
-    ),
+    Spin(SimulatedSpin<'static, Metering>, SpinConfiguration, Lines<SpinSample>),
 }
 
 impl Sampling {
     /// Samples for ever; never returns.
-    pub async fn run(self) {
+    pub async fn run(&mut self) {
         match self {
-            Self::Stage(inputs, configuration, channels) => {
-                acquire(&mut acquire::on_stage(inputs, &configuration, channels)).await;
+            Self::Stage(sensors, configuration, channels) => {
+                acquire(&mut acquire::on_stage(sensors, configuration, channels)).await;
             }
-            Self::Frames(inputs, configuration, (frames, latest), channels) => {
-                acquire(&mut acquire::on_mount(inputs, &configuration, frames, latest, channels))
+            Self::Frames(sensors, configuration, (frames, latest), channels) => {
+                acquire(&mut acquire::on_mount(sensors, configuration, frames, latest, channels))
                     .await;
             }
-            Self::Vehicle(inputs, configuration, channels) => {
-                acquire(&mut TriadAcquisition::new(inputs, &configuration, channels)).await;
+            Self::Vehicle(sensors, configuration, channels) => {
+                acquire(&mut TriadAcquisition::new(sensors, configuration, channels)).await;
             }
-            Self::Spin(inputs, configuration, channels) => {
-                acquire(&mut SpinAcquisition::new(inputs, configuration, channels)).await;
+            Self::Spin(sensors, configuration, channels) => {
+                acquire(&mut SpinAcquisition::new(sensors, configuration, channels)).await;
             }
         }
     }
 }
 
-/// The processing half of an instrument.
+/// The processing half of an instrument: mechanism, channels and method.
+#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 pub enum Running {
     /// Multi-position alignment on a stage.
-    Stage(
-        &'static mut stepwise::Session,
-        &'static mut StageOutputs,
-        Configuration,
-        &'static Channels<'static>,
-    ),
+    Stage(AxisMotor, Configuration, Lines, &'static mut stepwise::Session),
     /// Multi-position alignment on a two-frame mount.
-    Frames(
-        &'static mut stepwise::Session,
-        &'static mut FrameOutputs,
-        &'static (FramesConfiguration, Frames<LatestAngle>),
-        &'static Channels<'static>,
-    ),
+    Frames(Frames<AxisMotor>, &'static Mount, Lines, &'static mut stepwise::Session),
     /// Continuous rotation on a turntable.
-    Turntable(
-        &'static mut rotating::Session,
-        &'static mut StageOutputs,
-        &'static Channels<'static>,
-    ),
-    /// Inertial-frame alignment from stop to stop in a vehicle.
+    Turntable(AxisMotor, Lines, &'static mut rotating::Session),
+    /// Inertial-frame alignment from stop to stop in a vehicle, which then holds its result.
     Vehicle(
+        VehicleAiding<'static, 'static>,
+        (Keeper, Policy),
+        Lines<InertialSample>,
         &'static mut stops::Session,
-        &'static VehicleAiding<'static, 'static>,
-        Keeping<'static, ()>,
-        &'static Channels<'static, InertialSample>,
     ),
     /// Tracking of the roll of a spinning body.
-    Spin(&'static mut Flight, &'static Channels<'static, SpinSample>),
+    Spin(Lines<SpinSample>, &'static mut Flight),
 }
 
-/// Navigates with a method, and logs what it found.
-async fn run<M: Mechanism, S: Timed, T: Method<S> + Trace>(
+impl Running {
+    /// Runs the instrument to its end.
+    pub async fn run(&mut self) {
+        match self {
+            Self::Stage(motor, configuration, channels, session) => {
+                let mut stage = Stage::new(motor, &configuration.stage, &channels.shared);
+                run(&mut stage, *session, None, &(), channels).await;
+            }
+            Self::Frames(motors, (frames, latest), channels, session) => {
+                let mut gimbal = Gimbal::new(motors, frames, latest, &channels.shared);
+                run(&mut gimbal, *session, None, &(), channels).await;
+            }
+            Self::Turntable(motor, channels, session) => {
+                let tolerances = TurntableConfiguration::default();
+                let mut platform = Turntable::new(motor, &tolerances, &channels.shared);
+                run(&mut platform, *session, None, &(), channels).await;
+            }
+            Self::Vehicle(aiding, (keeper, policy), channels, session) => {
+                let keeping = Keeping { keeper, policy: *policy, store: () };
+                let mut body = Strapdown::new(&channels.shared);
+                run(&mut body, *session, Some(keeping), aiding, channels).await;
+            }
+            Self::Spin(channels, flight) => {
+                run(&mut Strapdown::new(&channels.shared), *flight, None, &(), channels).await;
+            }
+        }
+    }
+
+    /// Logs what was found.
+    pub fn log(&self) {
+        match self {
+            Self::Stage(.., session) | Self::Frames(.., session) => log::<Sample, _>(*session),
+            Self::Turntable(.., session) => log::<Sample, _>(*session),
+            Self::Vehicle(.., session) => log::<InertialSample, _>(*session),
+            Self::Spin(_, flight) => log::<SpinSample, _>(*flight),
+        }
+    }
+}
+
+/// Navigates with a method.
+async fn run<M: Mechanism, S: Timed>(
     mechanism: &mut M,
-    method: &mut T,
+    method: &mut dyn Method<S>,
     keeping: Option<Keeping<'_, ()>>,
     aiding: &dyn Aiding,
     channels: &Channels<'_, S>,
@@ -215,70 +192,27 @@ fn log<S, T: Method<S> + Trace>(method: &T) {
     }
 }
 
-impl Running {
-    /// Runs the instrument to its end.
-    pub async fn run(self) -> Finished {
-        match self {
-            Self::Stage(session, outputs, configuration, channels) => {
-                let shared = &channels.shared;
-                let mut stage = Stage::new(&mut outputs.actuator, &configuration.stage, shared);
-                run(&mut stage, session, None, &(), channels).await;
-                Finished::Stepwise(session)
-            }
-            Self::Frames(session, outputs, (frames, latest), channels) => {
-                let shared = &channels.shared;
-                let mut gimbal = Gimbal::new(&mut outputs.actuator, frames, latest, shared);
-                run(&mut gimbal, session, None, &(), channels).await;
-                Finished::Stepwise(session)
-            }
-            Self::Turntable(session, outputs, channels) => {
-                let tolerances = TurntableConfiguration::default();
-                let shared = &channels.shared;
-                let mut platform = Turntable::new(&mut outputs.actuator, &tolerances, shared);
-                run(&mut platform, session, None, &(), channels).await;
-                Finished::Rotating(session)
-            }
-            Self::Vehicle(session, aiding, keeping, channels) => {
-                let mut body = Strapdown::new(&channels.shared);
-                run(&mut body, session, Some(keeping), aiding, channels).await;
-                Finished::Stops(session)
-            }
-            Self::Spin(flight, channels) => {
-                run(&mut Strapdown::new(&channels.shared), flight, None, &(), channels).await;
-                Finished::Flight(flight)
-            }
-        }
-    }
-}
+/// The two halves of an instrument at their final place in memory.
+type Halves = (&'static mut Sampling, &'static mut Running);
 
-/// A method that has come to its end.
-pub enum Finished {
-    /// Multi-position alignment.
-    Stepwise(&'static stepwise::Session),
-    /// Continuous rotation.
-    Rotating(&'static rotating::Session),
-    /// Inertial-frame alignment.
-    Stops(&'static stops::Session),
-    /// Tracking of a roll.
-    Flight(&'static Flight),
-}
+static METHOD: StaticCell<AnyMethod> = StaticCell::new();
+static GROUND: StaticCell<Ground> = StaticCell::new();
+static COURSE: StaticCell<Course> = StaticCell::new();
+static LOG: StaticCell<Log> = StaticCell::new();
+static SAMPLING: StaticCell<Sampling> = StaticCell::new();
+static RUNNING: StaticCell<Running> = StaticCell::new();
 
-impl Finished {
-    /// Logs what was found.
-    pub fn log(&self) {
-        match self {
-            Self::Stepwise(session) => log::<Sample, _>(*session),
-            Self::Rotating(session) => log::<Sample, _>(*session),
-            Self::Stops(session) => log::<InertialSample, _>(*session),
-            Self::Flight(flight) => log::<SpinSample, _>(*flight),
-        }
-    }
+/// Builds a part in static memory. Not inlined, so that temporary copies on the stack are gone when
+/// the method runs.
+#[inline(never)]
+fn place<T>(cell: &'static StaticCell<T>, build: impl FnOnce() -> T) -> &'static mut T {
+    cell.init_with(build)
 }
 
 impl Job {
     /// Builds the whole run at its final place in memory; `None` where the scenario does not allow a
     /// start.
-    pub fn begin(&self, meter: &'static Meter) -> Option<(Sampling, Running)> {
+    pub fn begin(&self, meter: &'static Meter) -> Option<Halves> {
         let outside = (&Metering(meter), &*LOG.init(Log(meter)));
         match self {
             Self::Stage(scenario) => on_stage(scenario, outside),
@@ -293,110 +227,101 @@ impl Job {
 /// The meter around every port, and the observer.
 type Outside<'m> = (&'m Metering, &'static Log);
 
+/// Builds the session of a multi-position alignment.
+#[inline(never)]
+fn stepwise(prepared: impl FnOnce() -> Option<Prepared>) -> Option<&'static mut stepwise::Session> {
+    let prepared = prepared()?;
+    match place(&METHOD, || AnyMethod::Stepwise(prepared.into())) {
+        AnyMethod::Stepwise(session) => Some(session),
+        _ => None,
+    }
+}
+
 /// Builds a multi-position alignment on a stage.
 #[inline(never)]
-fn on_stage(scenario: &Scenario, (around, log): Outside<'_>) -> Option<(Sampling, Running)> {
-    let prepared = scenario.prepared()?;
-    let session = built!(METHOD, AnyMethod::Stepwise(session) => session,
-        AnyMethod::Stepwise(prepared.into()));
-    let rig = built!(RIG, Rig::Stage(rig) => &*rig,
-        Rig::Stage(RefCell::new(simulated::board(scenario, None, &HEALTHY))));
-    let wires = Wires(rig, around);
-    let (inputs, outputs, channels) = built!(PARTS, Parts::Stage(i, o, c) => (i, o, &*c), Parts::Stage(
-            wires.sensors(scenario, scenario::FORCE),
-            wires.ports(Motor::default(), NoLink, NoRecorder),
-            Channels::new(log)));
+fn on_stage(scenario: &Scenario, (around, log): Outside<'_>) -> Option<Halves> {
+    let session = stepwise(|| scenario.prepared())?;
+    let board = || RefCell::new(simulated::board(scenario, None, &HEALTHY));
+    let ground = place(&GROUND, || Ground::Stage(board(), Channels::new(log)));
+    let Ground::Stage(board, channels) = &*ground else { return None };
+    let wires = Wires(board, around);
+    let sensors = || wires.sensors(scenario, scenario::FORCE);
+    let motor = || wires.actuator(Motor::default());
     let configuration = scenario.configuration();
     Some((
-        Sampling::Stage(inputs, configuration, channels),
-        Running::Stage(session, outputs, configuration, channels),
+        place(&SAMPLING, || Sampling::Stage(sensors(), configuration, channels)),
+        place(&RUNNING, || Running::Stage(motor(), configuration, channels, session)),
     ))
 }
 
 /// Builds a multi-position alignment on a two-frame mount.
 #[inline(never)]
-fn on_mount(scenario: &FramesScenario, (around, log): Outside<'_>) -> Option<(Sampling, Running)> {
-    let prepared = scenario.prepared()?;
-    let frames = scenario.frames().ok()?;
-    let session = built!(METHOD, AnyMethod::Stepwise(session) => session,
-        AnyMethod::Stepwise(prepared.into()));
-    let rig = built!(RIG, Rig::Frames(rig) => &*rig,
-        Rig::Frames(RefCell::new(scenario.board(None, &HEALTHY))));
-    let wires = Wires(rig, around);
-    let (inputs, outputs, mount, channels) = built!(PARTS, Parts::Frames(i, o, m, c) => (i, o, &*m, &*c), Parts::Frames(
-            wires.frame_sensors(scenario),
-            wires.frame_ports(NoLink, NoRecorder),
-            (frames, Frames::unread()),
-            Channels::new(log)));
+fn on_mount(scenario: &FramesScenario, (around, log): Outside<'_>) -> Option<Halves> {
+    let session = stepwise(|| scenario.prepared())?;
+    let mount = (scenario.frames().ok()?, Frames::unread());
+    let board = || RefCell::new(scenario.board(None, &HEALTHY));
+    let ground = place(&GROUND, || Ground::Frames(board(), mount, Channels::new(log)));
+    let Ground::Frames(board, mount, channels) = &*ground else { return None };
+    let wires = Wires(board, around);
+    let sensors = || wires.frame_sensors(scenario);
+    let configuration = scenario.base.configuration();
     Some((
-        Sampling::Frames(inputs, scenario.base.configuration(), mount, channels),
-        Running::Frames(session, outputs, mount, channels),
+        place(&SAMPLING, || Sampling::Frames(sensors(), configuration, mount, channels)),
+        place(&RUNNING, || Running::Frames(wires.actuators(), mount, channels, session)),
     ))
 }
 
 /// Builds an alignment on a rotating platform.
 #[inline(never)]
-fn on_turntable(
-    scenario: &TurntableScenario,
-    (around, log): Outside<'_>,
-) -> Option<(Sampling, Running)> {
+fn on_turntable(scenario: &TurntableScenario, (around, log): Outside<'_>) -> Option<Halves> {
     let (setting, procedure) = scenario.checked()?;
-    let session = built!(METHOD, AnyMethod::Rotating(session) => session,
-        AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
-    let rig = built!(RIG, Rig::Stage(rig) => &*rig,
-        Rig::Stage(RefCell::new(scenario.board(None, &HEALTHY))));
-    let wires = Wires(rig, around);
-    let (inputs, outputs, channels) = built!(PARTS, Parts::Stage(i, o, c) => (i, o, &*c), Parts::Stage(
-            wires.sensors(&scenario.base, turntable::FORCE),
-            wires.ports(turntable::motor(), NoLink, NoRecorder),
-            Channels::new(log)));
+    let method = place(&METHOD, || AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
+    let AnyMethod::Rotating(session) = method else { return None };
+    let board = || RefCell::new(scenario.board(None, &HEALTHY));
+    let ground = place(&GROUND, || Ground::Stage(board(), Channels::new(log)));
+    let Ground::Stage(board, channels) = &*ground else { return None };
+    let wires = Wires(board, around);
+    let sensors = || wires.sensors(&scenario.base, turntable::FORCE);
+    let motor = || wires.actuator(turntable::motor());
+    let configuration = scenario.base.configuration();
     Some((
-        Sampling::Stage(inputs, scenario.base.configuration(), channels),
-        Running::Turntable(session, outputs, channels),
+        place(&SAMPLING, || Sampling::Stage(sensors(), configuration, channels)),
+        place(&RUNNING, || Running::Turntable(motor(), channels, session)),
     ))
 }
 
 /// Builds an alignment in a vehicle.
 #[inline(never)]
-fn in_vehicle(
-    scenario: &VehicleScenario,
-    (around, log): Outside<'_>,
-) -> Option<(Sampling, Running)> {
+fn in_vehicle(scenario: &VehicleScenario, (around, log): Outside<'_>) -> Option<Halves> {
     let (setting, procedure) = scenario.checked()?;
-    let session = built!(METHOD, AnyMethod::Stops(session) => session,
-        AnyMethod::Stops(stops::Session::of(setting, procedure)));
+    let method = place(&METHOD, || AnyMethod::Stops(stops::Session::of(setting, procedure)));
+    let AnyMethod::Stops(session) = method else { return None };
     let setting = scenario.keeper()?;
-    let keeper = KEEPER.init_with(|| Keeper::new(&setting));
-    let rig = built!(RIG, Rig::Vehicle(rig) => &*rig,
-        Rig::Vehicle(RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY))));
-    let wires = Wires(rig, around);
-    let (inputs, aiding, channels) = built!(PARTS, Parts::Vehicle(i, a, c) => (i, &*a, &*c), Parts::Vehicle(
-            wires.triad(scenario),
-            VehicleAiding::new(rig, scenario),
-            Channels::new(log)));
-    let keeping = Keeping { keeper, policy: scenario.policy(), store: () };
+    let board = || RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY));
+    let ground = place(&GROUND, || Ground::Vehicle(board(), Channels::new(log)));
+    let Ground::Vehicle(board, channels) = &*ground else { return None };
+    let sensors = || Wires(board, around).triad(scenario);
+    let aiding = || VehicleAiding::new(board, scenario);
+    let keeping = || (Keeper::new(&setting), scenario.policy());
     Some((
-        Sampling::Vehicle(inputs, scenario.configuration(), channels),
-        Running::Vehicle(session, aiding, keeping, channels),
+        place(&SAMPLING, || Sampling::Vehicle(sensors(), scenario.configuration(), channels)),
+        place(&RUNNING, || Running::Vehicle(aiding(), keeping(), channels, session)),
     ))
 }
 
 /// Builds the tracking of the roll of a spinning body.
 #[inline(never)]
-fn on_spinning_body(
-    scenario: &SpinScenario,
-    (around, log): Outside<'_>,
-) -> Option<(Sampling, Running)> {
+fn on_spinning_body(scenario: &SpinScenario, (around, log): Outside<'_>) -> Option<Halves> {
     let configuration = scenario.configuration()?;
-    let flight = built!(METHOD, AnyMethod::Flight(flight) => flight,
-        AnyMethod::Flight(scenario.flight()));
+    let method = place(&METHOD, || AnyMethod::Flight(scenario.flight()));
+    let AnyMethod::Flight(flight) = method else { return None };
     let course = &*COURSE.init_with(|| scenario.course(None));
-    let rig = built!(RIG, Rig::Spin(rig) => &*rig,
-        Rig::Spin(RefCell::new(scenario.board(course, &HEALTHY))));
-    let wires = Wires(rig, around);
-    let (inputs, configuration, channels) = built!(PARTS, Parts::Spin(i, s, c) => (i, &*s, &*c), Parts::Spin(
-            wires.spinning(),
-            configuration,
-            Channels::new(log)));
-    Some((Sampling::Spin(inputs, configuration, channels), Running::Spin(flight, channels)))
+    let board = || RefCell::new(scenario.board(course, &HEALTHY));
+    let ground = place(&GROUND, || Ground::Spin(board(), Channels::new(log)));
+    let Ground::Spin(board, channels) = &*ground else { return None };
+    let sensors = || Wires(board, around).spinning();
+    Some((
+        place(&SAMPLING, || Sampling::Spin(sensors(), configuration, channels)),
+        place(&RUNNING, || Running::Spin(channels, flight)),
+    ))
 }
