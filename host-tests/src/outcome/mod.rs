@@ -244,60 +244,46 @@ pub fn report(
 
 /// What every method says first: the result or the reason, the limit, the truth, the level.
 fn headline(outcome: &Outcome) -> Lines {
-    let mut lines = Lines::default();
-    lines.add_found("reason", outcome.reason.as_ref());
-    if let Some((azimuth, sigma)) = outcome.azimuth_deg.zip(outcome.sigma_deg) {
-        lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
-        error(&mut lines, outcome, azimuth, sigma);
-    }
-    if outcome.fit.is_some() {
-        limit(&mut lines, outcome);
-        level(&mut lines, outcome);
-    }
-    if let Some(fit) = &outcome.fit {
-        of_fit(&mut lines, fit);
-    }
+    let found = outcome.azimuth_deg.zip(outcome.sigma_deg);
+    let azimuth = found.map(|(azimuth, sigma)| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
+    let lines = Lines::default()
+        .with_found("reason", outcome.reason.as_ref())
+        .with_found("azimuth of body x", azimuth)
+        .with_found("truth", found.zip(outcome.error_deg).map(error));
+    let Some(fit) = &outcome.fit else { return lines };
+    let left_out =
+        fit.excluded.iter().map(|Excluded { words, reason, .. }| format!("{words}{reason}"));
     lines
+        .with_found("limit", limit(outcome))
+        .with("pitch, roll", level(outcome))
+        .with_found("Earth rate", earth_rate(fit))
+        .with_found("model", (!fit.model.is_empty()).then(|| fit.model.join(", ")))
+        .with_found("left out", left_out)
 }
 
-fn error(lines: &mut Lines, outcome: &Outcome, azimuth: f64, sigma: f64) {
-    let Some(error) = outcome.error_deg else { return };
+/// The true azimuth, and what one that was found with its 1σ is off, °.
+fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
     let truth = (azimuth - error).rem_euclid(360.0);
-    let sigmas = error / sigma;
-    lines.add("truth", format!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"));
+    format!("{truth:.4}°: the error is {error:+.4}°, {:+.2} σ", error / sigma)
 }
 
-fn limit(lines: &mut Lines, outcome: &Outcome) {
-    let text = match outcome.limit_deg {
-        Some(limit) => format!("{limit:.4}° (Cramér–Rao for the stated noise)"),
-        None if outcome.is_ok() => "none: the noise is estimated from the data".to_owned(),
-        None => return,
-    };
-    lines.add("limit", text);
-}
-
-fn level(lines: &mut Lines, outcome: &Outcome) {
-    let text = match outcome.pitch_deg.zip(outcome.roll_deg) {
-        Some(level) => {
-            let [pitch, roll] = [level.0, level.1].map(|angle| positive_zero(angle, 5e-5));
-            format!("{pitch:.4}°, {roll:.4}°")
-        }
-        None => "not measured".to_owned(),
-    };
-    lines.add("pitch, roll", text);
-}
-
-fn of_fit(lines: &mut Lines, fit: &FitDetails) {
-    if let Some((ratio, sigma)) = fit.earth_rate_ratio.zip(fit.earth_rate_ratio_sigma) {
-        lines.add("Earth rate", format!("{ratio:.4} ± {sigma:.4} of that expected"));
-    } else if fit.budget.is_some() {
-        lines.add("Earth rate", "taken for granted: the data do not show it");
+fn limit(outcome: &Outcome) -> Option<String> {
+    match outcome.limit_deg {
+        Some(limit) => Some(format!("{limit:.4}° (Cramér–Rao for the stated noise)")),
+        None => outcome.is_ok().then(|| "none: the noise is estimated from the data".to_owned()),
     }
-    if !fit.model.is_empty() {
-        lines.add("model", fit.model.join(", "));
-    }
-    for Excluded { words, reason, .. } in &fit.excluded {
-        lines.add("left out", format!("{words}{reason}"));
+}
+
+fn level(outcome: &Outcome) -> String {
+    let Some(level) = outcome.pitch_deg.zip(outcome.roll_deg) else { return "not measured".into() };
+    let [pitch, roll] = [level.0, level.1].map(|angle| positive_zero(angle, 5e-5));
+    format!("{pitch:.4}°, {roll:.4}°")
+}
+
+fn earth_rate(fit: &FitDetails) -> Option<String> {
+    match fit.earth_rate_ratio.zip(fit.earth_rate_ratio_sigma) {
+        Some((ratio, sigma)) => Some(format!("{ratio:.4} ± {sigma:.4} of that expected")),
+        None => fit.budget.map(|_| "taken for granted: the data do not show it".to_owned()),
     }
 }
 
@@ -336,7 +322,6 @@ pub(crate) fn of_biases([biases, sigmas]: [[f64; 3]; 2], places: usize) -> Strin
 }
 
 fn assumed(outcome: &Outcome) -> Lines {
-    let (mut lines, all) = (Lines::default(), &outcome.assumed);
-    lines.add_found("assumed", (!all.is_empty()).then(|| all.join("; ")));
-    lines
+    let all = &outcome.assumed;
+    Lines::default().with_found("assumed", (!all.is_empty()).then(|| all.join("; ")))
 }

@@ -29,32 +29,32 @@ pub struct RunDetails {
     pub(super) kept: Option<Point>,
 }
 
-/// What only the run of a single platform has.
-#[derive(Clone, Debug)]
-pub enum OfPlatform {
-    /// Nothing.
-    Nothing,
-    /// Of a turntable: the stored axis misalignments that its board used.
-    Recalled(Vec<Remembered>),
-    /// Of two frames: how the gyro stands at the end, to keep the azimuth.
-    Stored {
-        /// Whether it stands vertical.
-        is_vertical: bool,
-        /// True angle between its axis and the vertical then, °.
-        off_deg: f64,
-    },
+/// What only the run of a single platform has; nothing by default.
+#[derive(Clone, Debug, Default)]
+pub struct OfPlatform {
+    keys: Keys,
+    recalled: Vec<String>,
+    gyro: Option<String>,
 }
 
 impl OfPlatform {
-    fn add(&self, keys: Keys) -> Keys {
-        match self {
-            Self::Nothing => keys,
-            Self::Recalled(found) => {
-                keys.with("recalled", found.iter().map(recalled).collect::<Vec<_>>())
-            }
-            Self::Stored { is_vertical, off_deg } => {
-                keys.with("stored", is_vertical).with("truth_off_vertical_deg", off_deg)
-            }
+    /// Of a turntable: the stored axis misalignments that its board used.
+    #[must_use]
+    pub fn recalled(found: &[Remembered]) -> Self {
+        let keys = Keys::default().with("recalled", found.iter().map(recalled).collect::<Vec<_>>());
+        Self { keys, recalled: found.iter().map(ToString::to_string).collect(), gyro: None }
+    }
+
+    /// Of two frames: whether the gyro stands vertical at the end, to keep the azimuth, and the true angle between its axis
+    /// and the vertical then, °.
+    #[must_use]
+    pub fn stored(is_vertical: bool, off_deg: f64) -> Self {
+        let keys = Keys::default().with("stored", is_vertical);
+        let what = if is_vertical { "vertical, to store the azimuth" } else { "not stored" };
+        Self {
+            keys: keys.with("truth_off_vertical_deg", off_deg),
+            recalled: Vec::new(),
+            gyro: Some(format!("{what}: truly {off_deg:.4}° off the base's vertical")),
         }
     }
 }
@@ -71,15 +71,16 @@ fn recalled(found: &Remembered) -> Keys {
 impl RunDetails {
     /// What a finished run of so many samples a second was like, which took so long on this machine.
     #[must_use]
-    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration, beside: &OfPlatform) -> Self {
+    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration, beside: OfPlatform) -> Self {
         let kept = run.kept.last().copied();
         let health =
             Keys::default().with_all(Some(&run.health)).with("violations", &run.violations);
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
+        let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
         let lines = kept.iter().map(|last| in_words(run, last)).chain([board]).map(Part::from);
         Self {
-            keys: beside.add(keys).with_found("kept", kept.map(|last| of_kept(run, &last))),
+            keys: keys.with_found("kept", kept.map(|last| of_kept(run, &last))),
             parts: lines.chain(figures(&run.kept).into_iter().map(Part::from)).collect(),
             kept,
         }
@@ -87,30 +88,21 @@ impl RunDetails {
 }
 
 /// How the board did.
-fn board<R>(run: &Run<R>, rate: f64, wall: f64, beside: &OfPlatform) -> Lines {
-    let (mut lines, seconds) = (Lines::new("The simulated board"), run.seconds);
-    if let OfPlatform::Recalled(found) = beside {
-        for found in found {
-            lines.add("recalled", found.to_string());
-        }
-    }
-    let ratio = seconds / wall;
-    let text = format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
-    lines.add("simulated", text);
+fn board<R>(run: &Run<R>, rate: f64, wall: f64, beside: OfPlatform) -> Lines {
+    let (seconds, ratio) = (run.seconds, run.seconds / wall);
+    let simulated =
+        format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
     let Health { samples, missing, late, overflowed, lost, restarts, .. } = &run.health;
-    let text = format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
-    lines.add("samples", text);
+    let taken = format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
     let [lost, restarts]: [u32; 2] =
         [lost, restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
-    lines.add("devices", format!("{lost} readings lost, {restarts} restarts"));
-    for violation in &run.violations {
-        lines.add("FORBIDDEN", violation);
-    }
-    if let OfPlatform::Stored { is_vertical, off_deg } = beside {
-        let what = if *is_vertical { "vertical, to store the azimuth" } else { "not stored" };
-        lines.add("gyro", format!("{what}: truly {off_deg:.4}° off the base's vertical"));
-    }
-    lines
+    Lines::new("The simulated board")
+        .with_found("recalled", beside.recalled)
+        .with("simulated", simulated)
+        .with("samples", taken)
+        .with("devices", format!("{lost} readings lost, {restarts} restarts"))
+        .with_found("FORBIDDEN", &run.violations)
+        .with_found("gyro", beside.gyro)
 }
 
 /// What was kept at last, and how well on the way.
@@ -135,24 +127,25 @@ fn of_kept<R>(run: &Run<R>, last: &Point) -> Keys {
 /// What was kept at last, in words.
 fn in_words<R>(run: &Run<R>, last: &Point) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
-    let mut lines = Lines::new(&format!("Kept for {seconds:.0} s"));
-    if let Some([azimuth, sigma, error]) = last.azimuth_deg() {
-        lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
+    let azimuth = last.azimuth_deg().map_or_else(
+        || "not known any more".to_owned(),
+        |[azimuth, sigma, _]| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"),
+    );
+    let error = last.azimuth_deg().map(|[_, sigma, error]| {
         let (sigmas, greatest) = (error / sigma, greatest_sigmas(&run.kept).unwrap_or(0.0));
-        let text = format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way");
-        lines.add("its error", text);
-    } else {
-        lines.add("azimuth of body x", "not known any more");
-    }
+        format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way")
+    });
     let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(degrees(angle), 5e-4));
     let sigma = degrees(level_sigma);
-    lines.add("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"));
-    let [pitch, roll] = level_rms(&run.kept).map(degrees);
-    lines.add("their errors", format!("{pitch:.3}°, {roll:.3}° RMS on the way"));
-    lines.add("state", last.report.state.to_string());
+    let [pitch_rms, roll_rms] = level_rms(&run.kept).map(degrees);
     let times = Some(realigned(run)).filter(|times| *times > 0);
-    lines.add_found("realigned", times.map(|times| format!("{times} time(s)")));
-    lines
+    Lines::new(&format!("Kept for {seconds:.0} s"))
+        .with("azimuth of body x", azimuth)
+        .with_found("its error", error)
+        .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))
+        .with("their errors", format!("{pitch_rms:.3}°, {roll_rms:.3}° RMS on the way"))
+        .with("state", last.report.state.to_string())
+        .with_found("realigned", times.map(|times| format!("{times} time(s)")))
 }
 
 /// The greatest error of the azimuth on the way, over its σ of the moment.

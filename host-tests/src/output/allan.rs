@@ -95,21 +95,18 @@ impl Shown<'_> {
     /// The report for terminal and page: the record, the noise that it shows, and how both estimators did.
     #[must_use]
     pub fn report(&self) -> Report {
-        let mut record = Lines::default();
-        record.add_found("reason", self.analysis.as_ref().err().map(ToString::to_string));
-        record.add("record", self.record());
-        self.notes().into_iter().for_each(|note| record.add("noted", note));
-        let (mut parts, mut beside) = (Vec::new(), Lines::default());
-        if let Ok(analysis) = self.analysis {
-            let NoiseFit { chi_square, degrees, .. } = analysis.fit;
-            let text = format!("χ² {chi_square:.1} for {degrees} degrees of freedom");
-            record.add("residuals", text);
-            parts.extend(page::parts(analysis));
-        }
-        if let Some(comparison) = &self.comparison {
-            speed(&mut beside, comparison);
-        }
-        beside.add_found("schedule", self.schedule.map(|schedule| schedule.to_string()));
+        let analysis = self.analysis.as_ref();
+        let residuals = |Analysis { fit: NoiseFit { chi_square, degrees, .. }, .. }: &Analysis| {
+            format!("χ² {chi_square:.1} for {degrees} degrees of freedom")
+        };
+        let record = Lines::default()
+            .with_found("reason", analysis.err().map(ToString::to_string))
+            .with("record", self.record())
+            .with_found("noted", self.notes())
+            .with_found("residuals", analysis.ok().map(residuals));
+        let parts = analysis.into_iter().flat_map(page::parts);
+        let beside = self.comparison.as_ref().map(speed).unwrap_or_default();
+        let beside = beside.with_found("schedule", self.schedule.map(|it| it.to_string()));
         let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
         let title = format!("{found} {} in {}", self.rest.column, self.name);
         Report::new(title, [record.into()].into_iter().chain(parts).chain([beside.into()]))
@@ -198,14 +195,15 @@ fn short(number: f64) -> String {
     format!("{number:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-fn speed(lines: &mut Lines, comparison: &Comparison) {
+fn speed(comparison: &Comparison) -> Lines {
     let Comparison { streaming, batch, points, difference } = comparison;
     let [streaming, batch] = [streaming, batch].map(|rate| rate / 1e6);
     let text = format!("{streaming:.2} million samples/s, the board's estimator on this machine");
-    lines.add("streaming", text);
-    lines.add("batch", format!("{batch:.2} million samples/s, every window"));
     let what = "variances of the same windows differ by at most";
-    lines.add("agreement", format!("{what} {difference:.1e} at {points} τ"));
+    Lines::default()
+        .with("streaming", text)
+        .with("batch", format!("{batch:.2} million samples/s, every window"))
+        .with("agreement", format!("{what} {difference:.1e} at {points} τ"))
 }
 
 /// The curve as arrays.

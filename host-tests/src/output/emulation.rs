@@ -23,8 +23,6 @@ pub fn report(emulation: &Emulation) -> Report {
 
 /// The azimuth, and whether it is the host's.
 fn of_outcome(Emulation { seed, emulated, comparison, .. }: &Emulation) -> Lines {
-    let mut lines = Lines::default();
-    lines.add("seed", format!("{seed}, {} dwells", emulated.count(DWELL)));
     let azimuth = match emulated.azimuth() {
         Some(found) => {
             let [azimuth, sigma] = found.map(f64::to_degrees);
@@ -32,13 +30,14 @@ fn of_outcome(Emulation { seed, emulated, comparison, .. }: &Emulation) -> Lines
         }
         None => format!("none: {}", emulated.reason.as_deref().unwrap_or("")),
     };
-    lines.add("azimuth", azimuth);
     let same = match comparison {
         Ok(()) => "the same in every run, bit for bit".to_owned(),
         Err(difference) => format!("NOT THE SAME: {difference}"),
     };
-    lines.add("on the host", same);
-    lines
+    Lines::default()
+        .with("seed", format!("{seed}, {} dwells", emulated.count(DWELL)))
+        .with("azimuth", azimuth)
+        .with("on the host", same)
 }
 
 /// What the cores take, under one heading.

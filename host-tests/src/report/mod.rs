@@ -55,14 +55,21 @@ impl Lines {
         Self { title: title.to_owned(), lines: Vec::new() }
     }
 
-    /// Adds a line.
-    pub fn add(&mut self, label: &str, value: impl Into<String>) {
-        self.lines.push([label.to_owned(), value.into()]);
+    /// The lines with one more.
+    #[must_use]
+    pub fn with(self, label: &str, value: impl Into<String>) -> Self {
+        self.with_found(label, [value])
     }
 
-    /// Adds a line where there is a value.
-    pub fn add_found(&mut self, label: &str, value: Option<impl Into<String>>) {
-        self.lines.extend(value.map(|value| [label.to_owned(), value.into()]));
+    /// The lines with one for each value that there is.
+    #[must_use]
+    pub fn with_found<V: Into<String>>(
+        mut self,
+        label: &str,
+        values: impl IntoIterator<Item = V>,
+    ) -> Self {
+        self.lines.extend(values.into_iter().map(|value| [label.to_owned(), value.into()]));
+        self
     }
 }
 

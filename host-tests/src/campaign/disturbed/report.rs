@@ -83,11 +83,9 @@ fn of_classes(rows: &[Row]) -> Part {
 
 /// The most frequent reasons of refusals, class by class.
 fn reasons(rows: &[Row]) -> Lines {
-    let mut lines = Lines::new("Most frequent reasons of refusals");
-    for row in rows {
-        for (reason, count) in row.reasons.iter().take(REASONS) {
-            lines.add(&row.fault.name, format!("{count:>4} × {reason}"));
-        }
-    }
-    lines
+    rows.iter().fold(Lines::new("Most frequent reasons of refusals"), |lines, row| {
+        let first = row.reasons.iter().take(REASONS);
+        let words = first.map(|(reason, count)| format!("{count:>4} × {reason}"));
+        lines.with_found(&row.fault.name, words)
+    })
 }

@@ -28,9 +28,9 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
 
 /// What many runs of the whole instrument amount to.
 fn report(runs: &Runs) -> Report {
-    let mut lines = Lines::default();
-    lines.add("measured again", format!("{} dwells", runs.repeated));
-    lines.add("FORBIDDEN", format!("{} accesses that a data sheet forbids", runs.violations));
+    let lines = Lines::default()
+        .with("measured again", format!("{} dwells", runs.repeated))
+        .with("FORBIDDEN", format!("{} accesses that a data sheet forbids", runs.violations));
     let table = Columns::of("Azimuths", std::slice::from_ref(runs))
         .column("board", |_| "whole instrument")
         .precision(|runs| &runs.precision);

@@ -51,21 +51,18 @@ fn of_turn(turn: &Turn) -> [Part; 2] {
         .fixed("RMS / limit", 2, |row| row.precision.rms_deg / row.precision.limit_deg)
         .column("least of 90 each, ″", |row| in_arcseconds(row.least_deg))
         .column("paper's least, ″", |_| in_arcseconds(turn.paper_least_deg));
-    let mut lines = Lines::default();
-    for rule in &turn.stop_rules {
+    let rules = turn.stop_rules.iter().map(|rule| {
         let reached = format!("all 60 reached in {} of {}", rule.all_positions, rule.runs);
-        let text = format!("{}: median step {}, {reached}", rule.rule, rule.median_step);
-        lines.add("stop rule", text);
-    }
-    for row in &turn.paper_alpha {
+        format!("{}: median step {}, {reached}", rule.rule, rule.median_step)
+    });
+    let alphas = turn.paper_alpha.iter().map(|row| {
         let AlphaRow { alpha_deg_h, runs, nothing, whole_range, mean_width_deg } = row;
         let whole =
             format!("all of 0…90° in {whole_range}; mean width {mean_width_deg:.1}° of the circle");
-        let text =
-            format!("as {alpha_deg_h:.4} °/h accepts nothing in {nothing} of {runs} runs, {whole}");
-        lines.add("the paper's α", text);
-    }
-    [table.into(), lines.into()]
+        format!("as {alpha_deg_h:.4} °/h accepts nothing in {nothing} of {runs} runs, {whole}")
+    });
+    let lines = Lines::default().with_found("stop rule", rules);
+    [table.into(), lines.with_found("the paper's α", alphas).into()]
 }
 
 /// Three angles in degrees as arc seconds.

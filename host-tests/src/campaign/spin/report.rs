@@ -62,15 +62,14 @@ fn report(paper: &Paper, rows: &[Row]) -> Report {
 
 /// The paper's second, without noise.
 fn of_paper(paper: &Paper) -> Lines {
-    let mut lines = Lines::new("The paper's second, without noise");
-    lines.add("uncorrected", format!("{:.4}° after a second (Fig. 7)", paper.uncorrected_deg));
-    lines.add("growth", format!("{:.4}° between corrections (Fig. 8)", paper.growth_deg));
-    lines.add("corrections", format!("{:.2} a turn", paper.corrections_per_turn));
-    for (name, rms) in &paper.methods {
-        lines.add(name, format!("{rms:.5}° RMS error"));
-    }
-    lines.add("scale error", format!("found by phase lock, off by {:.1e}", paper.scale_miss));
-    lines
+    let lines = Lines::new("The paper's second, without noise")
+        .with("uncorrected", format!("{:.4}° after a second (Fig. 7)", paper.uncorrected_deg))
+        .with("growth", format!("{:.4}° between corrections (Fig. 8)", paper.growth_deg))
+        .with("corrections", format!("{:.2} a turn", paper.corrections_per_turn));
+    let methods = paper.methods.iter();
+    methods
+        .fold(lines, |lines, (name, rms)| lines.with(name, format!("{rms:.5}° RMS error")))
+        .with("scale error", format!("found by phase lock, off by {:.1e}", paper.scale_miss))
 }
 
 /// The end of a curve.

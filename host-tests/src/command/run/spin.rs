@@ -47,7 +47,7 @@ impl Simulated for SpinOptions {
             name: "the simulated flight",
             finished: Box::new(Replay { ended, ..replay }),
             truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
-            details: RunDetails::of(&run, SAMPLE_RATE, wall, &OfPlatform::Nothing),
+            details: RunDetails::of(&run, SAMPLE_RATE, wall, OfPlatform::default()),
             body: None,
             written,
         })

@@ -185,7 +185,8 @@ impl Simulated for StageOptions {
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
         self.base.run(&scenario, fault, |run, wall| {
-            let details = RunDetails::of(&run, scenario.sample_rate_hz, wall, &OfPlatform::Nothing);
+            let details =
+                RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
             ran("the simulated run", run, details, &scenario)
         })
     }
@@ -211,11 +212,11 @@ impl Simulated for FramesOptions {
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
         self.base.run(&scenario, fault, |FramesRun { run, axis: [forward, right, down] }, wall| {
-            let beside = OfPlatform::Stored {
-                is_vertical: run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))),
-                off_deg: degrees(forward.hypot(right).atan2(down)),
-            };
-            let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &beside);
+            let is_vertical =
+                run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
+            let off_deg = degrees(forward.hypot(right).atan2(down));
+            let beside = OfPlatform::stored(is_vertical, off_deg);
+            let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
             ran("the simulated run on two frames", run, details, &scenario.base)
         })
     }

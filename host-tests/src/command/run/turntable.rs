@@ -182,8 +182,8 @@ impl Simulated for TurntableOptions {
             Event::Recalled(misalignment) => Some(*misalignment),
             _ => None,
         });
-        let beside = OfPlatform::Recalled(recalled.collect());
-        let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &beside);
+        let beside = OfPlatform::recalled(&recalled.collect::<Vec<_>>());
+        let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
         let azimuth_deg = run.azimuth_deg(scenario.base.azimuth_deg);
         let is_aligned = run.replay.conclusion().is_some();
         let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };

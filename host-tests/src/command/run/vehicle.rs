@@ -89,7 +89,7 @@ impl Simulated for VehicleOptions {
             ..Truth::default()
         };
         let details =
-            RunDetails::of(&run, scenario.base.sample_rate_hz, wall, &OfPlatform::Nothing);
+            RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());
         let replay = Replay { session: run.replay, ..seen };
         let is_aligned = replay.session.conclusion().is_some();
         let finished: Box<dyn Finished> =

@@ -114,16 +114,15 @@ impl Replay {
 
     fn lines(&self, conclusion: &Conclusion) -> Lines {
         let fit = conclusion.fit.as_ref();
-        let mut lines = Lines::new("Fit");
-        lines.add("criterion", self.criterion_name());
-        lines.add("Earth rate is", fit.map_or("not fitted", earth_rate));
         let (noise, source) = (walk_deg_sqrt_h(conclusion), self.noise_source());
-        lines.add("gyro noise N", format!("{noise:.6} °/√h ({source})"));
         let residuals =
             |fit: &Fit| format!("χ² {:.1} for {} degrees of freedom", fit.chi_square, fit.degrees);
-        lines.add_found("residuals", fit.map(residuals));
-        self.autocompensation(conclusion).iter().for_each(|found| positions(&mut lines, found));
-        lines
+        let lines = Lines::new("Fit")
+            .with("criterion", self.criterion_name())
+            .with("Earth rate is", fit.map_or("not fitted", earth_rate))
+            .with("gyro noise N", format!("{noise:.6} °/√h ({source})"))
+            .with_found("residuals", fit.map(residuals));
+        self.autocompensation(conclusion).iter().fold(lines, positions)
     }
 }
 
@@ -196,15 +195,14 @@ impl Finished for Replay {
 }
 
 /// How often each position was visited, and what plain autocompensation gives.
-fn positions(lines: &mut Lines, found: &Autocompensation) {
+fn positions(lines: Lines, found: &Autocompensation) -> Lines {
     let visited = found.angles_deg.iter().zip(&found.visits);
     let list: Vec<String> =
         visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
-    lines.add("positions", list.join(", "));
     let plain = found.plain_azimuth_deg.zip(found.plain_off_sigmas).map(|(azimuth, off)| {
         format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth")
     });
-    lines.add_found("without weights", plain);
+    lines.with("positions", list.join(", ")).with_found("without weights", plain)
 }
 
 /// The rates over the stage angle, with what the whole model of the fit makes of each.

@@ -65,32 +65,28 @@ impl Finished for Replay {
 
 impl Replay {
     fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
-        let (last, mut lines) = (&self.last, Lines::default());
-        if self.refusal.is_none() {
-            let [pitch, roll] = [last.pitch, last.roll].map(|it| positive_zero(degrees(it), 5e-5));
-            let sigma = degrees(last.level_sigma);
-            lines.add("pitch, roll", format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
-        }
-        let turned = positive_zero(degrees(self.turned), 5e-5);
-        lines.add("turned", format!("{turned:+.4}° about the vertical since the beginning"));
-        lines.add("gyro biases", of_biases(biases_dph, 1));
-        if last.is_bias_beyond_stated {
-            let beyond = "five of the 1σ stated or assumed, which are not believed any more";
-            lines.add("  beyond", beyond);
-        }
-        lines.add("state at the end", last.state.to_string());
-        lines
+        let (last, is_found) = (&self.last, self.refusal.is_none());
+        let [pitch, roll, turned] =
+            [last.pitch, last.roll, self.turned].map(|angle| positive_zero(degrees(angle), 5e-5));
+        let sigma = degrees(last.level_sigma);
+        let level = is_found.then(|| format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
+        let beyond = "five of the 1σ stated or assumed, which are not believed any more";
+        Lines::default()
+            .with_found("pitch, roll", level)
+            .with("turned", format!("{turned:+.4}° about the vertical since the beginning"))
+            .with("gyro biases", of_biases(biases_dph, 1))
+            .with_found("  beyond", last.is_bias_beyond_stated.then_some(beyond))
+            .with("state at the end", last.state.to_string())
     }
 }
 
 fn of_errors(errors: &Errors) -> Lines {
     let Errors { inclination_rmse_deg, heading_rmse_deg, coverage_percent, compared, .. } = errors;
     let [one, two, three] = coverage_percent;
-    let mut lines = Lines::new(&format!("Against the truth, in {compared} samples"));
-    lines.add("inclination", format!("{inclination_rmse_deg:.4}° RMS"));
-    lines.add("heading", format!("{heading_rmse_deg:.4}° RMS after one constant offset"));
-    lines.add("within 1, 2, 3 σ", format!("{one:.1}, {two:.1}, {three:.1} % of the tilts"));
-    lines
+    Lines::new(&format!("Against the truth, in {compared} samples"))
+        .with("inclination", format!("{inclination_rmse_deg:.4}° RMS"))
+        .with("heading", format!("{heading_rmse_deg:.4}° RMS after one constant offset"))
+        .with("within 1, 2, 3 σ", format!("{one:.1}, {two:.1}, {three:.1} % of the tilts"))
 }
 
 fn inclination(off: &[Off]) -> Figure {

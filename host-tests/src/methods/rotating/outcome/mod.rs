@@ -134,20 +134,21 @@ impl Replay {
 
     /// What turned: tilt, axis misalignment, g-sensitivity.
     fn lines(&self, conclusion: &Conclusion) -> Lines {
-        let mut lines = Lines::new("Platform and sensor");
-        if let Some(limit) = self.plain_limit(conclusion).filter(|_| !self.is_flat()) {
-            let limit = degrees(limit);
-            let known = "were the sensor's gain, lag and g-sensitivity known";
-            lines.add("limit", format!("{limit:.4}° {known}"));
-        }
+        let limit = self.plain_limit(conclusion).filter(|_| !self.is_flat()).map(degrees);
+        let limit = limit.map(|limit| {
+            format!("{limit:.4}° were the sensor's gain, lag and g-sensitivity known")
+        });
         let tilt = conclusion.fit.as_ref().map(tilt_deg);
-        lines.add_found("tilt", tilt.map(|tilt| format!("{tilt:.4}° of the platform")));
-        let misalignments = conclusion.misalignments.iter();
-        misalignments.for_each(|found| lines.add("axis misalignment", words(found)));
-        if let Some([ratio, bias]) = self.g_sensitivity(conclusion) {
-            of_g_sensitivity(&mut lines, conclusion.pairs.len() < 2, ratio, degrees(bias));
+        let lines = Lines::new("Platform and sensor")
+            .with_found("limit", limit)
+            .with_found("tilt", tilt.map(|tilt| format!("{tilt:.4}° of the platform")))
+            .with_found("axis misalignment", conclusion.misalignments.iter().map(words));
+        match self.g_sensitivity(conclusion) {
+            Some([ratio, bias]) => {
+                of_g_sensitivity(lines, conclusion.pairs.len() < 2, ratio, degrees(bias))
+            }
+            None => lines,
         }
-        lines
     }
 }
 
@@ -280,15 +281,16 @@ fn excluded(average: &Average) -> Excluded {
 }
 
 /// What an integrated g-sensitivity makes of the azimuth, °, where there is one speed, and where there are two.
-fn of_g_sensitivity(lines: &mut Lines, is_one: bool, ratio: f64, bias: f64) {
+fn of_g_sensitivity(lines: Lines, is_one: bool, ratio: f64, bias: f64) -> Lines {
     let seen = if is_one { "of which one speed shows a part alone" } else { "at the slower speed" };
-    lines.add("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"));
     let what = if is_one {
         format!("the g-sensitivity turns the azimuth, by {bias:.4}° (1σ): turn at a second speed")
     } else {
         format!("would be off by {bias:+.4}° for the g-sensitivity")
     };
-    lines.add("one speed alone", what);
+    lines
+        .with("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"))
+        .with("one speed alone", what)
 }
 
 fn table_of_stages(fit: &Fit) -> Part {

@@ -117,27 +117,25 @@ fn states(answer: &Track) -> Part {
 }
 
 fn lines(replay: &Replay, outcome: &Outcome) -> Lines {
-    let (end, mut lines) = (&replay.answer().end, Lines::default());
-    if let Some(sigma) = outcome.sigma_deg {
-        let roll = end.roll_rad;
-        let turns = (roll / TURN).floor();
-        let angle = degrees(roll - turns * TURN);
-        let text = format!("{turns} turns and {angle:.5}° ± {sigma:.5}° (1σ); {roll:.6} rad");
-        lines.add("roll at the end", text);
-        if let Some(error) = outcome.error_deg {
-            let sigmas = error / sigma;
-            lines.add("truth", format!("the error is {error:+.5}°, {sigmas:+.2} σ"));
-        }
-    }
-    let limit = outcome.limit_deg.map(|limit| format!("{limit:.5}° (Cramér–Rao)"));
-    lines.add_found("limit", limit);
-    lines.add("state", end.state.to_string());
-    lines.add_found("lift", end.lift.map(|lift| format!("{lift:.3} m/s²")));
-    let words = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
-    lines.add_found("gyro's scale error", end.scale.map(words));
-    let noise = replay.noise.force;
-    lines.add("force noise", format!("{noise:.2e} m/s² a sample, as the turns show it"));
-    lines
+    let (end, noise) = (&replay.answer().end, replay.noise.force);
+    let (roll, turns) = (end.roll_rad, (end.roll_rad / TURN).floor());
+    let angle = degrees(roll - turns * TURN);
+    let at_end = outcome
+        .sigma_deg
+        .map(|sigma| format!("{turns} turns and {angle:.5}° ± {sigma:.5}° (1σ); {roll:.6} rad"));
+    let truth = outcome
+        .sigma_deg
+        .zip(outcome.error_deg)
+        .map(|(sigma, error)| format!("the error is {error:+.5}°, {:+.2} σ", error / sigma));
+    let scale = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
+    Lines::default()
+        .with_found("roll at the end", at_end)
+        .with_found("truth", truth)
+        .with_found("limit", outcome.limit_deg.map(|limit| format!("{limit:.5}° (Cramér–Rao)")))
+        .with("state", end.state.to_string())
+        .with_found("lift", end.lift.map(|lift| format!("{lift:.3} m/s²")))
+        .with_found("gyro's scale error", end.scale.map(scale))
+        .with("force noise", format!("{noise:.2e} m/s² a sample, as the turns show it"))
 }
 
 fn table(methods: &[MethodDetails], limit_rms_deg: Option<f64>) -> Table {

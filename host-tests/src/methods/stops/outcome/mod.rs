@@ -151,11 +151,11 @@ impl Replay {
             .with_found("bias_sigma_dph", biases.map(|[_, sigmas]| sigmas))
             .with("plain", found.map(plain))
             .with("stops", self.stops());
-        let mut lines = Lines::new("Start and gyros");
         let words = |[angle, sigma]: [f64; 2]| format!("{angle:.4}° ± {sigma:.4}° (1σ)");
-        lines.add_found("at the start", start.map(words));
-        lines.add_found("  truth", error.map(|error| format!("the error is {error:+.4}°")));
-        lines.add_found("gyro biases", biases.map(|biases| of_biases(biases, 4)));
+        let lines = Lines::new("Start and gyros")
+            .with_found("at the start", start.map(words))
+            .with_found("  truth", error.map(|error| format!("the error is {error:+.4}°")))
+            .with_found("gyro biases", biases.map(|biases| of_biases(biases, 4)));
         (keys, lines)
     }
 }
@@ -236,13 +236,11 @@ fn of_plain(found: &Found) -> Lines {
     let (plain, [azimuth, start]) = (&found.plain, plain_azimuths(found));
     let [brent, euler] =
         [plain.angle, plain.euler].map(|least| azimuth_error(degrees(least.at), start));
-    let mut lines = Lines::new(
-        "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias",
-    );
-    lines.add("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", degrees(plain.sigma)));
-    lines.add("at the start", format!("{start:.7}° in closed form"));
-    lines.add("least angle", format!("{brent:+.2e}° from that, by Brent's search"));
-    lines.add("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"));
-    lines.add("U there", format!("{:.5}°", degrees(plain.angle.value)));
-    lines
+    let title = "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias";
+    Lines::new(title)
+        .with("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", degrees(plain.sigma)))
+        .with("at the start", format!("{start:.7}° in closed form"))
+        .with("least angle", format!("{brent:+.2e}° from that, by Brent's search"))
+        .with("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"))
+        .with("U there", format!("{:.5}°", degrees(plain.angle.value)))
 }
