@@ -151,7 +151,7 @@ fn failed(Failure { reason, warnings, .. }: &Failure, as_json: bool) -> ExitCode
     if as_json {
         let output = Output::Object(serde_json::json!({}));
         let refusal = Some(reason.clone());
-        let nothing = Answer { found: false, output, refusal, warnings: warnings.clone() };
+        let nothing = Answer { output, refusal, warnings: warnings.clone() };
         // The reason goes to standard error all the same.
         let _ = print(&nothing.printed());
     }
@@ -182,5 +182,5 @@ fn answer(command: &Command, stated: &Stated, as_json: bool) -> Result<bool, Fai
     if let Some(reason) = &answer.refusal {
         say(&one_line(&format!("meridian: {reason}")));
     }
-    Ok(answer.found)
+    Ok(answer.refusal.is_none())
 }

@@ -1,8 +1,5 @@
 //! Schedules for a gyro: Burov's and the project's own, side by side.
 
-use std::fmt;
-use thiserror::Error;
-
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::burov::{self, Autocompensation};
@@ -12,6 +9,7 @@ use orientation::planner::{
 };
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 use serde::Serialize;
+use thiserror::Error;
 
 /// Shortest dwell that is planned, s.
 pub const SHORTEST: f64 = 1.0;
@@ -217,35 +215,27 @@ const SUGGESTED_SECONDS: f64 = 300.0;
 /// Time of a rotation in it, s.
 const SUGGESTED_ROTATION: f64 = 2.0;
 
-/// The schedule that suits a gyro, at the equator: σ times sec φ elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Suggestion(pub Planned);
-
-impl Suggestion {
-    /// For five minutes; none for a gyro of which nothing is known.
-    #[must_use]
-    pub fn of(noise: GyroNoise) -> Option<Self> {
-        let latitude = Latitude::from_degrees(0.0)?;
-        let wanted = Wanted::Seconds(SUGGESTED_SECONDS);
-        let request = Request { noise, latitude, rotation: SUGGESTED_ROTATION, wanted };
-        request.plan().ok().map(Self)
-    }
-}
-
-impl fmt::Display for Suggestion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Planned { burov, optimum, .. } = &self.0;
-        write!(
-            f,
-            "in {SUGGESTED_SECONDS} s with {SUGGESTED_ROTATION} s a rotation: {} positions of {:.2} s \
-             ({}), azimuth {:.4}°·sec φ (1σ)",
-            optimum.positions, optimum.dwell_s, optimum.order, optimum.sigma_deg
-        )?;
-        let Some(burov) = burov else { return Ok(()) };
-        write!(
-            f,
-            "; Burov's eq. (1): {} positions, rate error {:.3e} °/h",
-            burov.positions, burov.rate_error_deg_h
-        )
-    }
+/// The schedule that suits a gyro, in five minutes at the equator, and in words: σ times sec φ elsewhere; none for a gyro
+/// of which nothing is known.
+#[must_use]
+pub fn suggestion(noise: GyroNoise) -> Option<(Planned, String)> {
+    let latitude = Latitude::from_degrees(0.0)?;
+    let wanted = Wanted::Seconds(SUGGESTED_SECONDS);
+    let request = Request { noise, latitude, rotation: SUGGESTED_ROTATION, wanted };
+    let planned = request.plan().ok()?;
+    let Planned { burov, optimum, .. } = &planned;
+    let burov = burov.map(|burov| {
+        let OfBurov { positions, rate_error_deg_h: error, .. } = burov;
+        format!("; Burov's eq. (1): {positions} positions, rate error {error:.3e} °/h")
+    });
+    let words = format!(
+        "in {SUGGESTED_SECONDS} s with {SUGGESTED_ROTATION} s a rotation: {} positions of {:.2} s \
+             ({}), azimuth {:.4}°·sec φ (1σ){}",
+        optimum.positions,
+        optimum.dwell_s,
+        optimum.order,
+        optimum.sigma_deg,
+        burov.unwrap_or_default()
+    );
+    Some((planned, words))
 }

@@ -46,8 +46,6 @@ pub struct Campaign {
     pub meaning: &'static str,
     /// Runs where no number is asked for.
     pub runs: usize,
-    /// The options, by their names without dashes, that it takes beside those that every campaign takes.
-    pub takes: &'static [&'static str],
     /// What its steps are called.
     pub steps: &'static str,
     /// How many steps it has.

@@ -3,9 +3,7 @@
 use std::borrow::Borrow;
 use std::fmt::Display;
 
-use orientation::alignment::Azimuth;
-use orientation::alignment::refusal::Refusal;
-use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::{Azimuth, Refusal, Solution, Verdict};
 use serde::Serialize;
 
 use crate::output::{azimuth_error, degrees};
@@ -22,27 +20,14 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// A verdict against the true azimuth; its limit, rad, where there is one.
+    /// A verdict against the true azimuth.
     ///
     /// # Errors
     /// The refusal of the verdict.
-    pub fn of(
-        verdict: Result<Azimuth, Refusal>,
-        limit: Option<f64>,
-        truth_deg: f64,
-    ) -> Result<Self, Refusal> {
-        let azimuth = verdict?;
-        let error = azimuth_error(degrees(azimuth.angle), truth_deg);
-        let limit = limit.map_or(f64::NAN, degrees);
-        Ok(Self { error, sigma: degrees(azimuth.sigma), limit })
-    }
-
-    /// The conclusion of a stage against the true azimuth.
-    ///
-    /// # Errors
-    /// The refusal of the conclusion.
-    pub fn of_stage(conclusion: &Conclusion, truth_deg: f64) -> Result<Self, Refusal> {
-        Self::of(conclusion.verdict, conclusion.fit.as_ref().map(|fit| fit.limit), truth_deg)
+    pub fn of(verdict: Verdict, truth_deg: f64) -> Result<Self, Refusal> {
+        let Solution { azimuth: Azimuth { angle, sigma }, limit } = verdict?;
+        let error = azimuth_error(degrees(angle), truth_deg);
+        Ok(Self { error, sigma: degrees(sigma), limit: degrees(limit) })
     }
 }
 

@@ -22,7 +22,7 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stops::Refusal as Stops;
 
 use crate::methods::asked::Asked;
-use crate::methods::{rotating, stepwise};
+use crate::methods::{is_answered, rotating, stepwise};
 use crate::recording::{Body, Header, Sensor, Short};
 
 /// Times the stated noise power that no residuals are by chance or drift.
@@ -45,7 +45,7 @@ pub fn of_stopping(
     }
     let passes = |body: &Body| {
         let replay = stepwise::replay(header, body, asked, |_| {});
-        replay.is_ok_and(|replay| replay.session.conclusion().is_some_and(|c| c.verdict.is_ok()))
+        replay.is_ok_and(|replay| is_answered(&replay.session))
     };
     let force = units::force_unit(body);
     if is_short(refusal) && session.dwells().len() < FEW {
@@ -81,8 +81,7 @@ pub fn of_turning(
         return proven;
     }
     let passes = |header: &Header, body: &Body| {
-        let replay = rotating::replay(header, body, asked);
-        replay.is_ok_and(|replay| replay.session.conclusion().is_some_and(|c| c.verdict.is_ok()))
+        rotating::replay(header, body, asked).is_ok_and(|replay| is_answered(&replay.session))
     };
     let noise = || {
         let stated = header.gyro_n_deg_sqrt_h.filter(|_| is_scattered(refusal)).map(Short)?;

@@ -5,6 +5,7 @@ use orientation::alignment::refusal::Refusal;
 use super::is_short;
 use super::units::{self, MOST_ROWS, RATES, Unit};
 use crate::methods::asked::Asked;
+use crate::methods::is_answered;
 use crate::methods::stops::{self, samples};
 use crate::recording::{Body, Header, ImuRow};
 
@@ -27,10 +28,7 @@ pub fn of_vehicle(
     }
     let passes = |rate: &Unit| {
         let body = Body::Imu(converted(&rows, rate.0, force.map_or(1.0, |unit| unit.0)));
-        let replay = stops::replay(header, &body, asked);
-        replay.is_ok_and(|replay| {
-            replay.session.conclusion().is_some_and(|found| found.verdict.is_ok())
-        })
+        stops::replay(header, &body, asked).is_ok_and(|replay| is_answered(&replay.session))
     };
     let of_rates = RATES.into_iter().find(passes).map(|unit| unit.describe(GYROS));
     let named: Vec<String> = of_rates.into_iter().chain(of_force).collect();

@@ -6,7 +6,7 @@ use clap::Args;
 use host::allan::analysis::{Analysis, Rest};
 use host::allan::speed;
 use host::output::allan::Shown;
-use host::planning::Suggestion;
+use host::planning::suggestion;
 use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
 
@@ -25,20 +25,10 @@ pub struct AllanOptions {
     report: Option<PathBuf>,
 }
 
-impl AllanOptions {
-    /// What cannot go together.
-    ///
-    /// # Errors
-    /// The option, and why.
-    fn check(&self) -> Result<(), String> {
-        let report = files::written("--report", "the page", self.report.as_ref());
-        files::check(Some(&self.file), &[report])
-    }
-}
-
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
-    options.check().map_err(Failure::misuse)?;
+    let report = files::written("--report", "the page", options.report.as_ref());
+    files::check(Some(&options.file), &[report]).map_err(Failure::misuse)?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let warnings = recording.warning_lines(&options.file);
     analyse(options, recording, as_json)
@@ -59,12 +49,11 @@ fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Resul
         rest: &rest,
         analysis: &analysis,
         comparison: found.map(|_| speed::compare(&rest)),
-        schedule: found.and_then(|analysis| Suggestion::of(analysis.fit.noise())),
+        schedule: found.and_then(|analysis| suggestion(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
-    let report = || shown.report().text();
-    let answer = Answer::of(refusal.is_none(), as_json, &shown.object(), report)?;
-    Ok(Answer { refusal, ..answer }.with_page(options.report.as_deref(), || shown.report()))
+    let answer = Answer::of(refusal, as_json, &shown.object(), || shown.report().text())?;
+    Ok(answer.with_page(options.report.as_deref(), || shown.report()))
 }
 
 /// Why there is no noise, with what is to be known of the record.

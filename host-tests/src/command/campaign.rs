@@ -38,9 +38,16 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     fn check(&self) -> Result<(), String> {
-        let given = [self.platform.map(|_| "platform"), self.class.as_ref().map(|_| "class")];
-        for (option, things) in given.into_iter().zip(["platforms", "classes"]) {
-            option.map_or(Ok(()), |option| self.check_own(option, things))?;
+        let own = [
+            ("platform", self.platform.is_some(), "faults", "platforms"),
+            ("class", self.class.is_some(), "disturbed", "classes"),
+        ];
+        let name = self.campaign.name;
+        let alien = own.iter().find(|(_, is_given, owner, _)| *is_given && *owner != name);
+        if let Some((option, _, owner, things)) = alien {
+            return Err(format!(
+                "--{option}: campaign {name} does not take it: only {owner} has {things}"
+            ));
         }
         if let Some(class) = &self.class
             && disturbed::classes().all(|of| of.fault.name != *class)
@@ -49,17 +56,6 @@ impl CampaignOptions {
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
         files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
-    }
-
-    /// Whether the campaign takes an option that not every one has, which chooses among such things.
-    fn check_own(&self, option: &str, things: &str) -> Result<(), String> {
-        let takes = |campaign: &&Campaign| campaign.takes.contains(&option);
-        let owner = CAMPAIGNS.iter().find(takes).map_or("none", |campaign| campaign.name);
-        let name = self.campaign.name;
-        if takes(&self.campaign) {
-            return Ok(());
-        }
-        Err(format!("--{option}: campaign {name} does not take it: only {owner} has {things}"))
     }
 }
 
@@ -77,7 +73,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> 
     progress.finish();
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
-    let answer = Answer::of(refusal.is_none(), as_json, &object, || report.text())?;
-    let answer = Answer { refusal: refusal.map(str::to_owned), ..answer };
+    let refusal = refusal.map(str::to_owned);
+    let answer = Answer::of(refusal, as_json, &object, || report.text())?;
     Ok(answer.with_page(options.report.as_deref(), || report))
 }

@@ -67,5 +67,5 @@ pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
 pub fn list(platform: Platform, as_json: bool) -> Result<Answer, String> {
     let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
     let object = json!({ "status": "ok", "faults": names });
-    Answer::of(true, as_json, &object, || names.join("\n"))
+    Answer::of(None, as_json, &object, || names.join("\n"))
 }

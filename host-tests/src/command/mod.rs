@@ -24,11 +24,9 @@ use serde_json::{Value, json};
 
 /// What came of a command, ready to print.
 pub struct Answer {
-    /// Whether there was a result.
-    pub found: bool,
     /// For standard output.
     pub output: Output,
-    /// Why there was none.
+    /// Why there was no result, where there was none.
     pub refusal: Option<String>,
     /// What there is to be said beside that: a line each.
     pub warnings: Vec<String>,
@@ -67,9 +65,9 @@ impl From<String> for Failure {
 }
 
 impl Answer {
-    /// The object, or the text.
+    /// The object, or the text, of a result, or of what came instead of one.
     fn of(
-        found: bool,
+        refusal: Option<String>,
         as_json: bool,
         object: &impl Serialize,
         text: impl FnOnce() -> String,
@@ -79,7 +77,7 @@ impl Answer {
         } else {
             Output::Text(text())
         };
-        Ok(Self { found, output, refusal: None, warnings: Vec::new() })
+        Ok(Self { output, refusal, warnings: Vec::new() })
     }
 
     /// What goes to standard output: an object says `ok` where there was a result, and nowhere else.
@@ -99,7 +97,7 @@ impl Answer {
         if object.get("schema").is_none() {
             object["schema"] = outcome::SCHEMA.into();
         }
-        if self.found {
+        if self.refusal.is_none() {
             object["status"] = "ok".into();
         } else if says_ok || object.get("status").is_none() {
             object["status"] = "failed".into();
@@ -123,7 +121,6 @@ impl Answer {
     /// rest is not lost with it, nor is why there was no result.
     fn with_written(mut self, written: Result<(), String>) -> Self {
         let Err(reason) = written else { return self };
-        self.found = false;
         match &self.refusal {
             Some(_) => self.warnings.push(reason),
             None => self.refusal = Some(reason),
@@ -139,32 +136,34 @@ impl Answer {
     }
 }
 
-/// A finished analysis with what it found, ready to be shown.
+/// A finished analysis, ready to be shown.
 pub struct Shown<'a> {
     /// What texts and pages call it.
     pub name: &'a str,
-    /// What was found.
-    pub outcome: Outcome,
     /// The analysis.
-    pub finished: &'a dyn Finished,
+    pub finished: Box<dyn Finished>,
     /// The truth, for errors alone.
-    pub truth: &'a Truth,
-    /// The rows that were analysed, where there are any.
-    pub body: Option<&'a Body>,
+    pub truth: Truth,
+    /// The rows that were analysed, or that figures show, where there are any.
+    pub body: Option<Body>,
 }
 
 impl Shown<'_> {
-    /// The analysis as one object or as text, and as a page where `--report` asks for one.
+    /// What was found, as one object or as text, and as a page where `--report` asks for one.
     ///
     /// # Errors
     /// An object that cannot be serialised.
-    pub fn answer(self, report: Option<&Path>, as_json: bool) -> Result<Answer, String> {
-        let Self { name, outcome, finished, truth, body } = self;
-        let made = |figures| outcome::report(name, &outcome, finished, figures);
-        let answer = Answer::of(outcome.is_ok(), as_json, &outcome, || made(Vec::new()).text())?;
-        let refusal = outcome.reason.clone();
-        let page = || made(finished.figures(&outcome, truth, body));
-        Ok(Answer { refusal, ..answer }.with_page(report, page))
+    pub fn answer(
+        &self,
+        outcome: &Outcome,
+        report: Option<&Path>,
+        as_json: bool,
+    ) -> Result<Answer, String> {
+        let Self { name, finished, truth, body } = self;
+        let made = |figures| outcome::report(name, outcome, &**finished, figures);
+        let text = || made(Vec::new()).text();
+        let answer = Answer::of(outcome.reason.clone(), as_json, outcome, text)?;
+        Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }
 }
 

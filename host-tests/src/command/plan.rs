@@ -64,16 +64,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-impl PlanOptions {
-    /// What cannot go together.
-    ///
-    /// # Errors
-    /// The option, and why.
-    fn check(&self) -> Result<(), String> {
-        files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
-    }
-}
-
 impl From<&PlanOptions> for Request {
     fn from(options: &PlanOptions) -> Self {
         let noise = GyroNoise::from_field_units(
@@ -98,22 +88,22 @@ impl From<&PlanOptions> for Request {
 
 /// Plans positions and dwells, and shows them.
 pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
-    options.check().map_err(Failure::misuse)?;
+    let report = files::written("--report", "the page", options.report.as_ref());
+    files::check(None, &[report]).map_err(Failure::misuse)?;
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
-        Err(why) => return Ok(refused(options, &why.to_string(), as_json)?),
+        Err(why) => return Ok(refused(options, why.to_string(), as_json)?),
     };
     let object = Keys::default().with("status", "ok").with_all(Some(&planned));
-    let answer = Answer::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
+    let answer = Answer::of(None, as_json, &object, || plan::report(&request, &planned).text())?;
     Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.
-fn refused(options: &PlanOptions, why: &str, as_json: bool) -> Result<Answer, String> {
+fn refused(options: &PlanOptions, why: String, as_json: bool) -> Result<Answer, String> {
     let object = json!({ "status": "refused", "reason": why });
-    let answer = Answer::of(false, as_json, &object, String::new)?;
     let no_page = |_| "--report: without a schedule there is no page".to_owned();
     let warnings = options.report.iter().map(no_page).collect();
-    Ok(Answer { refusal: Some(why.to_owned()), warnings, ..answer })
+    Ok(Answer::of(Some(why), as_json, &object, String::new)?.with_warnings(warnings))
 }

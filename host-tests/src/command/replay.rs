@@ -140,11 +140,10 @@ fn replay(
         None => reason,
     });
     let outcome = Outcome { source: Some(Source::File(name.clone())), reason, ..outcome };
-    let (finished, body) = (&*finished, Some(&body));
-    let shown = Shown { name: &name, outcome, finished, truth: &truth, body };
-    let answer = shown.answer(options.report.as_deref(), as_json)?;
+    let shown = Shown { name: &name, finished, truth, body: Some(body) };
+    let answer = shown.answer(&outcome, options.report.as_deref(), as_json)?;
     let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
-    let attitude = options.attitude_out.as_ref().zip(finished.attitude());
+    let attitude = options.attitude_out.as_ref().zip(shown.finished.attitude());
     let written = attitude.map_or(Ok(()), |(path, moments)| {
         write_attitude(path, moments)
             .map_err(|error| unwritten::message("the attitude", path, &error))

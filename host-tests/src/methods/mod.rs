@@ -11,6 +11,8 @@ pub mod stepwise;
 pub mod stops;
 pub mod vertical;
 
+use orientation::alignment;
+use orientation::alignment::stepwise::session::Session;
 use simulated::fault::Platform;
 
 use self::asked::Asked;
@@ -19,7 +21,7 @@ use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
 
 /// What is called at each step of a replay: the session so far.
-pub type Watch<'a> = &'a dyn Fn(&orientation::alignment::stepwise::session::Session);
+pub type Watch<'a> = &'a dyn Fn(&Session);
 
 /// Replays a recording.
 type Replays = fn(&Header, &Body, &Asked, Watch<'_>) -> Result<Box<dyn Finished>, ReplayError>;
@@ -67,15 +69,15 @@ pub static METHODS: [Method; 7] = [
         replay: |header, body, asked, _| boxed(rotating::replay(header, body, asked)),
     },
     Method {
-        name: "siap",
+        name: stops::SIAP,
         meaning: "A vehicle: the azimuth from two stops and more",
         takes: &["latitude", "displacements"],
         platform: Some(Platform::Vehicle),
-        suits: |header, body| stops::Method::of(header, body) == Some(stops::Method::Siap),
+        suits: |header, body| stops::usual_method(header, body) == Some(stops::SIAP),
         replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
-        name: "static",
+        name: stops::STATIC,
         meaning: "A vehicle at rest all the time, sway allowed",
         takes: &["latitude"],
         platform: None,
@@ -111,6 +113,11 @@ pub fn named(name: &str) -> Option<&'static Method> {
 #[must_use]
 pub fn usual(Recording { header, body, .. }: &Recording) -> &'static Method {
     METHODS.iter().find(|method| (method.suits)(header, body)).unwrap_or(&METHODS[0])
+}
+
+/// Whether an alignment found an azimuth.
+pub(crate) fn is_answered<S>(session: &impl alignment::Method<S>) -> bool {
+    matches!(session.verdict(), Some(Ok(_)))
 }
 
 fn boxed<F: Finished + 'static>(

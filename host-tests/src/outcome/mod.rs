@@ -20,7 +20,7 @@ use crate::methods::asked::Asked;
 use crate::methods::vertical::Moment;
 use crate::output::{azimuth_error, degrees, positive_zero};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Figure, Lines, Part as ReportPart, Report, Table};
+use crate::report::{Columns, Figure, Lines, Part as ReportPart, Report, Table};
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;
@@ -291,16 +291,16 @@ fn earth_rate(fit: &FitDetails) -> Option<String> {
 fn budget_table(details: &BudgetDetails) -> Table {
     let budget = &details.0;
     let sigma = budget.sigma();
-    let row = |(source, part): (Part, f64)| {
-        let share = 100.0 * (part / sigma) * (part / sigma);
-        [source.to_string(), format!("{:.4}", degrees(part)), format!("{share:.1}")]
-    };
-    let sum = ["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
+    let sum =
+        vec!["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
     let dominant =
         budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
     let title = format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default());
-    let rows = details.shown().map(row).chain([sum]);
-    Table::new(&title, &["source", "part, °", "share of the variance, %"], rows)
+    Columns::of(&title, &details.shown().collect::<Vec<_>>())
+        .column("source", |(source, _)| source)
+        .fixed("part, °", 4, |(_, part)| degrees(*part))
+        .fixed("share of the variance, %", 1, |(_, part)| 100.0 * (part / sigma) * (part / sigma))
+        .table(Some(sum))
 }
 
 /// What helps against a part that dominates.

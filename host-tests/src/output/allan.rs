@@ -11,7 +11,7 @@ use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
 use crate::outcome::SCHEMA;
 use crate::outcome::keys::Keys;
-use crate::planning::Suggestion;
+use crate::planning::Planned;
 use crate::recording::Gap;
 use crate::report::{Lines, Report};
 
@@ -28,8 +28,8 @@ pub struct Shown<'a> {
     pub analysis: &'a Result<Analysis, FitError>,
     /// How both estimators did, where it says something.
     pub comparison: Option<Comparison>,
-    /// The schedule that suits this noise, where one is planned.
-    pub schedule: Option<Suggestion>,
+    /// The schedule that suits this noise, and in words, where one is planned.
+    pub schedule: Option<(Planned, String)>,
 }
 
 /// A coefficient of the noise.
@@ -106,7 +106,7 @@ impl Shown<'_> {
             .with_found("residuals", analysis.ok().map(residuals));
         let parts = analysis.into_iter().flat_map(page::parts);
         let beside = self.comparison.as_ref().map(speed).unwrap_or_default();
-        let beside = beside.with_found("schedule", self.schedule.map(|it| it.to_string()));
+        let beside = beside.with_found("schedule", self.schedule.as_ref().map(|(_, words)| words));
         let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
         let title = format!("{found} {} in {}", self.rest.column, self.name);
         Report::new(title, [record.into()].into_iter().chain(parts).chain([beside.into()]))
@@ -159,7 +159,7 @@ impl Shown<'_> {
             .with("gaps", rest.spacing.gaps.iter().map(gap).collect::<Value>())
             .with("notes", self.notes())
             .with_all(self.analysis.as_ref().ok().map(|analysis| self.found(analysis)).as_ref())
-            .with("schedule", self.schedule.map(|suggestion| suggestion.0))
+            .with("schedule", self.schedule.as_ref().map(|(planned, _)| planned))
             .with("schedule_angles", "at the equator; times sec φ elsewhere")
     }
 
@@ -175,19 +175,6 @@ impl Shown<'_> {
             .with("batch_samples_s", comparison.map(|both| both.batch))
             .with("streaming_difference", comparison.map(|both| both.difference))
     }
-}
-
-/// The points, ready to print: τ, deviation, limits, degrees of freedom.
-fn rows(analysis: &Analysis) -> impl Iterator<Item = [String; 5]> {
-    analysis.points.iter().map(|point| {
-        let [deviation, lower, upper] =
-            [point.deviation, point.limits[0], point.limits[1]].map(|rate| {
-                let rate = degrees_per_hour(rate);
-                let decimals = (4.0 - rate.log10().floor()).clamp(0.0, 9.0) as usize;
-                format!("{rate:.decimals$}")
-            });
-        [short(point.seconds), deviation, lower, upper, format!("{:.1}", point.degrees)]
-    })
 }
 
 /// A number with six decimal places but without zeros at the end.

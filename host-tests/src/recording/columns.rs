@@ -15,12 +15,12 @@ use super::resemblance::resembled;
 use super::warning::{About, Warning};
 
 /// Most columns that a kind can know.
-pub(super) const MAX_COLUMNS: usize = 15;
+const MAX_COLUMNS: usize = 15;
 
 /// What the names of columns begin with that only a check may know; they may hold `nan`.
 const TRUTH: &str = "truth_";
 /// The columns of a true attitude, which come together.
-const QUATERNION: [&str; 4] = ["truth_qw", "truth_qx", "truth_qy", "truth_qz"];
+pub(super) const TRUE_ATTITUDE: [&str; 4] = ["truth_qw", "truth_qx", "truth_qy", "truth_qz"];
 
 /// When a column must be there.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,19 +44,12 @@ pub(super) struct Column {
     /// When it must be there.
     pub need: Need,
     /// The range of its numbers.
-    pub range: Range,
-}
-
-impl Column {
-    /// A column that must be there.
-    pub const fn always(name: &'static str, range: Range) -> Self {
-        Self { name, need: Need::Always, range }
-    }
+    pub range: &'static Range,
 }
 
 /// How the fields of this file's rows map to the kind's columns.
 pub(super) struct Layout {
-    columns: &'static [Column],
+    columns: Vec<Column>,
     /// For each field, the place of its column in `columns`.
     fields: Vec<Option<usize>>,
     present: [bool; MAX_COLUMNS],
@@ -73,11 +66,6 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// The number in a column that is there ([`Layout::new`] has seen to it).
-    pub fn needed(&self, column: usize) -> f64 {
-        self.numbers[column]
-    }
-
     /// The number in a column, when it is there.
     pub fn optional(&self, column: usize) -> Option<f64> {
         self.present[column].then_some(self.numbers[column])
@@ -86,13 +74,13 @@ impl Values {
 
 impl Layout {
     /// Reads the line of column names. `columns` has no more than [`MAX_COLUMNS`].
-    pub fn new(columns: &'static [Column], line: u64, names: &str) -> Result<Self, Fault> {
+    pub fn new(columns: Vec<Column>, line: u64, names: &str) -> Result<Self, Fault> {
         let present = [false; MAX_COLUMNS];
         let mut layout = Self { columns, fields: Vec::new(), present, truths: Vec::new() };
         let mut seen = HashSet::new();
         for (index, name) in names.split(',').map(str::trim_ascii).enumerate() {
             check_name(line, index, name, seen.insert(name))?;
-            let place = columns.iter().position(|column| column.name == name);
+            let place = layout.place(name);
             layout.fields.push(place);
             match place {
                 Some(place) => layout.present[place] = true,
@@ -109,14 +97,14 @@ impl Layout {
         let absent = self.columns.iter().filter(|column| !self.has(column.name));
         let absent = absent.map(|column| column.name);
         for name in names.split(',').map(str::trim_ascii) {
-            let is_known = self.columns.iter().any(|column| column.name == name);
+            let is_known = self.place(name).is_some();
             if let Some(known) = resembled(name, absent.clone()).filter(|_| !is_known) {
                 let about = About::Column(name.to_owned(), known);
                 warnings.push(Warning { line, about });
             }
         }
-        let missing = QUATERNION.into_iter().find(|name| !self.has(name));
-        if let Some(missing) = missing.filter(|_| QUATERNION.iter().any(|name| self.has(name))) {
+        let missing = TRUE_ATTITUDE.into_iter().find(|name| !self.has(name));
+        if let Some(missing) = missing.filter(|_| TRUE_ATTITUDE.iter().any(|name| self.has(name))) {
             warnings.push(Warning { line, about: About::PartOfTruth(missing) });
         }
     }
@@ -143,14 +131,18 @@ impl Layout {
         Err(Fault::column(line, missing.name, HeaderProblem::MissingColumn(all)))
     }
 
+    /// The place of the column of this name among those that the kind knows.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
     /// Whether the column of this name is there.
     fn has(&self, name: &str) -> bool {
-        let mut all = self.columns.iter().zip(self.present);
-        all.any(|(column, is_there)| is_there && column.name == name)
+        self.place(name).is_some_and(|place| self.present[place])
     }
 
     /// The columns that must be there, given which optional ones are.
-    fn needed(&self) -> impl Iterator<Item = &'static Column> {
+    fn needed(&self) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(|column| match column.need {
             Need::Always => true,
             Need::Optional | Need::Sometimes => false,

@@ -1,9 +1,9 @@
 //! Rows: what each kind of recording has in one.
 //!
-//! Another kind is a row type with its table of columns here, and the arms that
+//! Another kind is a row type here that names its columns as it reads them, and the arms that
 //! [`super::parse`] names.
 
-use super::columns::{Column, Layout, MAX_COLUMNS, Need, Values};
+use super::columns::{Column, Layout, Need, TRUE_ATTITUDE, Values};
 use super::error::Fault;
 use super::header::check_late;
 use super::lines::{Lines, MAX_ROWS};
@@ -41,6 +41,10 @@ const ROLL: Range = Range::symmetric(6.283_185e6, " rad");
 const QUATERNION: Range = Range::symmetric(1.001, "");
 /// Square of its length below which it is none.
 const LEAST_SQUARE: f64 = 0.9;
+/// Standard deviations of a mean rate.
+const SIGMA: Range = Range::above_zero(2.147_483_647, " rad/s");
+/// Lengths of dwells.
+const SECONDS: Range = Range::above_zero(1e10, " s");
 /// Whether something holds: 0 or 1.
 const FLAG: Range = Range::from_zero(1.0, "");
 /// The force columns of a dwell come together or not at all.
@@ -52,13 +56,6 @@ const IMU: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2"
 const ACROSS: [&str; 2] = ["gy_rad_s", "gz_rad_s"];
 /// A coarse one of them, on the base of a stage.
 const BASE: [&str; 6] = ["bgx_rad_s", "bgy_rad_s", "bgz_rad_s", "bax_m_s2", "bay_m_s2", "baz_m_s2"];
-/// Whether a row brings a force that was not there before: one that is read less often is repeated.
-const NEW_FORCE: Column = sometimes("force_is_new", FLAG);
-
-/// A column that need not be there, and whose fields may be empty.
-const fn sometimes(name: &'static str, range: Range) -> Column {
-    Column { name, need: Need::Sometimes, range }
-}
 
 /// One sample of a `stage` recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,7 +162,7 @@ pub struct SpinRow {
 }
 
 /// What an inertial measurement unit gives at a time, along body x (forward), y (right), z (down).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuSample {
     /// Rates, rad/s, ±100; at rest ±2.147483647.
     pub rates_rad_s: [f64; 3],
@@ -175,101 +172,111 @@ pub struct ImuSample {
 
 /// A kind's row.
 pub(super) trait Row: Sized {
-    /// The columns that the kind knows; [`Values`] has their numbers at the same places.
-    const COLUMNS: &'static [Column];
-    /// The place of the column whose numbers must increase.
-    const TIME: usize = 0;
+    /// The column whose numbers must increase.
+    const TIME: &'static str = "t_s";
 
-    /// The row that has these numbers.
-    fn from_values(values: &Values) -> Self;
+    /// The row, read column by column: always the same ones in the same order.
+    fn read(from: &mut Fields) -> Self;
+}
+
+/// What a row is read from: the columns that its kind knows, one after the other, and their numbers.
+pub(super) struct Fields<'f> {
+    line: u64,
+    /// The number in a column where it is there.
+    next: &'f mut dyn FnMut(Column) -> Option<f64>,
+}
+
+impl Fields<'_> {
+    /// A column that need not be there, and whose fields may be empty.
+    fn sometimes(&mut self, name: &'static str, range: &'static Range) -> Option<f64> {
+        (self.next)(Column { name, need: Need::Sometimes, range })
+    }
+
+    /// A column that need not be there.
+    fn optional(&mut self, name: &'static str, range: &'static Range) -> Option<f64> {
+        (self.next)(Column { name, need: Need::Optional, range })
+    }
+
+    /// A column that must be there.
+    fn always(&mut self, name: &'static str, range: &'static Range) -> f64 {
+        (self.next)(Column { name, need: Need::Always, range }).unwrap_or_default()
+    }
+
+    /// Columns that are there where the first one is.
+    fn group<const N: usize>(
+        &mut self,
+        names: &[&'static str; N],
+        need: Need,
+        range: &'static Range,
+    ) -> Option<[f64; N]> {
+        let numbers = names.map(|name| (self.next)(Column { name, need, range }));
+        numbers[0].map(|_| numbers.map(Option::unwrap_or_default))
+    }
+
+    /// The columns of an inertial measurement unit.
+    fn imu(
+        &mut self,
+        [x, y, z, forces @ ..]: &[&'static str; 6],
+        need: Need,
+        rate: &'static Range,
+    ) -> Option<ImuSample> {
+        let rates_rad_s = self.group(&[x, y, z], need, rate);
+        let force_m_s2 = self.group(forces, need, &FORCE);
+        rates_rad_s.map(|rates_rad_s| ImuSample {
+            rates_rad_s,
+            force_m_s2: force_m_s2.unwrap_or_default(),
+        })
+    }
+
+    /// Whether a row brings a force that was not there before: one that is read less often is repeated. Always where the
+    /// recording does not say.
+    fn has_new_force(&mut self) -> bool {
+        self.sometimes("force_is_new", &FLAG).is_none_or(|is_new| is_new > 0.0)
+    }
 }
 
 impl Row for StageRow {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("t_s", TIME),
-        Column::always("stage_rad", STAGE),
-        Column::always("g_rad_s", RATE),
-        Column::always("fx_m_s2", FORCE),
-        Column::always("fy_m_s2", FORCE),
-        Column::always("fz_m_s2", FORCE),
-        sometimes("temperature_c", TEMPERATURE),
-        NEW_FORCE,
-        sometimes("elevation_rad", ELEVATION),
-        sometimes(BASE[0], RATE),
-        sometimes(BASE[1], RATE),
-        sometimes(BASE[2], RATE),
-        sometimes(BASE[3], FORCE),
-        sometimes(BASE[4], FORCE),
-        sometimes(BASE[5], FORCE),
-    ];
-
-    fn from_values(values: &Values) -> Self {
+    fn read(from: &mut Fields) -> Self {
         Self {
-            line: values.line,
-            time_s: values.needed(0),
-            stage_rad: values.needed(1),
-            rate_rad_s: values.needed(2),
-            force_m_s2: [3, 4, 5].map(|column| values.needed(column)),
-            temperature_c: values.optional(6),
-            force_is_new: has_new_force(values, 7),
-            elevation_rad: values.optional(8),
-            base: values.optional(9).map(|_| imu_sample(values, 9)),
+            line: from.line,
+            time_s: from.always("t_s", &TIME),
+            stage_rad: from.always("stage_rad", &STAGE),
+            rate_rad_s: from.always("g_rad_s", &RATE),
+            force_m_s2: FORCES.map(|name| from.always(name, &FORCE)),
+            temperature_c: from.sometimes("temperature_c", &TEMPERATURE),
+            force_is_new: from.has_new_force(),
+            elevation_rad: from.sometimes("elevation_rad", &ELEVATION),
+            base: from.imu(&BASE, Need::Sometimes, &RATE),
         }
     }
 }
 
-/// Whether a row brings a force, by the column at this place; always without it.
-fn has_new_force(values: &Values, place: usize) -> bool {
-    values.optional(place).is_none_or(|is_new| is_new > 0.0)
-}
-
 impl Row for RotatingRow {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("t_s", TIME),
-        Column::always("stage_rad", STAGE),
-        Column::always("stage_rate_rad_s", STAGE_RATE),
-        Column::always("g_rad_s", RATE),
-        Column::always("a_m_s2", FORCE),
-        Column { name: "a_across_m_s2", need: Need::Optional, range: FORCE },
-        NEW_FORCE,
-    ];
-
-    fn from_values(values: &Values) -> Self {
+    fn read(from: &mut Fields) -> Self {
         Self {
-            line: values.line,
-            time_s: values.needed(0),
-            stage_rad: values.needed(1),
-            stage_rate_rad_s: values.needed(2),
-            rate_rad_s: values.needed(3),
-            force_m_s2: values.needed(4),
-            across_m_s2: values.optional(5),
-            force_is_new: has_new_force(values, 6),
+            line: from.line,
+            time_s: from.always("t_s", &TIME),
+            stage_rad: from.always("stage_rad", &STAGE),
+            stage_rate_rad_s: from.always("stage_rate_rad_s", &STAGE_RATE),
+            rate_rad_s: from.always("g_rad_s", &RATE),
+            force_m_s2: from.always("a_m_s2", &FORCE),
+            across_m_s2: from.optional("a_across_m_s2", &FORCE),
+            force_is_new: from.has_new_force(),
         }
     }
 }
 
 impl Row for DwellRow {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("stage_rad", STAGE),
-        Column::always("rate_rad_s", RATE),
-        Column::always("sigma_rad_s", Range::above_zero(2.147_483_647, " rad/s")),
-        Column::always("seconds", Range::above_zero(1e10, " s")),
-        Column { name: "mid_s", need: Need::Optional, range: TIME },
-        Column { name: "fx_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
-        Column { name: "fy_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
-        Column { name: "fz_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
-    ];
-    const TIME: usize = 4;
+    const TIME: &'static str = "mid_s";
 
-    fn from_values(values: &Values) -> Self {
-        let force = [5, 6, 7].map(|column| values.needed(column));
+    fn read(from: &mut Fields) -> Self {
         Self {
-            stage_rad: values.needed(0),
-            rate_rad_s: values.needed(1),
-            sigma_rad_s: values.needed(2),
-            seconds: values.needed(3),
-            mid_s: values.optional(4),
-            force_m_s2: values.optional(5).map(|_| force),
+            stage_rad: from.always("stage_rad", &STAGE),
+            rate_rad_s: from.always("rate_rad_s", &RATE),
+            sigma_rad_s: from.always("sigma_rad_s", &SIGMA),
+            seconds: from.always("seconds", &SECONDS),
+            mid_s: from.optional("mid_s", &TIME),
+            force_m_s2: from.group(&FORCES, Need::AnyOf(&FORCES), &FORCE),
         }
     }
 }
@@ -279,92 +286,61 @@ type TrueAttitude = Option<[f64; 4]>;
 
 /// A sample, and the true attitude where the recording has that column; none within where it does not count.
 impl Row for (ImuRow, Option<TrueAttitude>) {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("t_s", TIME),
-        Column::always(IMU[0], BODY_RATE),
-        Column::always(IMU[1], BODY_RATE),
-        Column::always(IMU[2], BODY_RATE),
-        Column::always(IMU[3], FORCE),
-        Column::always(IMU[4], FORCE),
-        Column::always(IMU[5], FORCE),
-        Column { name: "truth_qw", need: Need::Optional, range: QUATERNION },
-        Column { name: "truth_qx", need: Need::Optional, range: QUATERNION },
-        Column { name: "truth_qy", need: Need::Optional, range: QUATERNION },
-        Column { name: "truth_qz", need: Need::Optional, range: QUATERNION },
-        Column { name: "moving", need: Need::Optional, range: FLAG },
-        NEW_FORCE,
-    ];
-
-    fn from_values(values: &Values) -> Self {
-        let row = ImuRow {
-            line: values.line,
-            time_s: values.needed(0),
-            sample: imu_sample(values, 1),
-            force_is_new: has_new_force(values, 12),
-        };
-        (row, true_attitude(values))
+    fn read(from: &mut Fields) -> Self {
+        let (line, time_s) = (from.line, from.always("t_s", &TIME));
+        let sample = from.imu(&IMU, Need::Always, &BODY_RATE).unwrap_or_default();
+        let attitude = true_attitude(from);
+        (ImuRow { line, time_s, sample, force_is_new: from.has_new_force() }, attitude)
     }
 }
 
-/// The quaternion in columns 7 to 10, where all of it is there.
-fn true_attitude(values: &Values) -> Option<TrueAttitude> {
-    let [w, x, y, z] = [7, 8, 9, 10].map(|column| values.optional(column));
+/// The quaternion, where all of it is there.
+fn true_attitude(from: &mut Fields) -> Option<TrueAttitude> {
+    let [w, x, y, z] = TRUE_ATTITUDE.map(|name| from.optional(name, &QUATERNION));
+    let counts = from.optional("moving", &FLAG).is_none_or(|moving| moving > 0.0);
     let parts = [w?, x?, y?, z?];
     let square: f64 = parts.iter().map(|part| part * part).sum();
-    let counts = values.optional(11).is_none_or(|moving| moving > 0.0);
     Some((counts && square > LEAST_SQUARE).then_some(parts))
-}
-
-/// The sample whose columns begin at this place.
-fn imu_sample(values: &Values, first: usize) -> ImuSample {
-    let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
-    ImuSample { rates_rad_s: three(first), force_m_s2: three(first + 3) }
 }
 
 /// A sample, and the true roll, rad, where the recording has it.
 impl Row for (SpinRow, Option<f64>) {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("t_s", TIME),
-        Column::always("gx_rad_s", SPIN_RATE),
-        Column::always("ay_m_s2", SPIN_FORCE),
-        Column::always("az_m_s2", SPIN_FORCE),
-        Column { name: "truth_roll_rad", need: Need::Optional, range: ROLL },
-        Column { name: ACROSS[0], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
-        Column { name: ACROSS[1], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
-    ];
-
-    fn from_values(values: &Values) -> Self {
-        let row = SpinRow {
-            line: values.line,
-            time_s: values.needed(0),
-            rate_rad_s: values.needed(1),
-            force_m_s2: [2, 3].map(|column| values.needed(column)),
-            across_rad_s: values.optional(5).map(|_| [5, 6].map(|column| values.needed(column))),
-        };
-        (row, values.optional(4))
+    fn read(from: &mut Fields) -> Self {
+        let (line, time_s) = (from.line, from.always("t_s", &TIME));
+        let rate_rad_s = from.always("gx_rad_s", &SPIN_RATE);
+        let force_m_s2 = ["ay_m_s2", "az_m_s2"].map(|name| from.always(name, &SPIN_FORCE));
+        let roll_rad = from.optional("truth_roll_rad", &ROLL);
+        let across_rad_s = from.group(&ACROSS, Need::AnyOf(&ACROSS), &SPIN_RATE);
+        (SpinRow { line, time_s, rate_rad_s, force_m_s2, across_rad_s }, roll_rad)
     }
 }
 
 impl Row for StaticRow {
-    const COLUMNS: &'static [Column] = &[
-        Column::always("t_s", TIME),
-        Column { name: "g_rad_s", need: Need::NoneOf(&IMU), range: RATE },
-        Column { name: IMU[0], need: Need::AnyOf(&IMU), range: RATE },
-        Column { name: IMU[1], need: Need::AnyOf(&IMU), range: RATE },
-        Column { name: IMU[2], need: Need::AnyOf(&IMU), range: RATE },
-        Column { name: IMU[3], need: Need::AnyOf(&IMU), range: FORCE },
-        Column { name: IMU[4], need: Need::AnyOf(&IMU), range: FORCE },
-        Column { name: IMU[5], need: Need::AnyOf(&IMU), range: FORCE },
-    ];
-
-    fn from_values(values: &Values) -> Self {
+    fn read(from: &mut Fields) -> Self {
         Self {
-            line: values.line,
-            time_s: values.needed(0),
-            rate_rad_s: values.optional(1),
-            imu: values.optional(2).map(|_| imu_sample(values, 2)),
+            line: from.line,
+            time_s: from.always("t_s", &TIME),
+            rate_rad_s: from.group(&["g_rad_s"], Need::NoneOf(&IMU), &RATE).map(|[rate]| rate),
+            imu: from.imu(&IMU, Need::AnyOf(&IMU), &RATE),
         }
     }
+}
+
+/// The columns that a kind knows.
+fn columns<T: Row>() -> Vec<Column> {
+    let mut columns = Vec::new();
+    let mut next = |column| {
+        columns.push(column);
+        None
+    };
+    T::read(&mut Fields { line: 0, next: &mut next });
+    columns
+}
+
+/// The row that has these numbers.
+fn row<T: Row>(values: &Values) -> T {
+    let mut places = 0..;
+    T::read(&mut Fields { line: values.line, next: &mut |_| values.optional(places.next()?) })
 }
 
 /// Reads all rows below the column names, which stand in line `line`.
@@ -374,8 +350,8 @@ pub(super) fn read<T: Row>(
     names: &str,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<T>, Fault> {
-    const { assert!(T::COLUMNS.len() <= MAX_COLUMNS && T::TIME < T::COLUMNS.len()) };
-    let mut layout = Layout::new(T::COLUMNS, line, names)?;
+    let mut layout = Layout::new(columns::<T>(), line, names)?;
+    let time = layout.place(T::TIME);
     layout.warn(line, names, warnings);
     let mut rows = Vec::new();
     let mut before = None;
@@ -388,21 +364,25 @@ pub(super) fn read<T: Row>(
             return Err(Fault::line(line.number, SourceProblem::TooMany(MAX_ROWS, "rows")));
         }
         let values = layout.values(&line)?;
-        before = later::<T>(before, &values)?;
-        rows.push(T::from_values(&values));
+        let stamp = time.and_then(|place| values.optional(place)).map(|time| (values.line, time));
+        check_later(T::TIME, before, stamp)?;
+        before = stamp;
+        rows.push(row(&values));
         layout.warn_of_truth(&line, warnings);
     }
     if rows.is_empty() { Err(Fault::line(line, ValueProblem::NoRows)) } else { Ok(rows) }
 }
 
-/// The row's line and time, when it has a time; refuses one that is not later than the one before.
-fn later<T: Row>(before: Option<(u64, f64)>, values: &Values) -> Result<Option<(u64, f64)>, Fault> {
-    let time = values.optional(T::TIME);
-    match (before, time) {
-        (Some((before_line, before_s)), Some(time_s)) if time_s <= before_s => {
+/// The line and time of a row, s.
+type Stamp = Option<(u64, f64)>;
+
+/// Refuses a time that is not later than the one before, where both rows have one.
+fn check_later(column: &str, before: Stamp, stamp: Stamp) -> Result<(), Fault> {
+    match (before, stamp) {
+        (Some((before_line, before_s)), Some((line, time_s))) if time_s <= before_s => {
             let problem = TimeProblem::NotLater { time_s, before_s, before_line };
-            Err(Fault::column(values.line, T::COLUMNS[T::TIME].name, problem))
+            Err(Fault::column(line, column, problem))
         }
-        _ => Ok(time.map(|time| (values.line, time))),
+        _ => Ok(()),
     }
 }

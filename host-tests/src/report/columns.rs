@@ -14,7 +14,8 @@ impl<'a, R> Columns<'a, R> {
     /// A table of these rows, without columns yet.
     #[must_use]
     pub fn of(title: &str, rows: &'a [R]) -> Self {
-        Self { rows, table: Table::new(title, &[], vec![Vec::new(); rows.len()]) }
+        let (title, cells) = (title.to_owned(), vec![Vec::new(); rows.len()]);
+        Self { rows, table: Table { title, head: Vec::new(), rows: cells } }
     }
 
     fn filled(mut self, name: &str, cells: impl Iterator<Item = String>) -> Self {

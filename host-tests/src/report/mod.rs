@@ -154,18 +154,6 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
-impl Table {
-    /// A table of rows with these columns.
-    pub fn new(
-        title: &str,
-        head: &[&str],
-        rows: impl IntoIterator<Item = impl Into<Vec<String>>>,
-    ) -> Self {
-        let head = head.iter().map(|name| (*name).to_owned()).collect();
-        Self { title: title.to_owned(), head, rows: rows.into_iter().map(Into::into).collect() }
-    }
-}
-
 impl Figure {
     /// Curves over two axes.
     pub fn new(

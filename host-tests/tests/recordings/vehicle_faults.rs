@@ -221,6 +221,6 @@ fn the_floor_of_a_spectrum_is_the_white_noise_beneath_noise_of_the_angle_and_swa
         assert!((floor.angle.sqrt() - angle).abs() < 0.1 * angle + 2e-7, "{}", floor.angle.sqrt());
     }
     let (_, rows) = recorded(PARKED);
-    let white = noise::estimate(&rows, None, 0.04);
+    let white = noise::at_rest(&rows, None, 0.04).unwrap_or_default();
     assert!(white.force > 0.0);
 }

@@ -4,8 +4,7 @@
 //! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
 
 use hal_mock::gyro::Gyro;
-use orientation::alignment::Azimuth;
-use orientation::alignment::refusal::Refusal;
+use orientation::alignment::{Azimuth, Refusal, Solution};
 use orientation::attitude::{Gyro as Known, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
 use orientation::signal::InertialSample;
@@ -213,7 +212,8 @@ impl Class {
         let stored = f64::from(samples) / RATE_HZ;
         let limit = stored_sigma(&self.grade.noise(), sigma, REST, stored);
         let lost = Azimuth { angle: f64::NAN, sigma: f64::NAN };
-        Answer::of(Ok(keeper.report().azimuth.unwrap_or(lost)), Some(limit), 180.0)
+        let azimuth = keeper.report().azimuth.unwrap_or(lost);
+        Answer::of(Ok(Solution { azimuth, limit }), 180.0)
     }
 
     /// What the keeper is given: the class's gyro about the axis down, coarse ones beside it.

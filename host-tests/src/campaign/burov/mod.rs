@@ -9,12 +9,12 @@ use std::fmt;
 
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
-use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::Schedule;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stepwise::{self, Session};
+use orientation::alignment::{Method, Refusal};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::{Conditions, Plan, Rotation};
@@ -114,10 +114,7 @@ impl Trial {
             .map_err(|_| Refusal::Stepwise(stepwise::Refusal::TooFewPositions { positions: 0 }))?;
         let longest = 2.0 * self.plan.seconds + 60.0;
         simulate::run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
-        session
-            .conclusion()
-            .ok_or(Refusal::TimeExhausted)
-            .and_then(|c| Answer::of_stage(c, azimuth_deg))
+        Answer::of(session.verdict().unwrap_or(Err(Refusal::TimeExhausted)), azimuth_deg)
     }
 
     fn setting(&self) -> Setting {

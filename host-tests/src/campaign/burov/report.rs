@@ -14,7 +14,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "burov",
     meaning: "Burov's optimisation, his devices and classes, and schedules under drift",
     runs: 5000,
-    takes: &[],
     steps: "alignments",
     count: |asked| 2 * drift::GYROS.len() * asked.runs + classes::COUNT * tenth(asked.runs),
     run: |asked, tick| Ok(run(asked, tick)),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use orientation::alignment::refusal::Refusal;
+use orientation::alignment::Verdict;
 use serde::Serialize;
 
 use crate::assumptions::unseen::Unseen;
@@ -31,18 +31,20 @@ impl Aligned {
         Self { answer: Err(reason.to_string()), unchecked_deg: None, unseen_deg: 0.0 }
     }
 
-    /// A session's answer, if it came to its end, the azimuth when nothing is checked, °, and the slow motions of the
+    /// A session's verdict, if it came to its end, the azimuth when nothing is checked, °, and the slow motions of the
     /// base that it cannot see.
     pub(super) fn of(
-        answer: Option<Result<Answer, Refusal>>,
+        verdict: Option<Verdict>,
         unchecked_deg: Option<f64>,
         unseen: &[Unseen],
         truth_deg: f64,
     ) -> Self {
-        let answer = answer.map(|answer| answer.map_err(|refusal| refusal.to_string()));
+        let answer =
+            |verdict| Answer::of(verdict, truth_deg).map_err(|refusal| refusal.to_string());
+        let unended = || Err("the session did not end".to_owned());
         let shifts = unseen.iter().map(|unseen| unseen.shift().to_degrees());
         Self {
-            answer: answer.unwrap_or_else(|| Err("the session did not end".to_owned())),
+            answer: verdict.map_or_else(unended, answer),
             unchecked_deg: unchecked_deg.map(|azimuth| azimuth_error(azimuth, truth_deg)),
             unseen_deg: shifts.fold(0.0, f64::max),
         }
@@ -50,7 +52,9 @@ impl Aligned {
 }
 
 /// A drawn unit, which a fault may spoil.
-pub(super) trait Subject: Clone {
+pub(super) trait Subject: Clone + 'static {
+    /// What the names of its classes begin with.
+    const NAME: &'static str;
     /// The random stream of its faults: none of those that a world draws from.
     const FAULT: u64;
 
@@ -64,6 +68,28 @@ pub(super) trait Subject: Clone {
     /// Whether σ rests on few residuals.
     fn is_few(&self) -> bool {
         false
+    }
+
+    /// A fault of such units, between two severities of a unit.
+    fn fault(
+        name: &str,
+        fault: impl Into<String>,
+        severity: [f64; 2],
+        unit: impl Into<String>,
+    ) -> Fault {
+        let name = format!("{}{name}", Self::NAME);
+        Fault { name, fault: fault.into(), severity, unit: unit.into() }
+    }
+
+    /// The class in which a fault spoils drawn units so by a severity.
+    fn spoilt(
+        name: &str,
+        fault: &str,
+        severity: [f64; 2],
+        unit: &str,
+        spoil: fn(&mut Self, &mut Chance, f64),
+    ) -> Class {
+        Self::fault(name, fault, severity, unit).spoils(Self::drawn, spoil)
     }
 
     /// This unit with a fault and without.
@@ -152,23 +178,13 @@ pub struct Class {
 }
 
 impl Fault {
-    /// A fault between two severities of a unit.
-    pub(super) fn new(
-        name: impl Into<String>,
-        fault: impl Into<String>,
-        severity: [f64; 2],
-        unit: impl Into<String>,
-    ) -> Self {
-        Self { name: name.into(), fault: fault.into(), severity, unit: unit.into() }
-    }
-
     /// The class whose runs are drawn so from a seed and a severity.
     pub(super) fn drawn(self, draw: impl Fn(u64, f64) -> Pair + Send + Sync + 'static) -> Class {
         Class { fault: self, wrong_allowed: 0.0, draw: Box::new(draw) }
     }
 
     /// The class in which drawn units are spoilt so by a severity.
-    pub(super) fn spoils<S: Subject + 'static>(
+    pub(super) fn spoils<S: Subject>(
         self,
         unit: fn(u64) -> S,
         spoil: fn(&mut S, &mut Chance, f64),

@@ -8,7 +8,7 @@ use hal_mock::stage::Harmonic;
 use hal_mock::temperature::TemperatureConfiguration;
 
 use super::axes::TURNED;
-use super::class::{Class, Fault};
+use super::class::Class;
 use super::gyro::Drift;
 use super::unit::Rig;
 use crate::campaign::chance::Chance;
@@ -16,20 +16,10 @@ use crate::campaign::chance::Chance;
 /// m/s² of a thousandth of gravity.
 const MILLI_G: f64 = 9.81e-3;
 
-/// A fault of a rig, between two severities of a unit.
-pub(super) fn of<R: Rig>(
-    name: &str,
-    fault: impl Into<String>,
-    severity: [f64; 2],
-    unit: impl Into<String>,
-) -> Fault {
-    Fault::new(format!("{}{name}", R::NAME), fault, severity, unit)
-}
-
 /// The base turns about the vertical.
 pub(super) fn base_turn<R: Rig>() -> Class {
     let fault = format!("the base turns about the vertical {}", R::MIDWAY);
-    of::<R>("base-turn", fault, [0.003, 20.0], "°").spoils(R::on_circle, |rig, chance, size| {
+    R::fault("base-turn", fault, [0.003, 20.0], "°").spoils(R::on_circle, |rig, chance, size| {
         let at = rig.some_time(chance);
         rig.unit_mut().base.turns.push((at, chance.sign() * size.to_radians()));
     })
@@ -38,7 +28,7 @@ pub(super) fn base_turn<R: Rig>() -> Class {
 /// The encoder slips.
 pub(super) fn encoder_slip<R: Rig>() -> Class {
     let fault = format!("the encoder slips {}", R::MIDWAY);
-    of::<R>("encoder-slip", fault, [0.003, 90.0], "°").spoils(R::on_circle, |rig, chance, size| {
+    R::fault("encoder-slip", fault, [0.003, 90.0], "°").spoils(R::on_circle, |rig, chance, size| {
         let at = rig.some_time(chance);
         rig.unit_mut().slips.push((at, chance.sign() * size.to_radians()));
     })
@@ -46,16 +36,14 @@ pub(super) fn encoder_slip<R: Rig>() -> Class {
 
 /// The base moves slowly.
 pub(super) fn base_moves<R: Rig>() -> [Class; 2] {
+    let tilts = "the base tilts slowly";
     [
-        of::<R>("base-tilting", "the base tilts slowly", [0.001, 30.0], "°/h").spoils(
-            R::drawn,
-            |rig, chance, size| {
-                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-                let rates = [0.0, cosine, sine];
-                rig.unit_mut().base.rates_rad_s = rates.map(|part| part * size * DEGREE_PER_HOUR);
-            },
-        ),
-        of::<R>("base-yawing", "the base turns slowly about the vertical", [3e-4, 3.0], "°/min")
+        R::spoilt("base-tilting", tilts, [0.001, 30.0], "°/h", |rig, chance, size| {
+            let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
+            let rates = [0.0, cosine, sine];
+            rig.unit_mut().base.rates_rad_s = rates.map(|part| part * size * DEGREE_PER_HOUR);
+        }),
+        R::fault("base-yawing", "the base turns slowly about the vertical", [3e-4, 3.0], "°/min")
             .spoils(R::on_circle, |rig, chance, size| {
                 rig.unit_mut().base.rates_rad_s[0] = chance.sign() * size.to_radians() / 60.0;
             }),
@@ -64,7 +52,7 @@ pub(super) fn base_moves<R: Rig>() -> [Class; 2] {
 
 /// The encoder counts the other way, under so many degrees of tilt.
 pub(super) fn reversed<R: Rig>(name: &str, fault: &str, drawn: fn(u64) -> R) -> Class {
-    of::<R>(name, fault, [0.01, 5.0], "° of tilt").drawn(move |seed, size| {
+    R::fault(name, fault, [0.01, 5.0], "° of tilt").drawn(move |seed, size| {
         let mut rig = drawn(seed);
         let uphill = 360.0 * Chance::new(seed, R::FAULT).between(0.0, 1.0);
         let instruments = &mut rig.unit_mut().instruments;
@@ -77,7 +65,7 @@ pub(super) fn reversed<R: Rig>(name: &str, fault: &str, drawn: fn(u64) -> R) -> 
 pub(super) fn drifts<R: Rig>(steps: &str) -> [Class; 3] {
     let unit = format!("σ of a {}", R::MEAN);
     let over = format!("{unit}, over the recording");
-    let of = |name, fault, unit: &str| of::<R>(name, fault, [0.1, 1000.0], unit);
+    let of = |name, fault, unit: &str| R::fault(name, fault, [0.1, 1000.0], unit);
     [
         of("bias-steps", steps, &unit).spoils(R::on_circle, |rig, chance, size| {
             for _ in 0..2 {
@@ -107,7 +95,7 @@ pub(super) fn drifts<R: Rig>(steps: &str) -> [Class; 3] {
 /// The bias follows the temperature of a rig that becomes [`warm`].
 pub(super) fn temperature<R: Rig>(fault: &str, drawn: fn(u64) -> R) -> Class {
     let unit = format!("σ of a {}", R::MEAN);
-    of::<R>("temperature", fault, [0.1, 1000.0], unit).spoils(drawn, |rig, chance, size| {
+    R::fault("temperature", fault, [0.1, 1000.0], unit).spoils(drawn, |rig, chance, size| {
         let temperature = &rig.unit().instruments.temperature;
         let rise = temperature.at(rig.seconds()) - temperature.at(0.0);
         let rate = chance.sign() * size * rig.mean_sigma();
@@ -129,28 +117,30 @@ pub(super) fn warm<R: Rig>(mut rig: R, noise_c: f64) -> R {
 
 /// What becomes of the columns of gyro and encoder: late by these times, s, and clipped, as is said.
 pub(super) fn columns<R: Rig>(late_s: [f64; 2], clipped: &str) -> [Class; 5] {
+    let (coarse, step) = ("the gyro's column has coarse steps", "σ of a sample");
+    let errs = "the encoder errs twice a turn";
     [
-        of::<R>("gyro-lag", "the gyro lags", [0.01, 10.0], "s")
-            .spoils(R::drawn, |rig, _, size| rig.unit_mut().gyro.lag_s = size),
-        of::<R>("gyro-late", "the gyro's column is late", late_s, "s")
-            .spoils(R::drawn, |rig, _, size| rig.unit_mut().gyro.late_s = size),
-        of::<R>("gyro-coarse", "the gyro's column has coarse steps", [0.1, 100.0], "σ of a sample")
-            .spoils(R::drawn, |rig, _, size| {
-                rig.unit_mut().gyro.step = size * rig.sample_sigma();
-            }),
+        R::spoilt("gyro-lag", "the gyro lags", [0.01, 10.0], "s", |rig, _, size| {
+            rig.unit_mut().gyro.lag_s = size;
+        }),
+        R::spoilt("gyro-late", "the gyro's column is late", late_s, "s", |rig, _, size| {
+            rig.unit_mut().gyro.late_s = size;
+        }),
+        R::spoilt("gyro-coarse", coarse, [0.1, 100.0], step, |rig, _, size| {
+            rig.unit_mut().gyro.step = size * rig.sample_sigma();
+        }),
         clips::<R>(clipped),
-        of::<R>("encoder-second-harmonic", "the encoder errs twice a turn", [0.003, 3.0], "°")
-            .spoils(R::drawn, |rig, chance, size| {
-                let (amplitude_rad, phase_rad) = (size.to_radians(), chance.between(0.0, TAU));
-                rig.unit_mut().instruments.encoder.second = Harmonic { amplitude_rad, phase_rad };
-            }),
+        R::spoilt("encoder-second-harmonic", errs, [0.003, 3.0], "°", |rig, chance, size| {
+            let (amplitude_rad, phase_rad) = (size.to_radians(), chance.between(0.0, TAU));
+            rig.unit_mut().instruments.encoder.second = Harmonic { amplitude_rad, phase_rad };
+        }),
     ]
 }
 
 /// The gyro's column is clipped, by parts of the horizontal Earth rate below the greatest rate.
 fn clips<R: Rig>(fault: &str) -> Class {
     let unit = "of the horizontal Earth rate, below the greatest rate";
-    of::<R>("gyro-clipped", fault, [0.01, 10.0], unit).spoils(R::drawn, |rig, _, size| {
+    R::spoilt("gyro-clipped", fault, [0.01, 10.0], unit, |rig, _, size| {
         let latitude = rig.unit().instruments.latitude_deg.to_radians();
         let earth = latitude.cos() * 15.041 * DEGREE_PER_HOUR;
         let greatest = rig.rates().into_iter().fold(f64::MIN, f64::max);
@@ -162,7 +152,7 @@ fn clips<R: Rig>(fault: &str) -> Class {
 /// the Earth-rate ratio shows: what the wrong axes add lies along the Earth rate.
 pub(super) fn accelerometer_axes<R: Rig>(drawn: fn(u64) -> R) -> Class {
     let fault = "two of the accelerometer's axes are flipped together or turned by 90°";
-    let fault = of::<R>("accelerometer-axes", fault, [0.01, 5.0], "° of tilt");
+    let fault = R::fault("accelerometer-axes", fault, [0.01, 5.0], "° of tilt");
     fault.drawn(move |seed, size| {
         let mut rig = drawn(seed);
         let mut chance = Chance::new(seed, R::FAULT);
@@ -182,8 +172,7 @@ pub(super) fn accelerometer_axes<R: Rig>(drawn: fn(u64) -> R) -> Class {
 /// The header's rate is not that of the times, by a part of it.
 pub(super) fn period<R: Rig>() -> Class {
     let fault = "the header's rate is not that of the times";
-    let fault = of::<R>("period", fault, [0.0001, 2.0], "of the rate");
-    fault.spoils(R::drawn, |rig, chance, size| {
+    R::spoilt("period", fault, [0.0001, 2.0], "of the rate", |rig, chance, size| {
         rig.unit_mut().header.rate_hz = Some(R::RATE_HZ * chance.factor_or_inverse(1.0 + size));
     })
 }
@@ -195,7 +184,7 @@ pub(super) fn unstated<R: Rig>() -> [Class; 3] {
     let scale = "a scale error that no key states";
     let bias = "accelerometer biases that no key states";
     [
-        of::<R>("unstated-g-sensitivity", kappa, [0.01, 4.0], kappa_unit).drawn(|seed, size| {
+        R::fault("unstated-g-sensitivity", kappa, [0.01, 4.0], kappa_unit).drawn(|seed, size| {
             let mut rig = R::drawn(seed);
             let header = &mut rig.unit_mut().header;
             header.g_sensitivity_deg_h_g = None;
@@ -207,7 +196,7 @@ pub(super) fn unstated<R: Rig>() -> [Class; 3] {
                 gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
             })
         }),
-        of::<R>("unstated-scale", scale, [0.0001, 0.05], "").drawn(|seed, size| {
+        R::fault("unstated-scale", scale, [0.0001, 0.05], "").drawn(|seed, size| {
             let mut rig = R::drawn(seed);
             rig.unit_mut().header.gyro_scale_sigma = None;
             rig.unit_mut().instruments.gyro.scale_sigma = 0.0;
@@ -215,7 +204,7 @@ pub(super) fn unstated<R: Rig>() -> [Class; 3] {
                 rig.unit_mut().instruments.gyro.scale_error = chance.sign() * size;
             })
         }),
-        of::<R>("unstated-accelerometer-bias", bias, [0.1, 100.0], "mg").drawn(|seed, size| {
+        R::fault("unstated-accelerometer-bias", bias, [0.1, 100.0], "mg").drawn(|seed, size| {
             let mut rig = R::drawn(seed);
             rig.unit_mut().header.accelerometer_bias_m_s2 = None;
             rig.unit_mut().instruments.accelerometer.bias_sigma_m_s2 = 0.0;

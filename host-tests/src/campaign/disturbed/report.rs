@@ -13,7 +13,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "disturbed",
     meaning: "Recordings with faults of any severity: what gets past, and what is refused without need",
     runs: 200,
-    takes: &["class"],
     steps: "recordings",
     count: |asked| chosen(asked).count() * asked.runs + healthy_runs(asked),
     run: |asked, tick| Ok(run(asked, tick)),

@@ -184,9 +184,7 @@ fn stepped(steps: &[(f64, f64)], time_s: f64) -> f64 {
 }
 
 /// What turns an instrument.
-pub(super) trait Rig: Subject + 'static {
-    /// What the names of its classes begin with.
-    const NAME: &'static str;
+pub(super) trait Rig: Subject {
     /// What a mean rate is of.
     const MEAN: &'static str;
     /// When something happens in the middle of a recording.

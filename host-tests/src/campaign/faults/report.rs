@@ -15,7 +15,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "faults",
     meaning: "Every fault on every platform: what the board notices, and what comes of it",
     runs: 1,
-    takes: &["platform"],
     steps: "faults",
     count: |asked| count(&platforms(asked)) * asked.runs,
     run: |asked, tick| Ok(run(asked, tick)),

@@ -2,7 +2,7 @@
 
 pub(super) mod report;
 
-use orientation::alignment::refusal::Refusal;
+use orientation::alignment::{Method, Refusal};
 use serde::Serialize;
 use simulated::scenario::Scenario;
 
@@ -64,7 +64,8 @@ pub fn precision(runs: usize, tick: Tick<'_>) -> Result<Runs, RunError> {
 /// One run's answer, how many dwells were measured again, and how many accesses were forbidden.
 fn outcome(scenario: &Scenario) -> Result<(Result<Answer, Refusal>, usize, usize), RunError> {
     let run = Trial::of(scenario).run()?;
-    let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
-    let answer = Answer::of_stage(conclusion, scenario.azimuth_deg);
-    Ok((answer, run.replay.session.repetitions().len(), run.violations.len()))
+    let session = &run.replay.session;
+    let verdict = session.verdict().ok_or(RunError::Deadlock)?;
+    let answer = Answer::of(verdict, scenario.azimuth_deg);
+    Ok((answer, session.repetitions().len(), run.violations.len()))
 }

@@ -12,7 +12,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "instrument",
     meaning: "The whole instrument on simulated chips, over drawn sites and attitudes",
     runs: 500,
-    takes: &[],
     steps: "alignments",
     count: |asked| asked.runs,
     run,

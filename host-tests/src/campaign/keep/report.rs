@@ -14,7 +14,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "keep",
     meaning: "Storage of the azimuth, pitch and roll in vehicles that drive: Burov's classes",
     runs: 500,
-    takes: &[],
     steps: "vehicles",
     count: |asked| COUNT * asked.runs,
     run: |asked, tick| Ok(run(asked, tick)),

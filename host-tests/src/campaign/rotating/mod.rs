@@ -9,11 +9,11 @@ pub mod world;
 
 use std::f64::consts::TAU;
 
-use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::session::{Procedure, Session};
 use orientation::alignment::rotating::solution::Fit;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::site::Site;
+use orientation::alignment::{Method, Refusal};
 use orientation::units::DEGREE_PER_HOUR;
 
 use self::world::{LATITUDE_DEG, World};
@@ -63,11 +63,9 @@ impl Solved {
     const NONE: Self = Self { answer: Err(Refusal::TimeExhausted), fit: None };
 
     fn of(session: &Session, world: &World) -> Self {
-        let conclusion = session.conclusion();
-        let verdict = conclusion.map_or(Err(Refusal::TimeExhausted), |found| found.verdict);
-        let fit = conclusion.and_then(|found| found.fit);
-        let answer = Answer::of(verdict, fit.map(|fit| fit.limit), world.azimuth_deg);
-        Self { answer, fit }
+        let verdict = session.verdict().unwrap_or(Err(Refusal::TimeExhausted));
+        let fit = session.conclusion().and_then(|found| found.fit);
+        Self { answer: Answer::of(verdict, world.azimuth_deg), fit }
     }
 }
 

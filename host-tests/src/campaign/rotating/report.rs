@@ -17,7 +17,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "rotating",
     meaning: "A platform that turns all the time (MET 2018), its errors and what is done about each",
     runs: 500,
-    takes: &[],
     steps: "alignments",
     count: |asked| {
         let tables = stages::WALKS.len() + molecular::COUNT;

@@ -12,8 +12,6 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
-use orientation::alignment::Input;
-use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::criterion::Criterion;
@@ -21,6 +19,7 @@ use orientation::alignment::stepwise::etalon::{self, Accepted, Limit, Series};
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
 use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::{Input, Refusal, Solution};
 use orientation::math::reference_table::{ONE, STEP, TURN, Table as Etalon};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
@@ -136,9 +135,10 @@ fn in_floating_point(turn: Turn, samples: &[Sample], dwells: &[Dwell]) -> Vec<Dw
 
 /// Solves by a criterion: the answer against the truth, and its bound where the Earth rate is free, °.
 fn solve(dwells: &[Dwell], by: Criterion, azimuth_deg: f64) -> Result<(Answer, f64), Refusal> {
-    let conclusion = Conclusion::of(&setting(), dwells, by);
-    let limit_free = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit_free));
-    Ok((Answer::of_stage(&conclusion, azimuth_deg)?, limit_free))
+    let Conclusion { verdict, fit, .. } = Conclusion::of(&setting(), dwells, by);
+    let [limit, limit_free] = fit.map_or([f64::NAN; 2], |fit| [fit.limit, fit.limit_free]);
+    let solution = verdict.map(|azimuth| Solution { azimuth, limit });
+    Ok((Answer::of(solution, azimuth_deg)?, degrees(limit_free)))
 }
 
 /// The paper's bounds: 1.5 and 1.25 of what the noise alone is expected to leave, so that the truth

@@ -13,7 +13,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "sokolov",
     meaning: "The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria",
     runs: 5000,
-    takes: &[],
     steps: "alignments",
     count: |asked| TURNS.len() * (3 * TABLE_RUNS + asked.runs),
     run,

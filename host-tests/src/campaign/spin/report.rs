@@ -15,7 +15,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "spin",
     meaning: "The roll of a spinning body: the figures of Nekrasova 2017, then noise, and a lift that fades",
     runs: 500,
-    takes: &[],
     steps: "flights",
     count: |asked| cases::COUNT * asked.runs,
     run: |asked, tick| Ok(run(asked, tick)),

@@ -15,7 +15,6 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
     name: "szymanowski",
     meaning: "Azimuth from stops: Szymanowski's Table 1 over many drives, and vehicles that stand and sway",
     runs: 500,
-    takes: &[],
     steps: "vehicles",
     count: |asked| (drives::COUNT + parked::COUNT) * asked.runs,
     run: |asked, tick| Ok(run(asked, tick)),

@@ -2,13 +2,12 @@
 
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Vehicle, VehicleConfiguration, VehicleSample};
-use orientation::alignment::refusal::Refusal;
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::conclusion::Conclusion;
 use orientation::alignment::stops::session::Procedure;
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::alignment::stops::{Session, Setting};
-use orientation::alignment::{Input, Method};
+use orientation::alignment::{Input, Method, Refusal, Solution};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::site;
@@ -43,8 +42,9 @@ impl Day {
     /// # Errors
     /// Why there is none.
     pub fn answer(&self) -> Result<Answer, Refusal> {
-        let limit = self.conclusion.found.as_ref().map(|found| found.limit);
-        Answer::of(self.conclusion.verdict, limit, degrees(self.end))
+        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit);
+        let solution = self.conclusion.verdict.map(|azimuth| Solution { azimuth, limit });
+        Answer::of(solution, degrees(self.end))
     }
 }
 

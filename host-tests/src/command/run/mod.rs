@@ -16,10 +16,8 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
 use host::instrument::RunError;
-use host::outcome::Finished;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
-use host::recording::{Body, Truth};
 use orientation::alignment::{self, rotating, stepwise, stops};
 use simulated::fault::{Fault, Platform};
 
@@ -76,16 +74,10 @@ trait Simulated {
 
 /// A finished run, ready to be shown.
 struct Ran {
-    /// What texts and pages call it.
-    name: &'static str,
     /// The analysis of the run.
-    finished: Box<dyn Finished>,
-    /// The truth, for errors alone.
-    truth: Truth,
+    shown: Shown<'static>,
     /// How the board did, and what it kept.
     details: RunDetails,
-    /// The rows that figures show, where there are any.
-    body: Option<Body>,
     /// Whether what was written beside is whole.
     written: Result<(), String>,
 }
@@ -140,10 +132,9 @@ pub fn run(options: &RunOptions, stated: &Stated, as_json: bool) -> Result<Answe
         None => None,
     };
     common.open()?;
-    let Ran { name, finished, truth, details, body, written } = options.run(fault)?;
-    let outcome = finished.outcome(&truth).of_run(*seed, details);
-    let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };
-    Ok(shown.answer(report.as_deref(), as_json)?.with_written(written))
+    let Ran { shown, details, written } = options.run(fault)?;
+    let outcome = shown.finished.outcome(&shown.truth).of_run(*seed, details);
+    Ok(shown.answer(&outcome, report.as_deref(), as_json)?.with_written(written))
 }
 
 /// Shows the log and the progress while a board works.

@@ -11,7 +11,7 @@ use simulated::fault::Fault;
 use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
 use super::options::{Common, number, seconds};
-use super::{Ran, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal};
 
 /// What is asked of a flight.
 #[derive(Args, Clone, Debug)]
@@ -43,13 +43,10 @@ impl Simulated for SpinOptions {
         let assumed = vec![GIVEN.to_owned()];
         let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());
         let replay = follow(&samples, scenario.setting(), REQUIRED_SIGMA, assumed);
-        Ok(Ran {
-            name: "the simulated flight",
-            finished: Box::new(Replay { ended, ..replay }),
-            truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
-            details: RunDetails::of(&run, SAMPLE_RATE, wall, OfPlatform::default()),
-            body: None,
-            written,
-        })
+        let finished = Box::new(Replay { ended, ..replay });
+        let truth = Truth { roll_rad: rolls_rad, ..Truth::default() };
+        let details = RunDetails::of(&run, SAMPLE_RATE, wall, OfPlatform::default());
+        let shown = Shown { name: "the simulated flight", finished, truth, body: None };
+        Ok(Ran { shown, details, written })
     }
 }

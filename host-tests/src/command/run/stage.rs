@@ -19,7 +19,7 @@ use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};
-use super::{Ran, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
 use crate::command::{HALVES, named, sigma, whole};
@@ -229,5 +229,5 @@ fn ran(name: &'static str, run: Run, details: RunDetails, scenario: &Scenario) -
     let finished: Box<dyn Finished> =
         if is_aligned { Box::new(run.replay) } else { Box::new(KeptAzimuth) };
     let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
-    Ran { name, finished, truth, details, body: None, written: Ok(()) }
+    Ran { shown: Shown { name, finished, truth, body: None }, details, written: Ok(()) }
 }

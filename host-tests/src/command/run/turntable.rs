@@ -20,7 +20,7 @@ use simulated::turntable::TurntableScenario;
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
-use super::{Ran, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::files::{self, Written};
 use crate::command::stated::Stated;
 use crate::command::whole;
@@ -189,13 +189,9 @@ impl Simulated for TurntableOptions {
         let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
         let finished: Box<dyn Finished> =
             if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
-        Ok(Ran {
-            name: "the simulated run",
-            finished,
-            truth: Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() },
-            details,
-            body: Some(Body::Rotating(turning_rows(&recorder.taken))),
-            written,
-        })
+        let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
+        let body = Some(Body::Rotating(turning_rows(&recorder.taken)));
+        let shown = Shown { name: "the simulated run", finished, truth, body };
+        Ok(Ran { shown, details, written })
     }
 }

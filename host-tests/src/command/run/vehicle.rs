@@ -2,7 +2,7 @@
 
 use clap::Args;
 use host::instrument::Trial;
-use host::methods::stops::{Method, Replay};
+use host::methods::stops::{Replay, SIAP};
 use host::outcome::Finished;
 use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::{OfPlatform, RunDetails};
@@ -16,7 +16,7 @@ use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Place, seconds};
-use super::{Ran, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -75,7 +75,7 @@ impl Simulated for VehicleOptions {
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;
-        let mut seen = Replay::begun(Method::Siap, beside, 0.0, vec![GIVEN.to_owned()]);
+        let mut seen = Replay::begun(SIAP, beside, 0.0, vec![GIVEN.to_owned()]);
         let mut wanted = self.common.wanted();
         let (run, wall) = Terminal::watching("stops", |watch| {
             Trial::of(&scenario).fault(fault).record((&mut seen, &mut wanted)).watch(watch).run()
@@ -94,7 +94,7 @@ impl Simulated for VehicleOptions {
         let is_aligned = replay.session.conclusion().is_some();
         let finished: Box<dyn Finished> =
             if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
-        let (name, body) = ("the simulated drive", None);
-        Ok(Ran { name, finished, truth, details, body, written })
+        let shown = Shown { name: "the simulated drive", finished, truth, body: None };
+        Ok(Ran { shown, details, written })
     }
 }

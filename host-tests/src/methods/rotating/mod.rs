@@ -36,12 +36,6 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Whether the sensor's white noise was stated rather than estimated.
-    #[must_use]
-    pub fn noise_is_known(&self) -> bool {
-        self.session.setting().site.noise.is_white_known()
-    }
-
     /// The parts of the recording that the session made of it: what came before the first even turn, then
     /// each stretch of even turns, in the order of time.
     #[must_use]

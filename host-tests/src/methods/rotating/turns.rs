@@ -9,7 +9,7 @@ use orientation::math::regression::{Column, Regression};
 use rustfft::num_complex::Complex;
 
 use crate::recording::RotatingRow;
-use crate::spectrum::{Line, Window, amplitudes};
+use crate::spectrum::{Line, amplitudes, hann};
 
 /// A signal of the rows, in SI units.
 pub type Signal<'a> = &'a dyn Fn(&RotatingRow) -> f64;
@@ -87,7 +87,7 @@ fn in_a_second(rows: &[RotatingRow], of: impl Fn(&RotatingRow, &RotatingRow) -> 
 pub fn spectrum(rows: &[RotatingRow], signal: Signal<'_>) -> Vec<Line> {
     let whole = first_turns(rows, whole_turns(rows));
     let values: Vec<f64> = whole.iter().map(signal).collect();
-    amplitudes(&values, rate_hz(rows), Window::Hann)
+    amplitudes(&values, rate_hz(rows), hann)
 }
 
 /// The rows without what the sensor shows of the platform's rate and of its derivative: `sine` of the one,

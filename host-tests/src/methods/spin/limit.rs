@@ -74,28 +74,50 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
         .iter()
         .map(|sample| sample.force.map(|force| force.map(SpinForce::m_per_s2)))
         .collect::<Option<_>>()?;
-    let first = *forces.first().filter(|_| forces.len() >= FEWEST)?;
-    let mut fits = [Regression::<COLUMNS>::default(), Regression::default()];
-    let mut angle = 0.0;
-    for (index, (sample, force)) in samples.iter().zip(&forces).enumerate() {
-        angle += sample.turned[0].rad();
-        let u = index as f64 / forces.len() as f64 - 0.5;
-        let (sine, cosine) = angle.sin_cos();
-        let columns = [1.0, u, cosine, sine, u * cosine, u * sine];
-        for axis in [0, 1] {
-            fits[axis].push(&columns, force[axis] - first[axis]);
-        }
+    if forces.len() < FEWEST {
+        return None;
     }
-    let [y, z] = fits.map(|fit| fit.solve(&[Column::Free; COLUMNS]));
-    let (y, z) = (y?, z?);
-    let variance = (y.chi_square + z.chi_square) / (y.degrees + z.degrees) as f64;
-    // Both axes show the same rotating vector, a quarter of a turn apart.
-    let [up, across] = [
-        0.5 * (y.coefficients[2] - z.coefficients[3]),
-        0.5 * (y.coefficients[3] + z.coefficients[2]),
-    ];
+    let mut angle = 0.0;
+    let placed = samples.iter().zip(&forces).enumerate().map(|(index, (sample, force))| {
+        angle += sample.turned[0].rad();
+        (index as f64 / forces.len() as f64 - 0.5, angle, *force)
+    });
+    let Rotating { up, across, variance } = Rotating::of(placed)?;
     let noise = 2.0 * variance / forces.len() as f64;
     Some([(up * up + across * across - noise).max(0.0).sqrt(), variance])
+}
+
+/// The force that goes round with the body's turn, as both accelerometers show it over a stretch.
+pub(crate) struct Rotating {
+    /// Its parts, m/s², along y and back along z where the angle of the turn is zero.
+    pub(crate) up: f64,
+    pub(crate) across: f64,
+    /// Variance of a sample's noise.
+    pub(crate) variance: f64,
+}
+
+impl Rotating {
+    /// Fits samples: the place of each in the stretch, from −½ to ½, the angle, rad, and both forces.
+    pub(crate) fn of(samples: impl Iterator<Item = (f64, f64, [f64; 2])>) -> Option<Self> {
+        let mut fits = [Regression::<COLUMNS>::default(), Regression::default()];
+        let mut first = None;
+        for (u, angle, force) in samples {
+            let first = first.get_or_insert(force);
+            let (sine, cosine) = angle.sin_cos();
+            let columns = [1.0, u, cosine, sine, u * cosine, u * sine];
+            for axis in [0, 1] {
+                fits[axis].push(&columns, force[axis] - first[axis]);
+            }
+        }
+        let [y, z] = fits.map(|fit| fit.solve(&[Column::Free; COLUMNS]));
+        let (y, z) = (y?, z?);
+        // Both axes show the same rotating vector, a quarter of a turn apart.
+        Some(Self {
+            up: 0.5 * (y.coefficients[2] - z.coefficients[3]),
+            across: 0.5 * (y.coefficients[3] + z.coefficients[2]),
+            variance: (y.chi_square + z.chi_square) / (y.degrees + z.degrees) as f64,
+        })
+    }
 }
 
 /// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, show it.

@@ -4,8 +4,6 @@
 //! at each position what belongs to another; a stage's column that does so makes the first dwell, or the last, longer
 //! than the others, and the rate steps within it. By less than a dwell, the dwells themselves show it.
 
-use std::fmt;
-
 use orientation::alignment::stepwise::quality::Disturbance;
 use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
@@ -24,11 +22,13 @@ const WHOLE_DWELL: f64 = 0.9;
 const LONGER: f64 = 1.25;
 
 /// An end of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum End {
     /// The end where the recording begins.
+    #[error("first")]
     First,
     /// The end where the recording stops.
+    #[error("last")]
     Last,
 }
 
@@ -55,12 +55,6 @@ impl End {
     /// Which way a column is off that repeats itself there.
     fn way(self) -> &'static str {
         if self == Self::First { "late" } else { "early" }
-    }
-}
-
-impl fmt::Display for End {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(if *self == Self::First { "first" } else { "last" })
     }
 }
 

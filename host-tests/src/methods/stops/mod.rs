@@ -30,47 +30,27 @@ use crate::assumptions;
 use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
+use crate::methods::is_answered;
 use crate::recording::period::{Steps, period_s};
 use crate::recording::{Body, GIVEN, Given, Header, ImuRow, Kind};
 
-/// How a vehicle's azimuth is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// From two stops and more: static initial azimuth update (Szymanowski 2003).
-    Siap,
-    /// At rest all the time, sway allowed.
-    Static,
-}
+/// Name on the command line of an alignment from two stops and more: static initial azimuth update (Szymanowski 2003).
+pub const SIAP: &str = "siap";
+/// Name on the command line of one at rest all the time, sway allowed.
+pub const STATIC: &str = "static";
 
-impl Method {
-    /// The method of a recording for which none was asked; none of a kind without three gyros and three
-    /// accelerometers.
-    #[must_use]
-    pub fn of(header: &Header, body: &Body) -> Option<Self> {
-        let rows = samples::rows(body)?;
-        Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
-    }
-
-    /// The method of a name on the command line.
-    fn named(name: &str) -> Option<Self> {
-        [Self::Siap, Self::Static].into_iter().find(|method| method.name() == name)
-    }
-
-    /// Name of the method on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Siap => "siap",
-            Self::Static => "static",
-        }
-    }
+/// The method of a recording for which none was asked; none of a kind without three gyros and three accelerometers.
+#[must_use]
+pub fn usual_method(header: &Header, body: &Body) -> Option<&'static str> {
+    let rows = samples::rows(body)?;
+    Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
 }
 
 /// A finished replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    /// Method of the replay.
-    pub method: Method,
+    /// Name of the method.
+    pub method: &'static str,
     /// The session, with its conclusion.
     pub session: Session,
     /// What the recording's clock showed at the session's zero, s.
@@ -84,7 +64,12 @@ pub struct Replay {
 impl Replay {
     /// A replay whose session has got no sample yet.
     #[must_use]
-    pub fn begun(method: Method, session: Session, zero_s: f64, assumed: Vec<String>) -> Self {
+    pub fn begun(
+        method: &'static str,
+        session: Session,
+        zero_s: f64,
+        assumed: Vec<String>,
+    ) -> Self {
         Self { method, session, zero_s, criteria: Vec::new(), assumed }
     }
 
@@ -108,12 +93,6 @@ impl Replay {
         self.session.feed(end);
         self
     }
-
-    /// Whether the gyros' white noise was stated rather than estimated.
-    #[must_use]
-    pub fn noise_is_known(&self) -> bool {
-        self.session.setting().site.noise.is_white_known()
-    }
 }
 
 impl Recorder<InertialSample> for &mut Replay {
@@ -130,7 +109,7 @@ impl Recorder<InertialSample> for &mut Replay {
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let replay = run(header, body, asked)?;
     // What a board was given it went by; what a user states has to agree with the forces.
-    let is_run = header.session.is_some() && replay.method == Method::Siap;
+    let is_run = header.session.is_some() && replay.method == SIAP;
     if is_run && asked.displacements_m.is_none() {
         return Ok(replay);
     }
@@ -142,7 +121,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
 fn run(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     let given = Given::of(header).map_err(ReplayError::Session)?;
-    match given.filter(|_| asked.method != Some(Method::Static.name())) {
+    match given.filter(|_| asked.method != Some(STATIC)) {
         Some(given) => again(given, header, &rows, asked),
         None => follow(header, body, &rows, asked),
     }
@@ -160,7 +139,7 @@ fn again(
     procedure.displacements = displacements(header, asked)?;
     let period_s = procedure.sample_seconds;
     let session = Session::new(setting, procedure)?;
-    let replay = Replay::begun(Method::Siap, session, 0.0, vec![GIVEN.to_owned()]);
+    let replay = Replay::begun(SIAP, session, 0.0, vec![GIVEN.to_owned()]);
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     Ok(replay.fed(samples::given(rows, period_s), end))
 }
@@ -196,18 +175,16 @@ fn check_kilometres(
     replay: &Replay,
 ) -> Result<(), ReplayError> {
     let stated = asked.displacements_m(header);
-    let is_answered =
-        |replay: &Replay| replay.session.conclusion().is_some_and(|it| it.verdict.is_ok());
     let greatest =
         stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
-    let (Some(list), false) = (stated, is_answered(replay)) else { return Ok(()) };
+    let (Some(list), false) = (stated, is_answered(&replay.session)) else { return Ok(()) };
     if greatest <= 0.0 || greatest >= KILOMETRES {
         return Ok(());
     }
     let displacements_m =
         Some(list.iter().map(|place| place.map(|part| KILOMETRE * part)).collect());
     let farther = run(header, body, &Asked { displacements_m, ..asked.clone() })?;
-    if is_answered(&farther) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
+    if is_answered(&farther.session) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
 }
 
 /// Drives the session with the rows.
@@ -223,8 +200,7 @@ fn follow(
     check_stuck(rows, period_s)?;
     check_unit(header, rows, period_s)?;
     let zero_s = samples::begin(rows, period_s);
-    let stated = asked.method.and_then(Method::named);
-    let method = stated.unwrap_or_else(|| usual(header, rows, period_s));
+    let method = asked.method.unwrap_or_else(|| usual(header, rows, period_s));
     let rests = rests(header, method, zero_s)?;
     let displacements = displacements(header, asked)?;
     let mut substituted = Vec::new();
@@ -252,7 +228,7 @@ const NO_WALK: f64 = 1e-3 * LEAST_WALK;
 pub(crate) fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
     let dead = samples::dead_accelerometer(rows, |row| row.sample.force_m_s2);
     let dead = dead.map(|axis| (["ax_m_s2", "ay_m_s2"][axis], &rows[0], rows.len()));
-    let white = noise::estimate(rows, None, period_s);
+    let white = noise::at_rest(rows, None, period_s).unwrap_or_default();
     let has_noise = white.angle_random_walk > NO_WALK && white.force > 0.0;
     let stuck = || has_noise.then(|| samples::stuck(rows)).flatten();
     let Some((column, row, count)) = dead.or_else(stuck) else { return Ok(()) };
@@ -274,9 +250,9 @@ const MEDIAN_S: f64 = 30.0;
 
 /// The method of a recording for which none was asked: where no stop is stated and it never turned about
 /// its vertical, it stood.
-fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
+fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> &'static str {
     if header.stops_s.is_some() || header.session.is_some() {
-        return Method::Siap;
+        return SIAP;
     }
     let turned = rows.iter().scan(0.0, |turned, row| {
         *turned += row.sample.rates_rad_s[2] * period_s;
@@ -289,15 +265,15 @@ fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heading| {
             (least.min(heading), most.max(heading))
         });
-    if most - least > DROVE { Method::Siap } else { Method::Static }
+    if most - least > DROVE { SIAP } else { STATIC }
 }
 
 /// The stops as the session counts them.
-fn rests(header: &Header, method: Method, zero_s: f64) -> Result<Rests, ReplayError> {
-    match (method, &header.stops_s) {
-        (Method::Static, _) => Ok(Rests::Whole),
-        (Method::Siap, None) => Ok(Rests::Found),
-        (Method::Siap, Some(stated)) => {
+fn rests(header: &Header, method: &str, zero_s: f64) -> Result<Rests, ReplayError> {
+    match &header.stops_s {
+        _ if method == STATIC => Ok(Rests::Whole),
+        None => Ok(Rests::Found),
+        Some(stated) => {
             let counted = stated.iter().map(|stop| stop.map(|time| time - zero_s));
             let all = Few::<_, STOPS>::from_slice(&counted.collect::<Vec<_>>());
             all.map(Rests::Stated).map_err(|_| ReplayError::TooManyStops(stated.len(), STOPS))
@@ -362,12 +338,12 @@ fn setting(
     mut site: Site,
     rows: &[ImuRow],
     period_s: f64,
-    method: Method,
+    method: &str,
     assumed: &mut Vec<String>,
 ) -> Result<Setting, ReplayError> {
-    let stood = header.stops_s.as_deref().filter(|_| method == Method::Siap);
+    let stood = header.stops_s.as_deref().filter(|_| method == SIAP);
     let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
-    let stood = if method == Method::Static { Some(&whole[..]) } else { stood };
+    let stood = if method == STATIC { Some(&whole[..]) } else { stood };
     let white = noise::at_rest(rows, stood, period_s);
     site.noise.model_mut().angle_random_walk = walk(&site, white.as_ref(), assumed)?;
     let force_noise = white.unwrap_or_default().force;

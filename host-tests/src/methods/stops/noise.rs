@@ -38,12 +38,6 @@ const QUIET_S: f64 = 10.0;
 /// How much more power than in the quietest stretch there may be in a quiet one.
 const QUIET_POWER: f64 = 3.0;
 
-/// The noise that a recording shows, as [`at_rest`] finds it; zero where there is nothing to find it from.
-#[must_use]
-pub fn estimate(rows: &[ImuRow], stops_s: Option<&[[f64; 2]]>, period_s: f64) -> White {
-    at_rest(rows, stops_s, period_s).unwrap_or_default()
-}
-
 /// Estimates the noise where the vehicle stood, or where it was quietest if that is not known. Samples that a
 /// recorder held count once. None where there are too few samples at rest; zero where they have no noise.
 #[must_use]

@@ -4,9 +4,9 @@ use orientation::noise::allan::{terms, variance};
 use orientation::noise::fit::Estimate;
 
 use super::super::degrees_per_hour;
-use super::{Coefficient, coefficients, rows};
+use super::{Coefficient, coefficients, short};
 use crate::allan::analysis::{Analysis, Confident};
-use crate::report::{Axis, Figure, Part, Point, Series, Style, Table};
+use crate::report::{Axis, Columns, Figure, Part, Point, Series, Style};
 
 /// Beyond so many times the least and the greatest deviation no asymptote is drawn.
 const HEADROOM: f64 = 2.0;
@@ -15,7 +15,7 @@ const PLACES: u32 = 100;
 
 /// The curve, then all numbers.
 pub(super) fn parts(analysis: &Analysis) -> [Part; 3] {
-    [figure(analysis).into(), coefficient_table(analysis).into(), point_table(analysis).into()]
+    [figure(analysis).into(), coefficient_table(analysis), point_table(analysis)]
 }
 
 fn figure(analysis: &Analysis) -> Figure {
@@ -60,13 +60,25 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
     })
 }
 
-fn coefficient_table(analysis: &Analysis) -> Table {
-    let row = |coefficient: Coefficient| [coefficient.name.to_owned(), coefficient.text()];
-    let rows = coefficients(&analysis.fit).map(row);
-    Table::new("Coefficients (± 1σ)", &["coefficient", "value"], rows)
+fn coefficient_table(analysis: &Analysis) -> Part {
+    Columns::of("Coefficients (± 1σ)", &coefficients(&analysis.fit))
+        .column("coefficient", |coefficient| coefficient.name)
+        .column("value", Coefficient::text)
+        .into()
 }
 
-fn point_table(analysis: &Analysis) -> Table {
-    let head = ["τ, s", "σ, °/h", "lower limit, °/h", "upper limit, °/h", "degrees of freedom"];
-    Table::new("Overlapping Allan deviation with its limits of 68.3 %", &head, rows(analysis))
+fn point_table(analysis: &Analysis) -> Part {
+    let in_words = |rate: f64| {
+        let rate = degrees_per_hour(rate);
+        let decimals = (4.0 - rate.log10().floor()).clamp(0.0, 9.0) as usize;
+        format!("{rate:.decimals$}")
+    };
+    let title = "Overlapping Allan deviation with its limits of 68.3 %";
+    Columns::of(title, &analysis.points)
+        .column("τ, s", |point| short(point.seconds))
+        .column("σ, °/h", |point| in_words(point.deviation))
+        .column("lower limit, °/h", |point| in_words(point.limits[0]))
+        .column("upper limit, °/h", |point| in_words(point.limits[1]))
+        .fixed("degrees of freedom", 1, |point| point.degrees)
+        .into()
 }

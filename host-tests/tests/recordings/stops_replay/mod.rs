@@ -7,7 +7,7 @@ mod spoilt;
 
 use host::methods::asked::Asked;
 use host::methods::stops::averaging::Averages;
-use host::methods::stops::{Method, Replay, replay};
+use host::methods::stops::{Replay, SIAP, STATIC, replay};
 use host::output::{azimuth_error, degrees, degrees_per_hour};
 use host::recording::{Body, Header, ImuRow, Truth};
 use orientation::alignment::Azimuth;
@@ -149,12 +149,12 @@ fn a_swaying_vehicle_aligns_where_averaging_does_not() {
 
 #[test]
 fn a_recording_without_stops_shows_by_itself_what_it_is() {
-    assert_eq!(recorded(PARKED).replayed().method, Method::Static);
+    assert_eq!(recorded(PARKED).replayed().method, STATIC);
     for name in [IDEAL, FOG, THREE] {
         let mut recorded = recorded(name);
-        assert_eq!(recorded.replayed().method, Method::Siap);
+        assert_eq!(recorded.replayed().method, SIAP);
         recorded.header.stops_s = None;
-        assert_eq!(recorded.replayed().method, Method::Siap);
+        assert_eq!(recorded.replayed().method, SIAP);
     }
 }
 
@@ -260,5 +260,5 @@ fn what_is_not_known_is_said() {
         assert!(says(words), "{words}: {:?}", replay.assumed);
     }
     assert!(!says("encoder"), "{:?}", replay.assumed);
-    assert!(!replay.noise_is_known());
+    assert!(!replay.session.setting().site.noise.is_white_known());
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Flight, Recorded};
 use crate::campaign::chance::Chance;
-use crate::campaign::disturbed::class::{Class, Fault, Subject};
+use crate::campaign::disturbed::class::{Class, Subject};
 use crate::recording::SpinRow;
 
 /// The classes of a spinning body.
@@ -17,7 +17,7 @@ pub(super) fn classes() -> Vec<Class> {
 
 fn accelerometer_stuck() -> Class {
     let fault = "an accelerometer shows one value, from the start, in between or to the end";
-    let fault = Fault::new("spin-accelerometer-stuck", fault, [1e-3, 2.0], "of the flight");
+    let fault = Recorded::fault("accelerometer-stuck", fault, [1e-3, 2.0], "of the flight");
     fault.drawn(|seed, size| {
         let pair = Recorded::drawn(seed).pair(|recorded, chance| {
             let axis = chance.one_of(&[0, 1]);
@@ -30,11 +30,14 @@ fn accelerometer_stuck() -> Class {
 
 fn starts_with_zeros() -> Class {
     let fault = "the first samples are zero, of the forces or of everything";
-    Fault::new("spin-first-samples-zero", fault, [1.0, 100.0], "samples").spoils(
-        Recorded::drawn,
-        |recorded, chance, size| {
+    Recorded::spoilt(
+        "first-samples-zero",
+        fault,
+        [1.0, 100.0],
+        "samples",
+        |flight, chance, size| {
             let also_gyro = chance.happens(0.5);
-            for row in &mut recorded.rows[..size as usize] {
+            for row in &mut flight.rows[..size as usize] {
                 row.force_m_s2 = [0.0; 2];
                 row.rate_rad_s *= if also_gyro { 0.0 } else { 1.0 };
             }
@@ -44,12 +47,9 @@ fn starts_with_zeros() -> Class {
 
 fn gyro_stuck() -> Class {
     let fault = "the gyro shows one value, from the start, in between or to the end";
-    Fault::new("spin-gyro-stuck", fault, [1e-3, 2.0], "of the flight").spoils(
-        Recorded::drawn,
-        |recorded, chance, size| {
-            recorded.stick(size, chance, |row| &mut row.rate_rad_s);
-        },
-    )
+    Recorded::spoilt("gyro-stuck", fault, [1e-3, 2.0], "of the flight", |recorded, chance, size| {
+        recorded.stick(size, chance, |row| &mut row.rate_rad_s);
+    })
 }
 
 /// Sensors that show too much or too little, of their own axis or of another's.
@@ -60,33 +60,23 @@ fn wrong_gains() -> [Class; 4] {
     let leaning = "an accelerometer's axis leans towards the other's";
     let large = "an accelerometer shows too much, or too little";
     [
-        Fault::new("spin-gyro-scale", scale, [1e-4, 0.1], "").spoils(
-            Recorded::drawn,
-            |recorded, chance, size| {
-                let scale = 1.0 + chance.sign() * size;
-                recorded.rows.iter_mut().for_each(|row| row.rate_rad_s *= scale);
-            },
-        ),
-        Fault::new("spin-second-harmonic", twice, [1e-5, 0.3], twice_unit)
-            .spoils(Recorded::drawn, goes_round_twice),
-        Fault::new("spin-axis-leaning", leaning, [1e-3, 6.0], "°").spoils(
-            Recorded::drawn,
-            |recorded, chance, size| {
-                let axis = chance.one_of(&[0, 1]);
-                let (sine, cosine) = (chance.sign() * size.to_radians()).sin_cos();
-                for SpinRow { force_m_s2: force, .. } in &mut recorded.rows {
-                    force[axis] = cosine * force[axis] + sine * force[1 - axis];
-                }
-            },
-        ),
-        Fault::new("spin-axis-large", large, [1e-4, 0.1], "").spoils(
-            Recorded::drawn,
-            |recorded, chance, size| {
-                let axis = chance.one_of(&[0, 1]);
-                let scale = 1.0 + chance.sign() * size;
-                recorded.rows.iter_mut().for_each(|row| row.force_m_s2[axis] *= scale);
-            },
-        ),
+        Recorded::spoilt("gyro-scale", scale, [1e-4, 0.1], "", |recorded, chance, size| {
+            let scale = 1.0 + chance.sign() * size;
+            recorded.rows.iter_mut().for_each(|row| row.rate_rad_s *= scale);
+        }),
+        Recorded::spoilt("second-harmonic", twice, [1e-5, 0.3], twice_unit, goes_round_twice),
+        Recorded::spoilt("axis-leaning", leaning, [1e-3, 6.0], "°", |recorded, chance, size| {
+            let axis = chance.one_of(&[0, 1]);
+            let (sine, cosine) = (chance.sign() * size.to_radians()).sin_cos();
+            for SpinRow { force_m_s2: force, .. } in &mut recorded.rows {
+                force[axis] = cosine * force[axis] + sine * force[1 - axis];
+            }
+        }),
+        Recorded::spoilt("axis-large", large, [1e-4, 0.1], "", |recorded, chance, size| {
+            let axis = chance.one_of(&[0, 1]);
+            let scale = 1.0 + chance.sign() * size;
+            recorded.rows.iter_mut().for_each(|row| row.force_m_s2[axis] *= scale);
+        }),
     ]
 }
 
@@ -105,7 +95,7 @@ fn goes_round_twice(recorded: &mut Recorded, chance: &mut Chance, size: f64) {
 fn mirrored() -> Class {
     let fault = "the accelerometers are swapped, or one of them is turned round";
     let unit = "times the noise is the lift";
-    Fault::new("spin-forces-mirrored", fault, [1.0, 300.0], unit).drawn(|seed, size| {
+    Recorded::fault("forces-mirrored", fault, [1.0, 300.0], unit).drawn(|seed, size| {
         let mut flight = Flight::drawn(seed);
         flight.noise_m_s2 = flight.lift_m_s2[0].1 / size;
         let pair = flight.recorded().pair(|recorded, chance| {

@@ -154,6 +154,7 @@ impl Recorded {
 }
 
 impl Subject for Recorded {
+    const NAME: &'static str = "spin-";
     const FAULT: u64 = 2_032;
 
     /// Draws a healthy flight.

@@ -3,17 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use orientation::math::regression::{Column, Regression};
 use orientation::units::DEGREE_PER_SQRT_HOUR;
 
 use crate::methods::spin::errors::wrapped;
-use crate::methods::spin::limit::gyro_walk;
+use crate::methods::spin::limit::{Rotating, gyro_walk};
 use crate::recording::{Header, SpinRow};
 
 /// Turns that are looked at together, as the core does.
 const TOGETHER: f64 = 4.0;
-/// Columns of the fit of one force over them: 1, u, cos, sin, u cos, u sin.
-const COLUMNS: usize = 6;
 /// 1σ of a scale of which nothing is known.
 const ANY_SCALE: f64 = 0.1;
 
@@ -65,25 +62,14 @@ fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
 }
 
 fn look(rows: &[SpinRow], angles: &[f64]) -> Option<Look> {
-    let mut fits = [Regression::<COLUMNS>::default(), Regression::default()];
-    let first = rows.first()?.force_m_s2;
-    for (index, (row, angle)) in rows.iter().zip(angles).enumerate() {
-        let u = (index as f64 + 0.5) / rows.len() as f64 - 0.5;
-        let (sine, cosine) = angle.sin_cos();
-        let columns = [1.0, u, cosine, sine, u * cosine, u * sine];
-        for axis in [0, 1] {
-            fits[axis].push(&columns, row.force_m_s2[axis] - first[axis]);
-        }
-    }
-    let [y, z] = fits.map(|fit| fit.solve(&[Column::Free; COLUMNS]));
-    let (y, z) = (y?, z?);
-    let up = 0.5 * (y.coefficients[2] - z.coefficients[3]);
-    let across = -0.5 * (y.coefficients[3] + z.coefficients[2]);
-    let noise = (y.chi_square + z.chi_square) / (y.degrees + z.degrees) as f64;
+    let placed = rows.iter().zip(angles).enumerate().map(|(index, (row, angle))| {
+        ((index as f64 + 0.5) / rows.len() as f64 - 0.5, *angle, row.force_m_s2)
+    });
+    let Rotating { up, across, variance } = Rotating::of(placed)?;
     let middle = angles.len() / 2;
     Some(Look {
-        phase: across.atan2(up),
-        variance: noise / (rows.len() as f64 * (up * up + across * across)),
+        phase: (-across).atan2(up),
+        variance: variance / (rows.len() as f64 * (up * up + across * across)),
         angle: angles[middle],
         time_s: rows[middle].time_s,
     })

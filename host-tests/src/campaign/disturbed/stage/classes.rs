@@ -40,7 +40,7 @@ pub(super) fn classes() -> Vec<Class> {
 /// The bias follows the angle of the cables.
 fn cables_pull() -> Class {
     let fault = "the bias follows the angle of the cables";
-    faults::of::<Instrument>("cable-torque", fault, [0.1, 1000.0], "σ of a dwell, a turn").spoils(
+    Instrument::fault("cable-torque", fault, [0.1, 1000.0], "σ of a dwell, a turn").spoils(
         Instrument::on_circle,
         |rig, chance, size| {
             let rate_per_rad = chance.sign() * size * rig.mean_sigma() / TAU;

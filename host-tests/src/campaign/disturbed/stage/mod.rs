@@ -9,6 +9,7 @@ use hal_mock::disturbance::Effect;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::Instruments;
 use hal_mock::stage::{Stage, Stop};
+use orientation::alignment::Method;
 use orientation::alignment::stepwise::{Session, level};
 use orientation::math::regression::{Column as Coefficient, Regression};
 
@@ -18,7 +19,6 @@ use super::unit::{Grade, Rig, Unit};
 use super::{FEW_RESIDUALS, Platform};
 use crate::assumptions::unseen;
 use crate::campaign::chance::Chance;
-use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::stepwise::replay;
 use crate::output::degrees;
@@ -86,6 +86,7 @@ impl Instrument {
 }
 
 impl Subject for Instrument {
+    const NAME: &'static str = "";
     const FAULT: u64 = 2_002;
 
     fn drawn(seed: u64) -> Self {
@@ -118,7 +119,6 @@ impl Subject for Instrument {
 }
 
 impl Rig for Instrument {
-    const NAME: &'static str = "";
     const MEAN: &'static str = "dwell";
     const MIDWAY: &'static str = "between two dwells";
     /// The noise of a dwell does not depend on it.
@@ -163,8 +163,7 @@ impl Rig for Instrument {
 
 /// What a session found, and what plain least squares on all dwells give: nothing is left out.
 fn aligned(session: &Session, truth_deg: f64) -> Aligned {
-    let answer = session.conclusion().map(|found| Answer::of_stage(found, truth_deg));
-    Aligned::of(answer, plain_deg(session), &unseen::of_stage(session), truth_deg)
+    Aligned::of(session.verdict(), plain_deg(session), &unseen::of_stage(session), truth_deg)
 }
 
 /// The azimuth of plain least squares, °.

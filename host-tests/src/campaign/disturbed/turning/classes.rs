@@ -31,7 +31,7 @@ pub(super) fn classes() -> Vec<Class> {
 /// The encoder slipped before the platform turned.
 fn zero_is_off() -> Class {
     let fault = "the encoder has no index, no key states its zero, and it slips at the start";
-    faults::of::<Instrument>("encoder-zero", fault, [0.003, 0.6], "°").spoils(
+    Instrument::fault("encoder-zero", fault, [0.003, 0.6], "°").spoils(
         |seed| {
             let mut rig = Instrument::drawn(seed);
             rig.unit.header.encoder_zero_sigma_deg = None;

@@ -11,7 +11,7 @@ use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use hal_mock::turntable::{Segment, Turntable, TurntableConfiguration};
 use orientation::alignment::rotating::Session;
-use orientation::alignment::rotating::solution::Fit;
+use orientation::alignment::{Method, Solution};
 
 use super::Platform;
 use super::axes::shown;
@@ -19,7 +19,6 @@ use super::class::{Aligned, Subject};
 use super::unit::{Grade, Rig, Unit};
 use crate::assumptions::unseen;
 use crate::campaign::chance::Chance;
-use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::rotating::replay;
 use crate::recording::{Body, Header, RotatingRow, Sensor};
@@ -155,6 +154,7 @@ impl Instrument {
 }
 
 impl Subject for Instrument {
+    const NAME: &'static str = "turning-";
     const FAULT: u64 = 2_012;
 
     /// One of four has a molecular-electronic sensor.
@@ -179,7 +179,6 @@ impl Subject for Instrument {
 }
 
 impl Rig for Instrument {
-    const NAME: &'static str = "turning-";
     const MEAN: &'static str = "turn";
     const MIDWAY: &'static str = "mid-way";
     /// The noise of a turn does not depend on it.
@@ -218,12 +217,15 @@ impl Rig for Instrument {
 /// What a session found, and the plain mean of all turns.
 fn aligned(session: &Session, truth_deg: f64) -> Aligned {
     // Where the noise is not stated, what its estimate leaves stands for the limit.
-    let limit = |fit: Fit| if fit.limit > 0.0 { fit.limit } else { fit.budget.noise };
-    let answer = session
-        .conclusion()
-        .map(|conclusion| Answer::of(conclusion.verdict, conclusion.fit.map(limit), truth_deg));
+    let noise =
+        session.conclusion().and_then(|found| found.fit).map_or(0.0, |fit| fit.budget.noise);
+    let limited = |Solution { azimuth, limit }: Solution| Solution {
+        azimuth,
+        limit: if limit > 0.0 { limit } else { noise },
+    };
+    let verdict = session.verdict().map(|verdict| verdict.map(limited));
     let plain_deg = plain::azimuth_deg(session);
-    Aligned::of(answer, plain_deg, &unseen::of_platform(session), truth_deg)
+    Aligned::of(verdict, plain_deg, &unseen::of_platform(session), truth_deg)
 }
 
 /// A ripple of a size between two values.

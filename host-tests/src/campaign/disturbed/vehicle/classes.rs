@@ -2,7 +2,7 @@
 
 use hal_mock::vehicle::Leg;
 
-use super::{DRAWN, Instrument, MILLI_G};
+use super::{DRAWN, MILLI_G, Unit};
 use crate::campaign::chance::Chance;
 use crate::campaign::disturbed::axes::turned;
 use crate::campaign::disturbed::class::{Class, Fault, Subject};
@@ -25,22 +25,23 @@ fn understated() -> [Class; 3] {
     let short = "N that no key states, and short stops of a long recording";
     let noise = "the gyros' N is so many times what is stated, on the way and standing";
     let bias = "the gyros' biases are so many times what is stated, in a vehicle that only stands";
-    let of_bias = Fault::new("standing-bias-understated", bias, [1.0, 30.0], "").spoils(
-        Instrument::standing,
+    let name = "standing-bias-understated".to_owned();
+    let of_bias = Fault { name, ..Unit::fault("", bias, [1.0, 30.0], "") }.spoils(
+        Unit::standing,
         |unit, _, size| {
             unit.header.gyro_bias_deg_h = Some(unit.gyro().bias_sigma_deg_h / size);
         },
     );
     [
-        Fault::new("vehicle-short-stops", short, [300.0, 6000.0], "samples of a stop").drawn(
+        Unit::fault("short-stops", short, [300.0, 6000.0], "samples of a stop").drawn(
             |seed, size| {
-                let mut unit = Instrument::siap(seed).stating_noise();
+                let mut unit = Unit::siap(seed).stating_noise();
                 unit.shorten_stops(size);
                 unit.pair(|unit, _| unit.header.gyro_n_deg_sqrt_h = None)
             },
         ),
-        Fault::new("vehicle-noise-understated", noise, [1.0, 30.0], "").spoils(
-            |seed| Instrument::drawn(seed).stating_noise(),
+        Unit::fault("noise-understated", noise, [1.0, 30.0], "").spoils(
+            |seed| Unit::drawn(seed).stating_noise(),
             |unit, _, size| {
                 unit.header.gyro_n_deg_sqrt_h = Some(unit.gyro().n_deg_sqrt_h / size);
             },
@@ -54,32 +55,24 @@ fn wrong_times() -> [Class; 2] {
     let rate = "the header's rate is not that of the times";
     let clock = "the times run at another pace than the sensors, whose rate is stated";
     [
-        Fault::new("vehicle-rate", rate, [1e-4, 2.0], "of the rate").spoils(
-            Instrument::drawn,
-            |unit, chance, size| {
-                let wrong = chance.factor_or_inverse(1.0 + size);
-                unit.header.rate_hz = unit.header.rate_hz.map(|rate| rate * wrong);
-            },
-        ),
-        Fault::new("vehicle-clock", clock, [1e-4, 2.0], "of the pace").spoils(
-            Instrument::drawn,
-            |unit, chance, size| {
-                unit.clock = chance.factor_or_inverse(1.0 + size);
-            },
-        ),
+        Unit::spoilt("rate", rate, [1e-4, 2.0], "of the rate", |unit, chance, size| {
+            let wrong = chance.factor_or_inverse(1.0 + size);
+            unit.header.rate_hz = unit.header.rate_hz.map(|rate| rate * wrong);
+        }),
+        Unit::spoilt("clock", clock, [1e-4, 2.0], "of the pace", |unit, chance, size| {
+            unit.clock = chance.factor_or_inverse(1.0 + size);
+        }),
     ]
 }
 
 fn accelerometer_axes() -> Class {
     let fault = "the accelerometers are turned by 90° or 180° about the vertical";
-    Fault::new("vehicle-accelerometer-axes", fault, [0.005, 5.0], "° of slope").drawn(
-        |seed, size| {
-            let mut unit = Instrument::moving(seed);
-            unit.lean(size);
-            let pair = unit.pair(|unit, chance| unit.accelerometer_axes = turned(chance));
-            pair.never_harmless()
-        },
-    )
+    Unit::fault("accelerometer-axes", fault, [0.005, 5.0], "° of slope").drawn(|seed, size| {
+        let mut unit = Unit::moving(seed);
+        unit.lean(size);
+        let pair = unit.pair(|unit, chance| unit.accelerometer_axes = turned(chance));
+        pair.never_harmless()
+    })
 }
 
 /// What no key states.
@@ -88,31 +81,28 @@ fn unstated() -> [Class; 4] {
     let scale = "scale errors of the gyros that no key states";
     let force = "accelerometer biases that no key states";
     let bias = "biases of the gyros that no key states";
-    let kappa_unit = "of the bias's σ, per g";
+    let per_g = "of the bias's σ, per g";
     [
-        Fault::new("vehicle-unstated-g-sensitivity", kappa, [0.01, 3.0], kappa_unit).spoils(
-            Instrument::drawn,
-            |unit, chance, size| {
-                let size = size * unit.gyro().bias_sigma_deg_h;
-                for gyro in &mut unit.day.vehicle.gyros {
-                    gyro.g_sensitivity_deg_h_g = [0, 1].map(|_| size * chance.normal());
-                }
-                unit.header.g_sensitivity_deg_h_g = None;
-                unit.header.g_sensitivity_sigma_deg_h_g = None;
-            },
-        ),
-        Fault::new("vehicle-unstated-scale", scale, [1e-6, 1e-3], "").spoils(
-            Instrument::drawn,
-            |unit, chance, size| {
-                for gyro in &mut unit.day.vehicle.gyros {
-                    gyro.scale_sigma = 0.0;
-                    gyro.scale_error = size * chance.normal();
-                }
-                unit.header.gyro_scale_sigma = None;
-            },
-        ),
-        Fault::new("vehicle-unstated-accelerometer-bias", force, [0.01, 10.0], "mg").spoils(
-            Instrument::drawn,
+        Unit::spoilt("unstated-g-sensitivity", kappa, [0.01, 3.0], per_g, |unit, chance, size| {
+            let size = size * unit.gyro().bias_sigma_deg_h;
+            for gyro in &mut unit.day.vehicle.gyros {
+                gyro.g_sensitivity_deg_h_g = [0, 1].map(|_| size * chance.normal());
+            }
+            unit.header.g_sensitivity_deg_h_g = None;
+            unit.header.g_sensitivity_sigma_deg_h_g = None;
+        }),
+        Unit::spoilt("unstated-scale", scale, [1e-6, 1e-3], "", |unit, chance, size| {
+            for gyro in &mut unit.day.vehicle.gyros {
+                gyro.scale_sigma = 0.0;
+                gyro.scale_error = size * chance.normal();
+            }
+            unit.header.gyro_scale_sigma = None;
+        }),
+        Unit::spoilt(
+            "unstated-accelerometer-bias",
+            force,
+            [0.01, 10.0],
+            "mg",
             |unit, chance, size| {
                 let accelerometer = &mut unit.day.vehicle.accelerometer;
                 accelerometer.bias_sigma_m_s2 = 0.0;
@@ -120,8 +110,8 @@ fn unstated() -> [Class; 4] {
                 unit.header.accelerometer_bias_m_s2 = None;
             },
         ),
-        Fault::new("vehicle-unstated-bias", bias, [0.003, 3.0], "°/h").spoils(
-            Instrument::siap,
+        Unit::fault("unstated-bias", bias, [0.003, 3.0], "°/h").spoils(
+            Unit::siap,
             |unit, _, size| {
                 unit.day.vehicle.gyros.iter_mut().for_each(|gyro| gyro.bias_sigma_deg_h = size);
                 unit.header.gyro_bias_deg_h = None;
@@ -130,7 +120,7 @@ fn unstated() -> [Class; 4] {
     ]
 }
 
-impl Instrument {
+impl Unit {
     /// This unit with its N stated.
     fn stating_noise(mut self) -> Self {
         self.header.gyro_n_deg_sqrt_h = Some(self.gyro().n_deg_sqrt_h);

@@ -8,19 +8,19 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle};
+use orientation::alignment::Method;
 
 use super::Platform;
 use super::axes::{Axes, UPRIGHT, shown};
 use super::class::{Aligned, Subject};
 use crate::campaign::chance::Chance;
-use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
-use crate::methods::stops::{Method, Replay, replay};
+use crate::methods::stops::{Replay, SIAP, STATIC, replay};
 use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
 
 /// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
-pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("vehicle", classes::classes);
+pub(super) const PLATFORM: Platform = Platform::of::<Unit>("vehicle", classes::classes);
 
 /// The random stream of a unit: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -33,9 +33,9 @@ const FIX_M: f64 = 5.0;
 
 /// A drawn unit in its vehicle, and what is wrong with it.
 #[derive(Clone, Debug)]
-struct Instrument {
+struct Unit {
     seed: u64,
-    method: Method,
+    method: &'static str,
     day: Scenario,
     header: Header,
     /// Whether the header states where the vehicle stood, and how far the stops lie apart.
@@ -47,7 +47,7 @@ struct Instrument {
     clock: f64,
 }
 
-impl Instrument {
+impl Unit {
     /// A healthy unit that stops and drives; what is stated about it is true.
     fn siap(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
@@ -55,7 +55,7 @@ impl Instrument {
         let (stop_s, drive_s) = (chance.between(60.0, 120.0), chance.scaled(180.0, 600.0));
         let day = Scenario::stops(seed, stops, stop_s, drive_s);
         let (states_stops, states_places) = (chance.happens(0.7), chance.happens(0.5));
-        Self { states_stops, states_places, ..Self::of(seed, Method::Siap, day, &mut chance) }
+        Self { states_stops, states_places, ..Self::of(seed, SIAP, day, &mut chance) }
     }
 
     /// A healthy unit that only stands, quietly or swaying.
@@ -71,22 +71,22 @@ impl Instrument {
                 stop.sway = SwayConfiguration::default();
             }
         }
-        Self::of(seed, Method::Static, day, &mut chance)
+        Self::of(seed, STATIC, day, &mut chance)
     }
 
     /// One that moves: what is built in wrongly shows in sway and drives, not in a level vehicle that is quiet.
     fn moving(seed: u64) -> Self {
         let sways = |leg: &Leg| matches!(leg, Leg::Stop(stop) if stop.sway.is_active());
-        let moves = |unit: &Self| unit.method == Method::Siap || unit.day.legs.iter().any(sways);
+        let moves = |unit: &Self| unit.method == SIAP || unit.day.legs.iter().any(sways);
         let later = |index: u64| Self::drawn(seed.wrapping_add(2 * RESERVED * index));
         (0..RESERVED).map(later).find(moves).unwrap_or_else(|| Self::siap(seed))
     }
 
     /// A unit of drawn quality for a day.
-    fn of(seed: u64, method: Method, mut day: Scenario, chance: &mut Chance) -> Self {
+    fn of(seed: u64, method: &'static str, mut day: Scenario, chance: &mut Chance) -> Self {
         let n = chance.scaled(1e-3, 5e-2);
         // A vehicle that only stands cannot distinguish a bias from the Earth: σ would be degrees.
-        let bias = n * chance.scaled(3.0, if method == Method::Siap { 20.0 } else { 8.0 });
+        let bias = n * chance.scaled(3.0, if method == SIAP { 20.0 } else { 8.0 });
         let scale = chance.scaled(1e-5, 3e-4);
         let force_bias = chance.scaled(0.05, 1.0) * MILLI_G;
         let vehicle = &mut day.vehicle;
@@ -168,7 +168,8 @@ impl Instrument {
     }
 }
 
-impl Subject for Instrument {
+impl Subject for Unit {
+    const NAME: &'static str = "vehicle-";
     const FAULT: u64 = 2_012;
 
     /// One or the other.
@@ -182,7 +183,7 @@ impl Subject for Instrument {
 
     fn align(&self) -> Aligned {
         let (body, header, truth_deg) = self.recorded();
-        let options = Asked { method: Some(self.method.name()), ..Asked::default() };
+        let options = Asked { method: Some(self.method), ..Asked::default() };
         replay(&header, &body, &options)
             .map_or_else(Aligned::refused, |replay| aligned(&replay, truth_deg))
     }
@@ -190,9 +191,11 @@ impl Subject for Instrument {
 
 /// What a replay found, and what it found believed or not.
 fn aligned(replay: &Replay, truth_deg: f64) -> Aligned {
-    let conclusion = replay.session.conclusion();
-    let found = conclusion.and_then(|conclusion| conclusion.found.as_ref());
-    let limit = found.map(|found| found.limit);
-    let answer = conclusion.map(|conclusion| Answer::of(conclusion.verdict, limit, truth_deg));
-    Aligned::of(answer, found.map(|found| degrees(found.unchecked)), &[], truth_deg)
+    let found = replay.session.conclusion().and_then(|conclusion| conclusion.found.as_ref());
+    Aligned::of(
+        replay.session.verdict(),
+        found.map(|found| degrees(found.unchecked)),
+        &[],
+        truth_deg,
+    )
 }

@@ -106,9 +106,11 @@ impl Replay {
         Some([fit.molecular.size(), bias])
     }
 
-    /// Cramér–Rao bound, rad, of a sensor whose gain, lag and g-sensitivity are known.
-    fn plain_limit(&self, conclusion: &Conclusion) -> Option<f64> {
-        conclusion.fit.as_ref().filter(|_| self.noise_is_known()).map(|fit| fit.plain_limit)
+    /// Cramér–Rao bounds where the noise was stated, °: of the sensor, and of one whose gain, lag and g-sensitivity are known.
+    fn limits_deg(&self, conclusion: &Conclusion) -> Option<[f64; 2]> {
+        let is_known = self.session.setting().site.noise.is_white_known();
+        let fit = conclusion.fit.as_ref().filter(|_| is_known);
+        fit.map(|fit| [fit.limit, fit.plain_limit].map(degrees))
     }
 
     fn details(&self, conclusion: &Conclusion) -> Keys {
@@ -121,7 +123,7 @@ impl Replay {
         let g_sensitivity = self.g_sensitivity(conclusion);
         Keys::default()
             .with("sensor", if self.is_flat() { "gyro" } else { "met" })
-            .with("plain_limit_deg", self.plain_limit(conclusion).map(degrees))
+            .with("plain_limit_deg", self.limits_deg(conclusion).map(|[_, plain]| plain))
             .with_all(misalignments.first())
             .with("axis_misalignments", misalignments)
             .with("tilt_deg", fit.map(tilt_deg))
@@ -134,9 +136,8 @@ impl Replay {
 
     /// What turned: tilt, axis misalignment, g-sensitivity.
     fn lines(&self, conclusion: &Conclusion) -> Lines {
-        let limit = self.plain_limit(conclusion).filter(|_| !self.is_flat()).map(degrees);
-        let limit = limit.map(|limit| {
-            format!("{limit:.4}° were the sensor's gain, lag and g-sensitivity known")
+        let limit = self.limits_deg(conclusion).filter(|_| !self.is_flat()).map(|[_, plain]| {
+            format!("{plain:.4}° were the sensor's gain, lag and g-sensitivity known")
         });
         let tilt = conclusion.fit.as_ref().map(tilt_deg);
         let lines = Lines::new("Platform and sensor")
@@ -239,7 +240,7 @@ impl Finished for Replay {
         let parts = [self.lines(conclusion).into()].into_iter().chain(stages);
         let parts = parts.chain([table_of_stretches(conclusion)]).collect();
         Outcome {
-            limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| degrees(fit.limit)),
+            limit_deg: self.limits_deg(conclusion).map(|[limit, _]| limit),
             pitch_deg: attitude.map(|[pitch, _]| pitch),
             roll_deg: attitude.map(|[_, roll]| roll),
             seconds: averages(conclusion).map(|average| average.seconds).sum(),

@@ -162,17 +162,17 @@ impl Replay {
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
-        let method = self.method.name();
         let Some(conclusion) = self.session.conclusion() else {
-            return Outcome::unfinished(method);
+            return Outcome::unfinished(self.method);
         };
+        let is_noise_known = self.session.setting().site.noise.is_white_known();
         let found = conclusion.found.as_ref();
         let stops = self.session.stops();
         let (details, lines) = self.details(found, conclusion.verdict.is_ok(), truth);
         let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
         let parts = lines.chain([table(&self.stops())]).collect();
         Outcome {
-            limit_deg: found.filter(|_| self.noise_is_known()).map(|found| degrees(found.limit)),
+            limit_deg: found.filter(|_| is_noise_known).map(|found| degrees(found.limit)),
             pitch_deg: found.map(|found| degrees(found.level[0])),
             roll_deg: found.map(|found| degrees(found.level[1])),
             seconds: stops.iter().map(stop::Stop::seconds).sum(),
@@ -184,7 +184,7 @@ impl Finished for Replay {
                 ..FitDetails::of(found.map(|found| &found.budget), stops.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(method, details, parts)
+            ..Outcome::new(self.method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
