@@ -64,9 +64,6 @@ pub struct Trial {
     together: bool,
 }
 
-/// The names of the columns: stage angle, rate, forces.
-type Names = [&'static str; 3];
-
 impl Trial {
     /// All, those with one change first.
     fn all(body: &Body, force: Option<Unit>) -> Vec<Self> {
@@ -118,25 +115,24 @@ impl Trial {
 /// Swing of a platform's force, m/s², that a tilt of 6° makes.
 const HEAVY: f64 = 1.0;
 
-/// The columns of a kind, alone or with what goes with them.
-fn names(body: &Body, together: bool) -> Names {
-    match (body, together) {
-        (Body::Rotating(_), true) => {
-            ["columns stage_rad and stage_rate_rad_s", "column g_rad_s", "column a_m_s2"]
+/// The columns of a kind, alone or with what goes with them: stage angle, rate, forces.
+fn names(body: &Body, together: bool) -> [&'static str; 3] {
+    let (angle, rate) = match body {
+        Body::Rotating(_) if together => {
+            ("columns stage_rad and stage_rate_rad_s", "column g_rad_s")
         }
-        (Body::Rotating(_), false) => ["column stage_rad", "column g_rad_s", "column a_m_s2"],
-        (Body::Dwells(_), true) => {
-            ["column stage_rad", "columns rate_rad_s and sigma_rad_s", force_columns(body)]
-        }
-        (Body::Dwells(_), false) => ["column stage_rad", "column rate_rad_s", force_columns(body)],
-        _ => ["column stage_rad", "column g_rad_s", force_columns(body)],
-    }
+        Body::Dwells(_) if together => ("column stage_rad", "columns rate_rad_s and sigma_rad_s"),
+        Body::Dwells(_) => ("column stage_rad", "column rate_rad_s"),
+        _ => ("column stage_rad", "column g_rad_s"),
+    };
+    [angle, rate, force_columns(body)]
 }
 
 /// The forces' columns of a kind.
 pub fn force_columns(body: &Body) -> &'static str {
     match body {
         Body::Imu(_) | Body::Static(_) => "columns ax_m_s2 to az_m_s2",
+        Body::Rotating(_) => "column a_m_s2",
         _ => "columns fx_m_s2 to fz_m_s2",
     }
 }

@@ -25,17 +25,15 @@ const NAME: usize = 28;
 /// # Errors
 /// A line that belongs to no table, or that there is no row.
 pub fn parse(text: &str) -> Result<Vec<Row>, String> {
-    let mut heading = String::new();
-    let mut rows = Vec::new();
+    let (mut heading, mut rows) = ("", Vec::new());
     for line in text.lines().filter(|line| !line.is_empty() && !is_summary(line)) {
-        let columns = line.split_at_checked(NAME).and_then(|(left, name)| split(left, name));
-        let (count, budget, verdict, name) =
-            columns.ok_or_else(|| format!("the image `cost` says: {line}"))?;
-        if count == "count" {
-            name.clone_into(&mut heading);
-        } else {
-            let row = row(&heading, [count, budget, verdict, name]);
-            rows.push(row.ok_or_else(|| format!("no row of a table: {line}"))?);
+        let columns = columns(line).ok_or_else(|| format!("the image `cost` says: {line}"))?;
+        match columns {
+            ["count", .., name] => heading = name,
+            _ => {
+                let row = row(heading, columns);
+                rows.push(row.ok_or_else(|| format!("no row of a table: {line}"))?);
+            }
         }
     }
     if rows.is_empty() { Err("the image `cost` printed no table".to_owned()) } else { Ok(rows) }
@@ -45,9 +43,11 @@ fn is_summary(line: &str) -> bool {
     ["FAILED", "all within budget"].contains(&line)
 }
 
-fn split<'l>(left: &'l str, name: &'l str) -> Option<(&'l str, &'l str, &'l str, &'l str)> {
+/// Count, budget, verdict and name.
+fn columns(line: &str) -> Option<[&str; 4]> {
+    let (left, name) = line.split_at_checked(NAME)?;
     let mut words = left.split_whitespace();
-    Some((words.next()?, words.next()?, words.next().unwrap_or(""), name))
+    Some([words.next()?, words.next()?, words.next().unwrap_or(""), name])
 }
 
 fn row(heading: &str, [count, budget, verdict, what]: [&str; 4]) -> Option<Row> {

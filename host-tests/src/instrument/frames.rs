@@ -13,12 +13,12 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::attitude::Keeper;
 use orientation::signal::Sample;
 use simulated::Wires;
-use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::fault::{Fault, FaultyRecorder};
 use simulated::mount::FramesScenario;
 
 use super::harness::{self, Harness};
 use super::kept::KeptPlan;
-use super::trial::{Around, Carrier};
+use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::methods::stepwise::{POSITIONS, Replay, given_with};
 
@@ -40,36 +40,32 @@ impl Carrier for FramesScenario {
         KeptPlan::of(fault)
     }
 
-    fn run<R: Recorder, T: Store>(
-        &self,
-        plan: &KeptPlan,
-        around: Around<'_, R, T>,
-    ) -> Result<FramesRun, RunError> {
-        if !self.base.has_base_imu {
-            return align_on(NoBase, self, None, &plan.chips, around);
+    fn run<R: Recorder, T: Store>(trial: Trial<'_, Self, R, T>) -> Result<FramesRun, RunError> {
+        let (scenario, plan) = (trial.carrier, trial.plan.clone());
+        if !scenario.base.has_base_imu {
+            return align_on(NoBase, None, trial);
         }
         plan.on_base(
-            &self.base,
-            self.alignment_seconds(),
+            &scenario.base,
+            scenario.alignment_seconds(),
             |found: &mut FramesRun| &mut found.run,
-            |imu, journey| align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around),
+            |imu, journey| align_on(SwayCompensation::new(imu), journey, trial),
         )
     }
 }
 
-/// Runs a scenario with these sensors on a base that goes along a journey where there is one.
+/// Makes a trial with these sensors on a base that goes along a journey where there is one.
 fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     base: B,
-    scenario: &FramesScenario,
     journey: Option<JourneyConfiguration<'_>>,
-    injection: &Injection,
-    around: Around<'_, R, T>,
+    trial: Trial<'_, FramesScenario, R, T>,
 ) -> Result<FramesRun, RunError> {
+    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+    let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Session::new(setting, scenario.procedure())?;
     let frames = scenario.frames()?;
-    let Around { watch, recorder, store } = around;
     let board = RefCell::new(scenario.board(journey, injection));
     let harness = Harness::new(watch);
     let channels = harness.channels();

@@ -14,7 +14,7 @@ mod vehicle;
 pub use frames::FramesRun;
 pub use spinning::{FlightPlan, SpinRun};
 pub use stage::align_on;
-pub use trial::{Around, Carrier, Trial};
+pub use trial::{Carrier, Trial};
 pub use turntable::{TurntablePlan, TurntableRun};
 pub use vehicle::{VehiclePlan, VehicleRun};
 

@@ -21,7 +21,7 @@ use simulated::spin::{Course, SpinScenario};
 
 use super::harness::{self, Harness};
 use super::recorder::Samples;
-use super::trial::{Around, Carrier};
+use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 
 /// Where a spinning body flies, and what goes wrong.
@@ -69,15 +69,14 @@ impl Carrier for SpinScenario {
     }
 
     fn run<R: Recorder<SpinSample>, T: Store>(
-        &self,
-        plan: &FlightPlan,
-        around: Around<'_, R, T>,
+        trial: Trial<'_, Self, R, T>,
     ) -> Result<SpinRun, RunError> {
-        let FlightPlan { course, chips: injection } = plan;
-        let configuration = self.configuration().ok_or(RunError::Scale)?;
-        let board = RefCell::new(self.board(course, injection));
-        let (mut flight, mut kept) = (self.flight(), Samples::default());
-        let harness = Harness::new(around.watch);
+        let Trial { carrier: scenario, plan, watch, recorder, .. } = trial;
+        let FlightPlan { course, chips: injection } = &plan;
+        let configuration = scenario.configuration().ok_or(RunError::Scale)?;
+        let board = RefCell::new(scenario.board(course, injection));
+        let (mut flight, mut kept) = (scenario.flight(), Samples::default());
+        let harness = Harness::new(watch);
         let channels = harness.channels();
         let mut sensors = Wires(&board, injection).spinning();
         let ended = harness::run(
@@ -87,14 +86,14 @@ impl Carrier for SpinScenario {
                 &mut flight,
                 NotKept,
                 &(),
-                (&mut harness.wire(), &mut (&mut kept, around.recorder)),
+                (&mut harness.wire(), &mut (&mut kept, recorder)),
                 &channels,
             ),
         )?;
         drop(channels);
         let run = harness.clear(ended, &board, flight);
         // Another body of the same course, which has not flown yet.
-        let fresh = self.board(course, injection).plant;
+        let fresh = scenario.board(course, injection).plant;
         let at = |plant: &SpinPlant, time: Instant| {
             plant.truth_at(embassy_time::Instant::from_micros(time.0))
         };

@@ -13,13 +13,13 @@ use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::stepwise::session::Session;
 use orientation::attitude::Keeper;
 use orientation::signal::Sample;
-use simulated::fault::{Fault, FaultyRecorder, Injection};
+use simulated::fault::{Fault, FaultyRecorder};
 use simulated::scenario::{self, Scenario};
 use simulated::{self, Wires};
 
 use super::harness::{self, Harness};
 use super::kept::KeptPlan;
-use super::trial::{Around, Carrier};
+use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::methods::stepwise::{Replay, given_with, name_of};
 
@@ -32,38 +32,34 @@ impl Carrier for Scenario {
         KeptPlan::of(fault)
     }
 
-    fn run<R: Recorder, T: Store>(
-        &self,
-        plan: &KeptPlan,
-        around: Around<'_, R, T>,
-    ) -> Result<Run, RunError> {
-        if !self.has_base_imu {
-            return align_on(NoBase, self, None, &plan.chips, around);
+    fn run<R: Recorder, T: Store>(trial: Trial<'_, Self, R, T>) -> Result<Run, RunError> {
+        let (scenario, plan) = (trial.carrier, trial.plan.clone());
+        if !scenario.has_base_imu {
+            return align_on(NoBase, None, trial);
         }
         plan.on_base(
-            self,
-            self.alignment_seconds(),
+            scenario,
+            scenario.alignment_seconds(),
             |run| run,
-            |imu, journey| align_on(SwayCompensation::new(imu), self, journey, &plan.chips, around),
+            |imu, journey| align_on(SwayCompensation::new(imu), journey, trial),
         )
     }
 }
 
-/// Runs a scenario with these sensors on a base that goes along a journey where there is one.
+/// Makes a trial with these sensors on a base that goes along a journey where there is one.
 ///
 /// # Errors
 /// As [`Trial::run`](super::Trial::run).
 pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     base: B,
-    scenario: &Scenario,
     journey: Option<JourneyConfiguration<'_>>,
-    injection: &Injection,
-    around: Around<'_, R, T>,
+    trial: Trial<'_, Scenario, R, T>,
 ) -> Result<Run, RunError> {
+    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+    let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Session::new(setting, scenario.procedure())?;
-    let Around { watch, recorder, store } = around;
     let board = RefCell::new(simulated::board(scenario, journey, injection));
     let harness = Harness::new(watch);
     let channels = harness.channels();

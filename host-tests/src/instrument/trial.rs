@@ -22,35 +22,25 @@ pub trait Carrier: Sized {
     /// # Errors
     /// As [`Trial::run`].
     fn run<R: Recorder<Self::Sample>, T: Store>(
-        &self,
-        plan: &Self::Plan,
-        around: Around<'_, R, T>,
+        trial: Trial<'_, Self, R, T>,
     ) -> Result<Self::Run, RunError>;
-}
-
-/// What surrounds a board.
-pub struct Around<'t, R, T> {
-    /// Observer of the board's events.
-    pub watch: &'t dyn Observer,
-    /// Recorder of the method's samples.
-    pub recorder: R,
-    /// Store that outlasts a loss of supply.
-    pub store: T,
 }
 
 /// Setup of a run; without a fault, an observer, a recorder or a store unless they are set.
 #[must_use]
 pub struct Trial<'t, C: Carrier, R = NoRecorder, T = ()> {
-    carrier: &'t C,
-    plan: C::Plan,
-    around: Around<'t, R, T>,
+    pub(super) carrier: &'t C,
+    pub(super) plan: C::Plan,
+    pub(super) watch: &'t dyn Observer,
+    pub(super) recorder: R,
+    pub(super) store: T,
 }
 
 impl<'t, C: Carrier> Trial<'t, C> {
     /// The run of a scenario.
     pub fn of(carrier: &'t C) -> Self {
-        let around = Around { watch: &(), recorder: NoRecorder, store: () };
-        Self { carrier, plan: carrier.plan(None), around }
+        let plan = carrier.plan(None);
+        Self { carrier, plan, watch: &(), recorder: NoRecorder, store: () }
     }
 }
 
@@ -67,19 +57,19 @@ impl<'t, C: Carrier, R, T> Trial<'t, C, R, T> {
 
     /// With an observer of the board's events.
     pub fn watch(self, watch: &'t dyn Observer) -> Self {
-        Self { around: Around { watch, ..self.around }, ..self }
+        Self { watch, ..self }
     }
 
     /// With a recorder of the samples.
     pub fn record<S: Recorder<C::Sample>>(self, recorder: S) -> Trial<'t, C, S, T> {
-        let Self { carrier, plan, around: Around { watch, recorder: _, store } } = self;
-        Trial { carrier, plan, around: Around { watch, recorder, store } }
+        let Self { carrier, plan, watch, store, .. } = self;
+        Trial { carrier, plan, watch, recorder, store }
     }
 
     /// With a store that outlasts a loss of supply.
     pub fn store<U: Store>(self, store: U) -> Trial<'t, C, R, U> {
-        let Self { carrier, plan, around: Around { watch, recorder, store: _ } } = self;
-        Trial { carrier, plan, around: Around { watch, recorder, store } }
+        let Self { carrier, plan, watch, recorder, .. } = self;
+        Trial { carrier, plan, watch, recorder, store }
     }
 }
 
@@ -89,6 +79,6 @@ impl<C: Carrier, R: Recorder<C::Sample>, T: Store> Trial<'_, C, R, T> {
     /// # Errors
     /// What keeps the alignment from beginning, and a deadlock. A refusal is a result.
     pub fn run(self) -> Result<C::Run, RunError> {
-        self.carrier.run(&self.plan, self.around)
+        C::run(self)
     }
 }

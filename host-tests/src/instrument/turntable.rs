@@ -20,7 +20,7 @@ use simulated::turntable::{self, TurntableScenario};
 
 use super::harness::{self, Harness};
 use super::kept::KeptPlan;
-use super::trial::{Around, Carrier};
+use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::virtual_time;
 
@@ -52,37 +52,30 @@ impl Carrier for TurntableScenario {
         TurntablePlan { kept: KeptPlan { chips, ..KeptPlan::of(None) }, today: None }
     }
 
-    fn run<R: Recorder, T: Store>(
-        &self,
-        plan: &TurntablePlan,
-        around: Around<'_, R, T>,
-    ) -> Result<TurntableRun, RunError> {
-        if !self.base.has_base_imu {
-            return align_on(NoBase, self, None, plan, around);
+    fn run<R: Recorder, T: Store>(trial: Trial<'_, Self, R, T>) -> Result<TurntableRun, RunError> {
+        let (scenario, plan) = (trial.carrier, trial.plan.clone());
+        if !scenario.base.has_base_imu {
+            return align_on(NoBase, None, trial);
         }
         plan.kept.on_base(
-            &self.base,
-            self.alignment_seconds(),
+            &scenario.base,
+            scenario.alignment_seconds(),
             |found: &mut TurntableRun| &mut found.run,
-            |imu, journey| {
-                align_on(SwayCompensation::for_keeping(imu), self, journey, plan, around)
-            },
+            |imu, journey| align_on(SwayCompensation::for_keeping(imu), journey, trial),
         )
     }
 }
 
-/// Runs a scenario with these sensors on a base that goes along a journey where there is one.
+/// Makes a trial with these sensors on a base that goes along a journey where there is one.
 fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     base: B,
-    scenario: &TurntableScenario,
     journey: Option<JourneyConfiguration<'_>>,
-    plan: &TurntablePlan,
-    around: Around<'_, R, T>,
+    trial: Trial<'_, TurntableScenario, R, T>,
 ) -> Result<TurntableRun, RunError> {
+    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let mut setting = scenario.setting().ok_or_else(outside)?;
     let mut procedure = scenario.procedure();
-    let Around { watch, recorder, store } = around;
     let injection = &plan.kept.chips;
     let board = RefCell::new(scenario.board(journey, injection));
     let harness = Harness::new(watch);

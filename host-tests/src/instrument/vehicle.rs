@@ -17,7 +17,7 @@ use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
 use super::harness::{self, Harness};
 use super::kept::Kept;
-use super::trial::{Around, Carrier};
+use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 
 /// What a vehicle does, and what goes wrong.
@@ -56,27 +56,25 @@ impl Carrier for VehicleScenario {
     }
 
     fn run<R: Recorder<InertialSample>, T: Store>(
-        &self,
-        plan: &VehiclePlan,
-        around: Around<'_, R, T>,
+        trial: Trial<'_, Self, R, T>,
     ) -> Result<VehicleRun, RunError> {
-        let setting = self.setting().ok_or(RunError::Latitude(self.base.latitude_deg))?;
-        let mut session = stops::Session::new(setting, self.procedure())?;
-        let (VehiclePlan { day, chips: injection }, Around { watch, recorder, store }) =
-            (plan, around);
-        let board = RefCell::new(self.board(&day.legs, &day.events, injection));
+        let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+        let VehiclePlan { day, chips: injection } = &plan;
+        let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+        let mut session = stops::Session::new(setting, scenario.procedure())?;
+        let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
         let harness = Harness::new(watch);
         let channels = harness.channels();
-        let mut sensors = Wires(&board, injection).triad(self);
-        let aiding = VehicleAiding::new(&board, self);
-        let setting = self.keeper().ok_or(RunError::Latitude(self.base.latitude_deg))?;
+        let mut sensors = Wires(&board, injection).triad(scenario);
+        let aiding = VehicleAiding::new(&board, scenario);
+        let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
         let mut keeper = Keeper::new(&setting);
         let ended = harness::run(
-            acquire(&mut TriadAcquisition::new(&mut sensors, &self.configuration(), &channels)),
+            acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
             navigate(
                 &mut Strapdown::new(&channels.shared),
                 &mut session,
-                Some(Keeping { keeper: &mut keeper, policy: self.policy(), store }),
+                Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store }),
                 &aiding,
                 (&mut harness.wire(), &mut FaultyRecorder::new(recorder, injection.hang)),
                 &channels,

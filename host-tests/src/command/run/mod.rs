@@ -16,6 +16,8 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
 use host::instrument::RunError;
+use host::outcome::Finished;
+use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
 use orientation::alignment::{self, rotating, stepwise, stops};
@@ -80,6 +82,11 @@ struct Ran {
     details: RunDetails,
     /// Whether what was written beside is whole.
     written: Result<(), String>,
+}
+
+/// What an alignment found, or that its azimuth was kept where none of a run stands.
+fn finished(is_aligned: bool, alignment: impl Finished + 'static) -> Box<dyn Finished> {
+    if is_aligned { Box::new(alignment) } else { Box::new(KeptAzimuth) }
 }
 
 impl RunOptions {

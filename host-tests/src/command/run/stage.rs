@@ -6,8 +6,6 @@ use clap::Args;
 use firmware::event::Event;
 use host::instrument::recorder::Recorded;
 use host::instrument::{FramesRun, Run, Trial};
-use host::outcome::Finished;
-use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::Truth;
@@ -19,7 +17,7 @@ use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal, finished};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
 use crate::command::{HALVES, named, sigma, whole};
@@ -226,8 +224,7 @@ impl Simulated for FramesOptions {
 fn ran(name: &'static str, run: Run, details: RunDetails, scenario: &Scenario) -> Ran {
     let is_aligned = run.conclusion().is_some();
     let azimuth_deg = run.azimuth_deg(scenario.azimuth_deg);
-    let finished: Box<dyn Finished> =
-        if is_aligned { Box::new(run.replay) } else { Box::new(KeptAzimuth) };
+    let finished = finished(is_aligned, run.replay);
     let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
     Ran { shown: Shown { name, finished, truth, body: None }, details, written: Ok(()) }
 }

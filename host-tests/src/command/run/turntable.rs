@@ -9,8 +9,6 @@ use firmware::storage::{FlashStore, Today};
 use host::instrument::recorder::{Samples, turning_rows};
 use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun, flash_file};
 use host::methods::rotating::Replay;
-use host::outcome::Finished;
-use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::{Body, GIVEN, Truth};
 use simulated::fault::Fault;
@@ -20,7 +18,7 @@ use simulated::turntable::TurntableScenario;
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal, finished};
 use crate::command::files::{self, Written};
 use crate::command::stated::Stated;
 use crate::command::whole;
@@ -187,8 +185,7 @@ impl Simulated for TurntableOptions {
         let azimuth_deg = run.azimuth_deg(scenario.base.azimuth_deg);
         let is_aligned = run.replay.conclusion().is_some();
         let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
-        let finished: Box<dyn Finished> =
-            if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
+        let finished = finished(is_aligned, replay);
         let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
         let body = Some(Body::Rotating(turning_rows(&recorder.taken)));
         let shown = Shown { name: "the simulated run", finished, truth, body };

@@ -3,8 +3,6 @@
 use clap::Args;
 use host::instrument::Trial;
 use host::methods::stops::{Replay, SIAP};
-use host::outcome::Finished;
-use host::outcome::kept::KeptAzimuth;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::{GIVEN, Truth};
@@ -16,7 +14,7 @@ use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Place, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::{Ran, Shown, Simulated, Terminal, finished};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -91,9 +89,7 @@ impl Simulated for VehicleOptions {
         let details =
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());
         let replay = Replay { session: run.replay, ..seen };
-        let is_aligned = replay.session.conclusion().is_some();
-        let finished: Box<dyn Finished> =
-            if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
+        let finished = finished(replay.session.conclusion().is_some(), replay);
         let shown = Shown { name: "the simulated drive", finished, truth, body: None };
         Ok(Ran { shown, details, written })
     }

@@ -48,7 +48,6 @@ fn orders(request: &Request, seconds: f64) -> Figure {
         let points = plans.map(|plan| (plan.positions() as f64, degrees(&plan)));
         Series::new(order.name(), Style::LineAndPoints, points)
     });
-    let series = series.to_vec();
     let title = format!("Orders of positions in {seconds:.0} s");
     Figure::new(title, ["number of positions", ""], ["full azimuth, 1σ", "°"], series)
 }

@@ -3,9 +3,9 @@
 use drivers::fault::Fault as BusFault;
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::ports::{BaseReading, BaseSensors, NoRecorder, Startable};
+use firmware::ports::{BaseReading, BaseSensors, Startable};
 use firmware::sway::SwayCompensation;
-use host::instrument::{Around, Run, RunError, Trial, align_on};
+use host::instrument::{Run, RunError, Trial, align_on};
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise;
@@ -226,8 +226,7 @@ impl BaseSensors for Failing {
 
 /// A run on a base with these sensors.
 fn on_base(base: &mut impl BaseSensors, scenario: &Scenario) -> Result<Run, RunError> {
-    let around = Around { watch: &(), recorder: NoRecorder, store: () };
-    align_on(SwayCompensation::new(base), scenario, None, &Injection::NONE, around)
+    align_on(SwayCompensation::new(base), None, Trial::of(scenario))
 }
 
 #[test]
