@@ -28,12 +28,11 @@ pub fn parse(text: &str) -> Result<Vec<Row>, String> {
     let (mut heading, mut rows) = ("", Vec::new());
     for line in text.lines().filter(|line| !line.is_empty() && !is_summary(line)) {
         let columns = columns(line).ok_or_else(|| format!("the image `cost` says: {line}"))?;
-        match columns {
-            ["count", .., name] => heading = name,
-            _ => {
-                let row = row(heading, columns);
-                rows.push(row.ok_or_else(|| format!("no row of a table: {line}"))?);
-            }
+        if let ["count", .., name] = columns {
+            heading = name;
+        } else {
+            let row = row(heading, columns);
+            rows.push(row.ok_or_else(|| format!("no row of a table: {line}"))?);
         }
     }
     if rows.is_empty() { Err("the image `cost` printed no table".to_owned()) } else { Ok(rows) }

@@ -14,7 +14,7 @@ use orientation::signal::sway::CoarseSensors;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, SpecificForce};
 use rayon::prelude::*;
 use simulated::coarse::CoarseClass;
-use simulated::fault::{ChipFault, Fault, Injection};
+use simulated::fault::{ChipFault, Fault};
 use simulated::mount::FramesScenario;
 use simulated::scenario::{GyroClass, Scenario};
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use hal_mock::noise::Generator;
 use host::methods::stops::averaging::Averages;
-use host::methods::stops::noise::{White, at_rest};
+use host::methods::stops::noise::{self, White};
 use host::methods::stops::samples::{rows, samples};
 use host::recording::period::period_s;
 use host::recording::{Body, ImuRow, ImuSample, StaticRow};
@@ -92,7 +92,7 @@ fn noisy(walk: f64, density: f64, sway: f64, seconds: u32) -> Vec<ImuRow> {
 
 /// The noise that rows show; zero where there is nothing to find it from.
 fn estimate(rows: &[ImuRow], stops_s: Option<&[[f64; 2]]>, period_s: f64) -> White {
-    at_rest(rows, stops_s, period_s).unwrap_or_default()
+    noise::at_rest(rows, stops_s, period_s).unwrap_or_default()
 }
 
 #[test]

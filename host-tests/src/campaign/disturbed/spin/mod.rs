@@ -30,15 +30,12 @@ const DRAWN: u64 = 2_031;
 #[derive(Clone, Debug)]
 struct Flight {
     seed: u64,
-    seconds: f64,
-    rate_hz: f64,
-    roll_rad: f64,
+    /// Body and gyros; not yet how they turn, the lift and the accelerometers' noise.
+    body: SpinConfiguration<'static>,
     /// Rate of the roll and lift, rad/s and m/s², at some times, s.
     spin_rad_s: [(f64, f64); 3],
     lift_m_s2: [(f64, f64); 3],
-    radius_m: [f64; 2],
     noise_m_s2: f64,
-    gyro: GyroConfiguration,
     header: Header,
 }
 
@@ -65,35 +62,26 @@ impl Flight {
             gyro_scale_sigma: Some(scale),
             ..Header::default()
         };
-        Self {
-            seed,
-            seconds,
-            rate_hz,
-            roll_rad: chance.between(0.0, TAU),
-            spin_rad_s: changing(&mut chance, seconds, spin, 0.05),
-            lift_m_s2: changing(&mut chance, seconds, lift, 0.2),
-            radius_m: [0, 1].map(|_| chance.between(-0.02, 0.02)),
-            noise_m_s2: lift * chance.scaled(3e-3, 0.1),
-            gyro,
-            header,
-        }
+        let roll_rad = chance.between(0.0, TAU);
+        let spin_rad_s = changing(&mut chance, seconds, spin, 0.05);
+        let lift_m_s2 = changing(&mut chance, seconds, lift, 0.2);
+        let radius_m = [0, 1].map(|_| chance.between(-0.02, 0.02));
+        let (gyros, usual) = ([gyro; 3], SpinConfiguration::default());
+        let body = SpinConfiguration { rate_hz, seconds, roll_rad, radius_m, gyros, ..usual };
+        let noise_m_s2 = lift * chance.scaled(3e-3, 0.1);
+        Self { seed, body, spin_rad_s, lift_m_s2, noise_m_s2, header }
     }
 
     /// What its sensors show.
     fn recorded(&self) -> Recorded {
         let mut configuration = SpinConfiguration {
-            rate_hz: self.rate_hz,
-            seconds: self.seconds,
-            roll_rad: self.roll_rad,
             spin_rad_s: Profile(&self.spin_rad_s),
-            radius_m: self.radius_m,
-            gyros: [self.gyro; 3],
             accelerometer: AccelerometerConfiguration {
-                noise_m_s2_sqrt_hz: self.noise_m_s2 / (0.5 * self.rate_hz).sqrt(),
+                noise_m_s2_sqrt_hz: self.noise_m_s2 / (0.5 * self.body.rate_hz).sqrt(),
                 bias_sigma_m_s2: 0.1,
                 ..AccelerometerConfiguration::default()
             },
-            ..SpinConfiguration::default()
+            ..self.body
         };
         configuration.forces.lift_m_s2 = Profile(&self.lift_m_s2);
         let mut world = SpinWorld::new(&configuration, self.seed);
