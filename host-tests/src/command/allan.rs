@@ -27,7 +27,7 @@ pub struct AllanOptions {
 
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
-    let report = files::written("--report", "the page", options.report.as_ref());
+    let report = ("--report", "the page", options.report.clone());
     files::check(Some(&options.file), &[report]).map_err(Failure::misuse)?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let warnings = recording.warning_lines(&options.file);

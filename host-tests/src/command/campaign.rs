@@ -55,7 +55,7 @@ impl CampaignOptions {
             let names: Vec<_> = disturbed::classes().map(|class| class.fault.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
-        files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
+        files::check(None, &[("--report", "the page", self.report.clone())])
     }
 }
 

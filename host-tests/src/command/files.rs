@@ -8,36 +8,21 @@ use std::path::{Path, PathBuf};
 /// Links that are followed to a file that is not there yet.
 const LINKS: u32 = 40;
 
-/// A file that a command writes.
-pub struct Written {
-    /// The option that names it.
-    pub option: &'static str,
-    /// What is written.
-    pub what: &'static str,
-    /// Path of the file.
-    pub path: PathBuf,
-}
-
-/// Where there is one, a file that an option names.
-pub fn written(
-    option: &'static str,
-    what: &'static str,
-    path: Option<&PathBuf>,
-) -> Option<Written> {
-    path.map(|path| Written { option, what, path: path.clone() })
-}
+/// A file that a command may write: the option that names it, what is written, and its path where the option is given.
+pub type Written = (&'static str, &'static str, Option<PathBuf>);
 
 /// Refuses an output that is the recording, another output, or no file.
 ///
 /// # Errors
 /// The option, and why it cannot be written there.
-pub fn check(recording: Option<&Path>, outputs: &[Option<Written>]) -> Result<(), String> {
+pub fn check(recording: Option<&Path>, outputs: &[Written]) -> Result<(), String> {
     if let Some(path) = recording.filter(|path| path.is_dir()) {
         return Err(format!("FILE: {} is a directory; name a file in it", path.display()));
     }
     let read = recording.and_then(Identity::of);
     let mut taken: Vec<(Identity, &str)> = Vec::new();
-    for Written { option, what, path } in outputs.iter().flatten() {
+    for (option, what, path) in outputs {
+        let Some(path) = path else { continue };
         let shown = path.display();
         if path.as_os_str().is_empty() {
             return Err(format!("{option}: the name of the file is empty"));

@@ -88,7 +88,7 @@ impl From<&PlanOptions> for Request {
 
 /// Plans positions and dwells, and shows them.
 pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
-    let report = files::written("--report", "the page", options.report.as_ref());
+    let report = ("--report", "the page", options.report.clone());
     files::check(None, &[report]).map_err(Failure::misuse)?;
     let request = Request::from(options);
     let planned = match request.plan() {

@@ -78,8 +78,8 @@ impl ReplayOptions {
     /// The options, and why.
     fn check(&self, stated: &Stated) -> Result<(), String> {
         self.method.map_or(Ok(()), |method| check(stated, method))?;
-        let attitude = files::written("--attitude-out", "the attitude", self.attitude_out.as_ref());
-        let report = files::written("--report", "the page", self.report.as_ref());
+        let attitude = ("--attitude-out", "the attitude", self.attitude_out.clone());
+        let report = ("--report", "the page", self.report.clone());
         files::check(Some(&self.file), &[attitude, report])
     }
 }

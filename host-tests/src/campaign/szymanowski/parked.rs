@@ -79,18 +79,29 @@ pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
 impl Case {
     fn scenario(&self, seed: u64) -> Scenario {
         let seconds = if self.has_good_gyros { PARKED_S } else { DRIVE_S + 2.0 * STOP_S };
-        let mut day = Scenario::parked(seed, seconds);
+        let mut day = standing(seed, seconds, self.has_doors, self.sways);
         let [n_deg_sqrt_h, bias_sigma_deg_h] = GOOD;
         let good = GyroConfiguration { n_deg_sqrt_h, bias_sigma_deg_h, ..fog() };
         day.vehicle.gyros = [if self.has_good_gyros { good } else { fog() }; 3];
-        if !self.has_doors {
-            day.events.clear();
-        }
-        for leg in &mut day.legs {
-            if let (Leg::Stop(Stop { sway, .. }), false) = (leg, self.sways) {
-                *sway = SwayConfiguration::default();
-            }
-        }
         day
     }
+}
+
+/// A day of a vehicle that stands for so many seconds, whether its doors are slammed, and whether it sways.
+pub(in crate::campaign) fn standing(
+    seed: u64,
+    seconds: f64,
+    has_doors: bool,
+    sways: bool,
+) -> Scenario {
+    let mut day = Scenario::parked(seed, seconds);
+    if !has_doors {
+        day.events.clear();
+    }
+    for leg in &mut day.legs {
+        if let (Leg::Stop(Stop { sway, .. }), false) = (leg, sways) {
+            *sway = SwayConfiguration::default();
+        }
+    }
+    day
 }

@@ -63,7 +63,7 @@ trait Simulated {
     }
 
     /// The files that it writes beside those of every platform.
-    fn files(&self) -> Vec<Option<Written>> {
+    fn files(&self) -> Vec<Written> {
         Vec::new()
     }
 
@@ -107,9 +107,9 @@ impl RunOptions {
             None => {}
         }
         options.check(stated)?;
-        let Common { record, report, .. } = common;
-        let record = files::written("--record", "the recording", record.as_ref());
-        let report = files::written("--report", "the page", report.as_ref());
+        let Common { record, report, .. } = common.clone();
+        let record = ("--record", "the recording", record);
+        let report = ("--report", "the page", report);
         let files: Vec<_> = [record].into_iter().chain(options.files()).chain([report]).collect();
         files::check(None, &files)
     }

@@ -19,7 +19,7 @@ use simulated::turntable::TurntableScenario;
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
 use super::{Ran, Shown, Simulated, Terminal, finished};
-use crate::command::files::{self, Written};
+use crate::command::files::Written;
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -139,10 +139,9 @@ impl TurntableOptions {
 
 impl Simulated for TurntableOptions {
     /// The file of the flash, and the one in which it is written first.
-    fn files(&self) -> Vec<Option<Written>> {
+    fn files(&self) -> Vec<Written> {
         let beside = self.flash.as_deref().map(flash_file::beside);
-        let files = [self.flash.as_ref(), beside.as_ref()];
-        files.map(|path| files::written("--flash", "the flash", path)).into()
+        [self.flash.clone(), beside].map(|path| ("--flash", "the flash", path)).into()
     }
 
     fn check(&self, stated: &Stated) -> Result<(), String> {

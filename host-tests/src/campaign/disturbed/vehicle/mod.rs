@@ -5,7 +5,6 @@ mod classes;
 
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
-use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle};
 use orientation::alignment::Method;
@@ -14,6 +13,7 @@ use super::Platform;
 use super::axes::{Axes, UPRIGHT, shown};
 use super::class::{Aligned, Subject};
 use crate::campaign::chance::Chance;
+use crate::campaign::szymanowski::parked::standing;
 use crate::methods::asked::Asked;
 use crate::methods::stops::{Replay, SIAP, STATIC, replay};
 use crate::output::degrees;
@@ -61,16 +61,8 @@ impl Unit {
     /// A healthy unit that only stands, quietly or swaying.
     fn standing(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
-        let mut day = Scenario::parked(seed, chance.scaled(60.0, 660.0));
-        if !chance.happens(0.3) {
-            day.events.clear();
-        }
-        let sways = chance.happens(0.5);
-        for leg in &mut day.legs {
-            if let (Leg::Stop(stop), false) = (leg, sways) {
-                stop.sway = SwayConfiguration::default();
-            }
-        }
+        let (seconds, has_doors) = (chance.scaled(60.0, 660.0), chance.happens(0.3));
+        let day = standing(seed, seconds, has_doors, chance.happens(0.5));
         Self::of(seed, STATIC, day, &mut chance)
     }
 
