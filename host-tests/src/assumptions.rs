@@ -215,3 +215,16 @@ impl Shown {
         ((north.size() - 1.0).abs() <= self.unnoticed).then_some(change.abs())
     }
 }
+
+/// What is stated; where nothing is, what is usual, which the words say to be assumed.
+pub(crate) fn or_assumed<T>(
+    stated: Option<T>,
+    usual: T,
+    assumed: &mut Vec<String>,
+    words: impl FnOnce() -> String,
+) -> T {
+    stated.unwrap_or_else(|| {
+        assumed.push(words());
+        usual
+    })
+}

@@ -5,7 +5,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::DEGREE_PER_HOUR;
 
-use crate::methods::asked::or_assumed;
+use crate::assumptions::or_assumed;
 use crate::recording::{Body, Header};
 
 /// 1σ of a scale factor of which nothing is known, relative: between fibre-optic and micromachined gyros.

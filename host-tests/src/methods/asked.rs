@@ -71,16 +71,3 @@ impl Asked {
         site.required_sigma = self.required_sigma.unwrap_or(site.required_sigma);
     }
 }
-
-/// What is stated; where nothing is, what is usual, which the words say to be assumed.
-pub(crate) fn or_assumed<T>(
-    stated: Option<T>,
-    usual: T,
-    assumed: &mut Vec<String>,
-    words: impl FnOnce() -> String,
-) -> T {
-    stated.unwrap_or_else(|| {
-        assumed.push(words());
-        usual
-    })
-}

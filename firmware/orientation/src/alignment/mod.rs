@@ -16,8 +16,8 @@ pub mod verdict;
 
 pub use method::{Input, Method, Request};
 pub use progress::{Listener, Progress};
-pub use refusal::Refusal;
 pub(crate) use refusal::refuse_if;
+pub use refusal::{Passed, Refusal};
 pub use setup::SetupError;
 pub use slow::SlowMotion;
-pub use verdict::{Azimuth, Judged, Passed, Solution, Verdict};
+pub use verdict::{Azimuth, Judged, Solution, Verdict};

@@ -4,8 +4,9 @@
 //! remedy helps: level the platform, turn a longer arc, keep still, or check a sensor.
 
 use super::budget::Source;
-use super::verdict::Passed;
-use super::{rotating, stepwise, stops};
+use super::rotating::refusal as rotating;
+use super::stepwise::refusal as stepwise;
+use super::stops::refusal as stops;
 use crate::device::{Device, Trouble};
 use crate::words::Rounded;
 
@@ -158,6 +159,9 @@ impl Refusal {
         }
     }
 }
+
+/// Outcome of a test that an alignment must pass.
+pub type Passed = Result<(), Refusal>;
 
 /// Refuses with this reason where a test fails.
 ///

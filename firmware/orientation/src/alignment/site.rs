@@ -1,8 +1,7 @@
 //! Site of an alignment, gyro and requirements, and the checks that every method makes of them.
 
 use super::budget::Source;
-use super::refusal::{Refusal, refuse_if};
-use super::verdict::Passed;
+use super::refusal::{Passed, Refusal, refuse_if};
 use crate::earth::Latitude;
 use crate::noise::{GyroNoise, StatedNoise};
 use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as DEGREES, TURN};

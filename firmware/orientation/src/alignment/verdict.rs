@@ -25,6 +25,3 @@ pub type Verdict = Result<Solution, Refusal>;
 
 /// An azimuth that passed every test, or the reason for none.
 pub type Judged = Result<Azimuth, Refusal>;
-
-/// Outcome of a test that an alignment must pass.
-pub type Passed = Result<(), Refusal>;

@@ -3,66 +3,17 @@
 
 use super::heading::{Heading, Realigned, frame_rate};
 use super::quaternion as attitude;
+use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical};
 use crate::signal::InertialSample;
 use crate::units::Instant;
-use crate::words::Rounded;
 
-pub use crate::alignment::Azimuth;
+use crate::alignment::Azimuth;
 
 /// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
 const NOWHERE: f64 = 0.5;
-
-/// Reliability of the level, and how long it has been so.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
-    /// Reliability of the level, and the cause that limits it.
-    pub trust: Trust,
-    /// Duration of that reliability, s.
-    pub seconds: f64,
-}
-
-crate::words! { State:
-    Self { trust: Trust::Starting, .. } => "starting";
-    Self { trust: Trust::Level, .. } => "level";
-    Self { trust: Trust::Coasting, seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
-    Self { trust: Trust::FreeFall, seconds } => "falling freely for {} s", Rounded::<1>(seconds);
-    Self { trust: Trust::NoForce, seconds } => "without forces for {} s", Rounded::<1>(seconds);
-    Self { trust: Trust::RotationLost, seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
-}
-
-/// Present attitude with its uncertainties, as reported to the user.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
-    /// End of the latest sample.
-    pub time: Instant,
-    /// Pitch, nose up positive, rad.
-    pub pitch: f64,
-    /// Roll, right side down positive, rad.
-    pub roll: f64,
-    /// Standard deviation of pitch and of roll, 1σ, rad.
-    pub level_sigma: f64,
-    /// Azimuth; none before one was handed over, or after it was withdrawn.
-    pub azimuth: Option<Azimuth>,
-    /// Attitude from body axes to north, east, down (w, x, y, z); up to a constant heading without
-    /// an azimuth.
-    pub attitude: [f64; 4],
-    /// Reliability of the level.
-    pub state: State,
-    /// Whether the body is at rest.
-    pub is_at_rest: bool,
-    /// Estimated biases of the gyros forward, right, down, rad/s.
-    pub biases: [f64; 3],
-    /// Standard deviations of the biases, 1σ, rad/s.
-    pub bias_sigmas: [f64; 3],
-    /// Whether a bias exceeded five times its configured 1σ; the configured 1σ of all biases is
-    /// then inflated.
-    pub is_bias_beyond_stated: bool,
-    /// Time since the azimuth was handed over, s; zero without an azimuth.
-    pub seconds: f64,
-}
 
 /// Propagates pitch, roll and azimuth.
 #[derive(Clone, Debug)]

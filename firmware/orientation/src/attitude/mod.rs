@@ -9,11 +9,13 @@
 pub mod heading;
 pub mod keeper;
 pub mod quaternion;
+mod report;
 pub mod restart;
 mod setting;
 pub mod vertical;
 
 pub use heading::Realigned;
-pub use keeper::{Azimuth, Keeper, Report, State};
+pub use keeper::Keeper;
+pub use report::{Report, State};
 pub use setting::{Gyro, Setting};
 pub use vertical::Trust;

@@ -5,7 +5,7 @@
 //! on its gyros. Gravity alone does not show a rotation about the vertical, so gyros whose biases
 //! do not repeat cannot confirm the heading, and then the azimuth is rejected.
 
-use super::keeper::Report;
+use super::report::Report;
 use super::setting::Setting;
 use crate::checksum::{numbers, record, record_bytes};
 use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};

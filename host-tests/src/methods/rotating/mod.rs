@@ -17,8 +17,9 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
 use crate::assumptions;
+use crate::assumptions::or_assumed;
 use crate::median::median;
-use crate::methods::asked::{Asked, or_assumed};
+use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
 use crate::methods::limits::{limits, saturated};
 use crate::recording::period::period_s;

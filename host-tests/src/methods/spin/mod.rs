@@ -16,7 +16,8 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use self::limit::{Noise, Turns};
 use self::track::Track;
-use crate::methods::asked::{Asked, or_assumed};
+use crate::assumptions::or_assumed;
+use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
 use crate::recording::period::Steps;
 use crate::recording::{Body, GIVEN, Given, Header, SpinRow};

@@ -15,7 +15,8 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;
 
-use crate::methods::asked::{Asked, or_assumed};
+use crate::assumptions::or_assumed;
+use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
 use crate::methods::stops::{check_stuck, missing, samples};
 use crate::output::{azimuth_error, degrees};

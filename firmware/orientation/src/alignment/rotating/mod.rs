@@ -33,9 +33,8 @@ pub use session::Session;
 
 use self::misalignment::AxisMisalignment;
 use self::turn::SPEEDS;
-use super::refusal::refuse_if;
+use super::refusal::{Passed, refuse_if};
 use super::site::Site;
-use super::verdict::Passed;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
 /// Kind of sensor on the platform.

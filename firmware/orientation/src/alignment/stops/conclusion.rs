@@ -139,7 +139,7 @@ impl Conclusion {
         let path = path(setting, stop_detector);
         path.stops.get(stop).filter(|at| stop == 0 || at.displacement.is_some())?;
         let walk = setting.site.noise.model().angle_random_walk;
-        Some(Residual::of(&path, stop, found, walk))
+        Some(Residual::of(&path, stop, (&found.start_attitude, &found.biases), walk))
     }
 
     /// Refusal without any details.

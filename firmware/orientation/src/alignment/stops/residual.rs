@@ -1,11 +1,10 @@
 //! What the solution leaves of each stop: how far the vertical levelled there is from the one to which the Earth turned it,
 //! seen on the frame that the gyros carried.
 
-use super::conclusion::Found;
 use super::path::Path;
 use super::place::up;
 use super::plain::End;
-use crate::math::rotation::{cross, difference, turned};
+use crate::math::rotation::{Matrix, Vector, cross, difference, turned};
 
 /// Residual of the vertical at a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,12 +17,17 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Residual of a stop on a path, for a solution and the gyros' angle random walk, rad/√s.
-    pub(crate) fn of(path: &Path, stop: usize, found: &Found, angle_random_walk: f64) -> Self {
+    /// Residual of a stop on a path, for the rotation from body axes to north, east, down at the start,
+    /// the gyros' biases, rad/s, and their angle random walk, rad/√s.
+    pub(crate) fn of(
+        path: &Path,
+        stop: usize,
+        (start, biases): (&Matrix, &Vector),
+        angle_random_walk: f64,
+    ) -> Self {
         let end = End::of(path.blocks.of(stop), path.displaced(stop));
-        let (carried, error) = (end.up(), turned(&end.bias, &found.biases));
-        let levelled =
-            turned(&found.start_attitude, &difference(&carried, &cross(&error, &carried)));
+        let (carried, error) = (end.up(), turned(&end.bias, biases));
+        let levelled = turned(start, &difference(&carried, &cross(&error, &carried)));
         let since = end.middle - path.start;
         let predicted = up(&path.place.navigation(since, end.displacement));
         let [north, east, _] = difference(&levelled, &predicted);
