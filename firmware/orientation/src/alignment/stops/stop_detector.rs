@@ -107,6 +107,7 @@ pub struct StopDetector {
 impl StopDetector {
     /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
     #[inline]
+    #[must_use]
     pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
         Self {
             rests,
