@@ -12,14 +12,13 @@ const STATED: f64 = 5.0;
 /// By how much of its σ an azimuth may be off with which its noise makes it wrong, beyond five of them: worth stating.
 const WORTH_STATING: f64 = 3.0;
 
-/// How a base moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Motion {
-    /// About the vertical.
-    Turning,
-    /// About an axis that is level.
-    Tilting,
-}
+/// How a base moves: what that is called, the unit of its rates with how many seconds that has, and a rate in it that may
+/// well be.
+type Motion = (&'static str, &'static str, f64, f64);
+/// About the vertical.
+const TURNING: Motion = ("slow turn", "°/min", 60.0, 0.01);
+/// About an axis that is level.
+const TILTING: Motion = ("slow tilting", "°/h", 3600.0, 0.1);
 
 /// A slow motion of the base that does not show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +36,7 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
     let slow = conclusion.slow_motions(session.setting(), session.dwells());
-    let motions = [Motion::Turning, Motion::Tilting].into_iter().zip(slow);
+    let motions = [TURNING, TILTING].into_iter().zip(slow);
     motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma)).collect()
 }
 
@@ -47,7 +46,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
     let turn = conclusion.slow_turn(session.setting(), &session.turn_accumulator);
-    Unseen::of(Motion::Turning, turn, azimuth.sigma).into_iter().collect()
+    Unseen::of(TURNING, turn, azimuth.sigma).into_iter().collect()
 }
 
 impl Unseen {
@@ -66,19 +65,9 @@ impl Unseen {
     }
 }
 
-impl Motion {
-    /// What it is called, the unit of its rates with how many seconds that has, and a rate in it that may well be.
-    fn words(self) -> (&'static str, &'static str, f64, f64) {
-        match self {
-            Self::Turning => ("slow turn", "°/min", 60.0, 0.01),
-            Self::Tilting => ("slow tilting", "°/h", 3600.0, 0.1),
-        }
-    }
-}
-
 impl fmt::Display for Unseen {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (name, unit, seconds, usual) = self.motion.words();
+        let (name, unit, seconds, usual) = self.motion;
         let shift = self.shift().to_degrees();
         if shift.is_infinite() {
             let shift = significant(usual / seconds * self.lever);
