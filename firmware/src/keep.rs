@@ -122,7 +122,7 @@ async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, share
             }
             give(&mut navigator, Input::Passed(now));
         }
-        shared.is_at_rest.set(navigator.is_at_rest());
+        shared.is_at_rest.set(navigator.is_at_rest);
         if let Some(item) = to_save.take()
             && let Err(fault) = store.save(HEADING, &item).await
         {

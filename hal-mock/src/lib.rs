@@ -39,7 +39,7 @@
 //! ```
 //!
 //! A two-frame mount ([`gimbal`]) has six chips around a plant of its own, a vehicle
-//! ([`vehicle::board`]) three converters and an accelerometer, a spinning body ([`spin::board`]) five
+//! ([`vehicle::plant`]) three converters and an accelerometer, a spinning body ([`spin::plant`]) five
 //! converters. The latter two are one type of board ([`converters`]); what all boards have in common,
 //! order of events, losses of supply, the bus and the record of forbidden accesses, is an
 //! [`assembly::Board`].

@@ -73,7 +73,7 @@ pub fn run(
             _ => {}
         }
     }
-    if session.phase() != Phase::Done {
+    if session.phase != Phase::Done {
         session.feed(Input::End);
     }
     sent

@@ -13,7 +13,6 @@
 //! of a lift q and a side force s, with which pitch and course change too ([`trajectory`]). Time counts
 //! from the start; the first sample is taken there.
 
-pub mod board;
 mod body;
 pub mod plant;
 pub mod profile;

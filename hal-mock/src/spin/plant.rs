@@ -17,7 +17,7 @@ use super::sensors::Sensors;
 use super::{SpinConfiguration, SpinTruth};
 use crate::accelerometer::AccelerometerConfiguration;
 use crate::chip::Select;
-use crate::converters::Channels;
+use crate::converters::{Channels, ConverterBoard};
 use crate::noise::{White, source};
 use crate::plant::seconds;
 use crate::strapdown::gyro_seeds;
@@ -91,6 +91,9 @@ pub struct SpinPlant<'a> {
     /// What the accelerometer along z shows of the stretch in which that along y was read, m/s².
     force_z: Option<(f64, f64)>,
 }
+
+/// The body with its chips: the converters of three gyros and two accelerometers on one bus.
+pub type SpinBoard<'a> = ConverterBoard<'a, SpinPlant<'a>, CHANNELS>;
 
 impl<'a> SpinPlant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.

@@ -7,7 +7,6 @@
 //! them. Time counts from the start; the first sample ends one period after it.
 
 pub(crate) mod averaged;
-pub mod board;
 mod event;
 mod leg;
 pub mod motion;

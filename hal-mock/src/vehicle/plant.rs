@@ -14,7 +14,7 @@ use super::averaged::Averaged;
 use super::sensors::Sensors;
 use super::{VehicleConfiguration, VehicleTruth};
 use crate::chip::Select;
-use crate::converters::Channels;
+use crate::converters::{Channels, ConverterBoard};
 use crate::earth::InertialInput;
 use crate::environment::ForceInput;
 use crate::noise::{White, source};
@@ -77,6 +77,9 @@ pub struct VehiclePlant<'a> {
     /// Periods of a converter and of the accelerometer, s.
     periods_s: [f64; 2],
 }
+
+/// The vehicle with its chips: the converters of three gyros and an accelerometer on one bus.
+pub type VehicleBoard<'a> = ConverterBoard<'a, VehiclePlant<'a>, 3>;
 
 impl<'a> VehiclePlant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.

@@ -83,11 +83,11 @@ fn the_platform_counts_as_level_only_once_a_force_has_said_so() {
         // The look at the tilt is due after 125 samples.
         for index in 0..200 {
             session.feed(Input::Sample(&bare(index, &mut noise)));
-            assert_eq!(session.phase(), Phase::Level, "{index}");
+            assert_eq!(session.phase, Phase::Level, "{index}");
         }
         let force = Some([across, 0.0, -9.81].map(SpecificForce::from_m_per_s2));
         session.feed(Input::Sample(&Sample { force, ..bare(200, &mut noise) }));
-        assert_eq!(session.phase(), if is_level { Phase::Dwell } else { Phase::Done });
+        assert_eq!(session.phase, if is_level { Phase::Dwell } else { Phase::Done });
         let verdict = session.conclusion().map(|conclusion| conclusion.verdict);
         assert_eq!(matches!(verdict, Some(Err(Refusal::TiltTooGreat { .. }))), !is_level);
     }

@@ -88,8 +88,8 @@ fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
     let mut session = session(circle());
     let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(1.0), 200.0, 5);
     assert_eq!(sent.len(), 11);
-    assert_eq!(session.repetitions().len(), 1);
-    assert_eq!(session.repetitions()[0].position, 2);
+    assert_eq!(session.repetitions.len(), 1);
+    assert_eq!(session.repetitions[0].position, 2);
     assert!(session.conclusion().expect("done").disturbances.iter().all(Option::is_none));
     assert!(error_in_sigmas(&session, 77.0).abs() < 3.5);
 }
@@ -113,7 +113,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
         conclusion.verdict
     );
     assert_eq!(session.dwells().len(), 12);
-    assert_eq!(session.repetitions().len(), 24);
+    assert_eq!(session.repetitions.len(), 24);
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short(
     let positions_with = |stop| {
         let mut session = session(Procedure { stop, ..ascending(40) });
         run(&mut session, &world(300.0), &[], Rotation::fixed(0.5), 600.0, 11);
-        assert_eq!(session.phase(), Phase::Done);
+        assert_eq!(session.phase, Phase::Done);
         session.dwells().len()
     };
     let (paper, significant) =
@@ -311,7 +311,7 @@ fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64)
 fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
     for (seed, azimuth) in [(21, 40.0), (22, 160.0), (23, 280.0)] {
         let session = surveyed(&world(azimuth), StopRule::AllPositions, seed);
-        let [_, (_, found), ..] = session.surveyed().expect("there was a survey").in_field_units();
+        let [_, (_, found), ..] = session.surveyed.expect("there was a survey").in_field_units();
         let n = found.value().expect("N is observable");
         assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
         let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };

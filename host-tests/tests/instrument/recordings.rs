@@ -72,7 +72,7 @@ fn reported(finished: &dyn Finished, conclusion: &impl Debug) -> (Value, String)
 fn reported_of_stage(replay: &stepwise::Replay) -> (Value, String) {
     reported(
         replay,
-        &(replay.session.conclusion(), replay.session.dwells(), replay.session.repetitions()),
+        &(replay.session.conclusion(), replay.session.dwells(), &replay.session.repetitions),
     )
 }
 

@@ -124,7 +124,7 @@ pub struct Navigator<'k> {
     is_bias_beyond_stated: bool,
     /// Whether the body is at rest, since when it has been, and since when it has been in motion
     /// after that.
-    is_at_rest: bool,
+    pub is_at_rest: bool,
     rests: Option<Instant>,
     moves: Option<Instant>,
     /// Duration of motion after which the body counts as having set off, µs.
@@ -168,12 +168,6 @@ impl<'k> Navigator<'k> {
             since: None,
             is_shown: false,
         }
-    }
-
-    /// Whether the body is at rest, as far as its motion is measured.
-    #[must_use]
-    pub fn is_at_rest(&self) -> bool {
-        self.is_at_rest
     }
 
     /// Whether the duration of the hold is over.

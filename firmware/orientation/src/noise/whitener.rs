@@ -55,7 +55,7 @@ impl Process {
     fn step<T: Scalar>(&self, seconds: f64, e1: f64) -> Step<T> {
         let x = seconds / self.correlation;
         let power = self.drive * seconds;
-        let [end, mean, end_variance, cross, mean_variance] = if x < 1e-3 {
+        Step::of(if x < 1e-3 {
             // Short intervals take the limits of a random walk, with the first-order decay, because
             // the closed forms cancel.
             [
@@ -75,9 +75,15 @@ impl Process {
                 0.5 * power * e1 * e1 * per_x,
                 power * (x - 2.0 * e1 + 0.5 * e2) * per_x * per_x,
             ]
-        }
-        .map(T::of);
-        Step { end, mean, end_variance, cross, mean_variance }
+        })
+    }
+}
+
+impl<T: Scalar> Step<T> {
+    /// Step of these numbers, in the order of its fields.
+    fn of(numbers: [f64; 5]) -> Self {
+        let [end, mean, end_variance, cross, mean_variance] = numbers.map(T::of);
+        Self { end, mean, end_variance, cross, mean_variance }
     }
 }
 
@@ -148,9 +154,7 @@ impl<T: Scalar> Steps<T> {
             e1 = doubled(doubled(e1));
         }
         if model.sway.angle_variance > 0.0 {
-            let step = sway_step(&model.sway, seconds);
-            let [end, mean, end_variance, cross, mean_variance] = step.map(T::of);
-            self.of[RATES] = Step { end, mean, end_variance, cross, mean_variance };
+            self.of[RATES] = Step::of(sway_step(&model.sway, seconds));
         }
     }
 }

@@ -4,7 +4,7 @@ use core::cell::RefCell;
 
 use embassy_time::Instant;
 use hal_mock::noise::Generator;
-use hal_mock::vehicle::board::VehicleBoard;
+use hal_mock::vehicle::plant::VehicleBoard;
 use orientation::alignment::Azimuth;
 
 use super::VehicleScenario;

@@ -67,7 +67,7 @@ impl Ended {
     fn with_dwells(run: &Run, truth_deg: f64) -> Result<Self, RunError> {
         let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
         let left_out = conclusion.disturbances.iter().filter(|why| why.is_some()).count();
-        let dwells = Some([run.replay.session.repetitions().len(), left_out]);
+        let dwells = Some([run.replay.session.repetitions.len(), left_out]);
         Ok(Self { dwells, ..Self::new(run, in_sigmas(conclusion.verdict, truth_deg)) })
     }
 }

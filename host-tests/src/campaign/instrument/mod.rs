@@ -67,5 +67,5 @@ fn outcome(scenario: &Scenario) -> Result<(Result<Answer, Refusal>, usize, usize
     let session = &run.replay.session;
     let verdict = session.verdict().ok_or(RunError::Deadlock)?;
     let answer = Answer::of(verdict, scenario.azimuth_deg);
-    Ok((answer, session.repetitions().len(), run.violations.len()))
+    Ok((answer, session.repetitions.len(), run.violations.len()))
 }

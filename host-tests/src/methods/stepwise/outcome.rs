@@ -92,7 +92,7 @@ impl Replay {
 
     /// Where the noise comes from that the fit was weighted by.
     fn noise_source(&self) -> &'static str {
-        match (self.session.surveyed(), self.noise_is_known()) {
+        match (&self.session.surveyed, self.noise_is_known()) {
             (Some(_), _) => "surveyed",
             (None, true) => "stated",
             (None, false) => "estimated",

@@ -292,7 +292,7 @@ fn the_log_tells_both_frames_and_the_storage_in_order() {
     }
     assert!(run.run.lines.contains("azimuth "), "{}", run.run.lines);
     // The frames turn the gyro about its own axis: nothing of that has come into a dwell.
-    assert_eq!(run.run.replay.session.repetitions().len(), 0);
+    assert_eq!(run.run.replay.session.repetitions.len(), 0);
 }
 
 #[test]

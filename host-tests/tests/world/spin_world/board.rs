@@ -9,8 +9,7 @@ use embassy_time::{Delay, Duration, Instant, Timer};
 use hal_mock::chip::{Rig, Select};
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
-use hal_mock::spin::board::SpinBoard;
-use hal_mock::spin::plant::{CHIPS, SpinPlant, SpinPlantConfiguration};
+use hal_mock::spin::plant::{CHIPS, SpinBoard, SpinPlant, SpinPlantConfiguration};
 
 use super::{G, assert_near};
 

@@ -10,8 +10,9 @@ use embassy_time::{Delay, Duration, Instant, Timer};
 use hal_mock::chip::{Rig, Select};
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
-use hal_mock::vehicle::board::VehicleBoard;
-use hal_mock::vehicle::plant::{CHIPS, GYROS, VehiclePlant, VehiclePlantConfiguration};
+use hal_mock::vehicle::plant::{
+    CHIPS, GYROS, VehicleBoard, VehiclePlant, VehiclePlantConfiguration,
+};
 use hal_mock::vehicle::{Leg, Stop, VehicleConfiguration};
 
 use super::{EARTH, assert_near, sway, wave};

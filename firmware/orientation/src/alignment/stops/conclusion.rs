@@ -121,7 +121,7 @@ impl Conclusion {
             found = Found::of(setting, &path(setting, stop_detector));
         }
         Self {
-            verdict: judge(setting, &found, stop_detector.stops().len() as u32)
+            verdict: judge(setting, &found, stop_detector.stops.len() as u32)
                 .map(|()| found.azimuth),
             found: Some(found),
         }
@@ -155,7 +155,7 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
         place: Place::new(setting.site.latitude),
         gravity: setting.site.latitude.gravity(),
         start: stop_detector.start(),
-        stops: stop_detector.stops(),
+        stops: &stop_detector.stops,
         blocks: &stop_detector.blocks,
         drives: &stop_detector.drives,
         now,
@@ -169,7 +169,7 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
     setting.site.check_latitude()?;
     stop_detector.state.loss.map_or(Ok(()), Err)?;
-    let (stops, is_whole) = (stop_detector.stops(), stop_detector.rests == Rests::Whole);
+    let (stops, is_whole) = (&stop_detector.stops, stop_detector.rests == Rests::Whole);
     let is_fleeting = stop_detector.state.fleeting > 0.0 && stops.len() < 2;
     refuse_if(is_fleeting, too_short(stops.len(), stop_detector.state.fleeting))?;
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
@@ -196,7 +196,7 @@ fn too_short(index: usize, seconds: f64) -> Refusal {
 
 /// Checks that a stop is long enough, and that the vehicle stood.
 fn inspect_stop(setting: &Setting, stop_detector: &StopDetector, index: usize) -> Passed {
-    let stop = &stop_detector.stops()[index];
+    let stop = &stop_detector.stops[index];
     let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
     refuse_if(rest < LEAST_REST, too_short(index, rest))?;
     let gravity = setting.site.latitude.gravity();

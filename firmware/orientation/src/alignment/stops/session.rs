@@ -177,7 +177,7 @@ impl Session {
     /// Stops so far; the last one may still continue.
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
-        self.stop_detector.stops()
+        &self.stop_detector.stops
     }
 
     /// Stop criteria of the last ten seconds, and their limits; updated once a second.
@@ -237,7 +237,7 @@ impl Session {
     fn second(&mut self, now: Instant, listener: Listener) -> Request {
         let begun = *self.begun.get_or_insert(now);
         self.report_displacements();
-        let count = self.stop_detector.stops().len();
+        let count = self.stop_detector.stops.len();
         let phase = match (self.stop_detector.state.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
@@ -273,8 +273,7 @@ impl Session {
 
     /// Permits the vehicle to drive, or concludes, once it has stood for long enough.
     fn stand(&mut self, count: usize, listener: Listener) -> Request {
-        let (Phase::Standing(_), Some(stop)) = (self.phase, self.stop_detector.stops().last())
-        else {
+        let (Phase::Standing(_), Some(stop)) = (self.phase, self.stop_detector.stops.last()) else {
             return Request::Continue;
         };
         if self.is_reported || stop.seconds() < self.procedure.stop_seconds {
@@ -291,7 +290,7 @@ impl Session {
 
     /// Reports the position of the last stop, if it is known in advance.
     fn report_displacements(&mut self) {
-        let Some(last) = self.stop_detector.stops().len().checked_sub(1) else { return };
+        let Some(last) = self.stop_detector.stops.len().checked_sub(1) else { return };
         if let Some(displacement) = self.procedure.displacements.get(last) {
             self.stop_detector.displace(*displacement);
             self.placed = last;

@@ -96,8 +96,8 @@ pub struct StopDetector {
     pub(super) state: State,
     /// Latest seconds, whose average is tested.
     window: Deque<Second, WINDOW>,
-    /// Stops so far.
-    stops: Vec<Stop, STOPS>,
+    /// Stops so far; the last one may still continue.
+    pub(super) stops: Vec<Stop, STOPS>,
     /// Averages of the time at rest.
     pub(super) blocks: Blocks<AT_REST>,
     /// Averages of the drives, each with the number of the stop before it.
@@ -349,11 +349,6 @@ impl StopDetector {
     /// Criteria of the last ten seconds, and their limits.
     pub(super) fn criteria(&self) -> Option<(Criteria, Limits)> {
         self.state.criteria.map(|criteria| (criteria, self.limits))
-    }
-
-    /// Stops so far; the last one may still continue.
-    pub(crate) fn stops(&self) -> &[Stop] {
-        &self.stops
     }
 
     /// Sets the position of the last stop, north and east of the first, m.

@@ -93,7 +93,7 @@ pub struct Session {
     /// Procedure in the units of the sample path.
     timing: Timing,
     /// State of the session.
-    phase: Phase,
+    pub phase: Phase,
     /// Position to which the stage was sent.
     target: Target,
     /// Time of the first sample.
@@ -103,9 +103,9 @@ pub struct Session {
     /// Dwells, or the survey before them.
     store: Store,
     /// Noise found by the survey.
-    surveyed: Option<NoiseFit>,
-    /// Record of repeated dwells.
-    repetitions: Vec<Repetition, REPETITIONS>,
+    pub surveyed: Option<NoiseFit>,
+    /// Dwells that were measured again; with more than 24 the first ones.
+    pub repetitions: Vec<Repetition, REPETITIONS>,
     /// Repetitions at the present position.
     tries: usize,
     /// Conclusion, once the session is over.
@@ -132,22 +132,10 @@ impl Session {
         &self.procedure
     }
 
-    /// State of the session.
-    #[must_use]
-    pub fn phase(&self) -> Phase {
-        self.phase
-    }
-
     /// Dwells so far.
     #[must_use]
     pub fn dwells(&self) -> &[Dwell] {
         self.store.dwells()
-    }
-
-    /// Dwells that were measured again; with more than 24 the first ones.
-    #[must_use]
-    pub fn repetitions(&self) -> &[Repetition] {
-        &self.repetitions
     }
 
     /// Number of planned positions.

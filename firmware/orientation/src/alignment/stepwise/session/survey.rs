@@ -189,12 +189,6 @@ impl Session {
             PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },
         }
     }
-
-    /// Noise found by the survey, where there was one.
-    #[must_use]
-    pub fn surveyed(&self) -> Option<&NoiseFit> {
-        self.surveyed.as_ref()
-    }
 }
 
 /// Noise model for the alignment: coefficients that were found, and for those not observable the
