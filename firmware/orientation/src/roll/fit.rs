@@ -152,14 +152,13 @@ impl Sums {
     pub(super) fn fit(&self, turns: u32) -> Option<Fit> {
         let normal = Normal::of(self)?;
         let count = self.count as f32;
-        let even = [count, self.place];
         let first = [self.turning[0], self.turning[1]];
+        let round = self.harmonics.round([count, self.place], first);
         let mut ripple = Ripple::default();
         let mut solved = normal.solve(self.force, self.turned_force);
         for _ in 0..PASSES / turns {
-            self.harmonics.approach(&mut ripple, even, first, &solved.model);
-            let [force, placed, turned, turned_placed] =
-                self.harmonics.shares(&ripple, even, first);
+            self.harmonics.approach(&mut ripple, &round, &solved.model);
+            let [force, placed, turned, turned_placed] = round.shares(&ripple);
             solved = normal.solve(
                 [self.force[0] - force, self.force[1] - placed],
                 [self.turned_force[0] - turned, self.turned_force[1] - turned_placed],

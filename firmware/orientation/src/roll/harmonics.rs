@@ -38,6 +38,30 @@ impl Ripple {
     }
 }
 
+/// Sums of `e^{jkγ̂}`, and of that times the place, over the samples of an evaluation, k from 0 to 3.
+pub(super) struct Round([[Complex; 2]; 4]);
+
+impl Round {
+    /// Sums of an order, −3 to 3.
+    fn of(&self, order: i32) -> [Complex; 2] {
+        let sums = self.0[order.unsigned_abs() as usize];
+        if order < 0 { sums.map(Complex::conjugate) } else { sums }
+    }
+
+    /// Contribution of the harmonics to the sums of the force, of the force times the place, and of
+    /// both rotated back once.
+    pub(super) fn shares(&self, ripple: &Ripple) -> [Complex; 4] {
+        let mut shares = [Complex::default(); 4];
+        for (part, order) in ripple.0.iter().zip(ORDERS) {
+            let ([force, placed], [turned, turned_placed]) = (self.of(order), self.of(order - 1));
+            for (share, sum) in shares.iter_mut().zip([force, placed, turned, turned_placed]) {
+                *share += *part * sum;
+            }
+        }
+        shares
+    }
+}
+
 /// Sums over the samples of an evaluation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Harmonics {
@@ -65,54 +89,22 @@ impl Harmonics {
         self.force[3] += third.against(force);
     }
 
-    /// Sums of `e^{jkγ̂}` and of that times the place, k from −3 to 3; `even` and `first` are those
-    /// of k = 0 and 1.
-    fn round(&self, order: i32, even: [f32; 2], first: [Complex; 2]) -> [Complex; 2] {
-        let sums = match order.abs() {
-            0 => even.map(|real| Complex::new(real, 0.0)),
-            1 => first,
-            2 => self.second,
-            _ => self.third,
-        };
-        if order < 0 { sums.map(Complex::conjugate) } else { sums }
+    /// Sums of the orders 0 to 3, of which the first two are given.
+    pub(super) fn round(&self, even: [f32; 2], first: [Complex; 2]) -> Round {
+        Round([even.map(|real| Complex::new(real, 0.0)), first, self.second, self.third])
     }
 
     /// Improves the amplitudes by the residual of the other fit; `model` is that fit: constant, its
     /// change, lift, its change.
-    pub(super) fn approach(
-        &self,
-        ripple: &mut Ripple,
-        even: [f32; 2],
-        first: [Complex; 2],
-        model: &[Complex; 4],
-    ) {
-        let [count, _] = even;
+    pub(super) fn approach(&self, ripple: &mut Ripple, round: &Round, model: &[Complex; 4]) {
+        let [count, _] = round.of(0).map(|sum| sum.re);
         for (place, order) in ORDERS.into_iter().enumerate() {
-            let steady = self.round(-order, even, first);
-            let turning = self.round(1 - order, even, first);
+            let steady = round.of(-order);
+            let turning = round.of(1 - order);
             let columns = [steady[0], steady[1], turning[0], turning[1]];
             let shown = columns.iter().zip(model).map(|(column, part)| *column * *part);
             ripple.0[place] = (self.force[place] - shown.sum()).scaled(1.0 / count);
         }
-    }
-
-    /// Contribution of the harmonics to the sums of the force, of the force times the place, and of
-    /// both rotated back once.
-    pub(super) fn shares(
-        &self,
-        ripple: &Ripple,
-        even: [f32; 2],
-        first: [Complex; 2],
-    ) -> [Complex; 4] {
-        let mut shares = [Complex::default(); 4];
-        for (part, order) in ripple.0.iter().zip(ORDERS) {
-            let [force, placed] = self.round(order, even, first);
-            let [turned, turned_placed] = self.round(order - 1, even, first);
-            for (share, sum) in shares.iter_mut().zip([force, placed, turned, turned_placed]) {
-                *share += *part * sum;
-            }
-        }
-        shares
     }
 
     /// Power of the forces that the harmonics explain in addition to the other fit.
