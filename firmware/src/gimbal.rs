@@ -36,8 +36,6 @@ pub struct Gimbal<'a, M> {
     inner: Stage<'a, M>,
     /// Geometry and tolerances.
     configuration: &'a FramesConfiguration,
-    /// Latest encoder angles, written by acquisition.
-    latest: &'a Frames<LatestAngle>,
     /// Signals and counters that all parts share.
     shared: &'a Shared<'a>,
 }
@@ -56,7 +54,6 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
             outer: Stage::of(OUTER, outer, &drives.outer, &latest.outer, shared),
             inner: Stage::of(INNER, inner, &drives.inner, &latest.inner, shared),
             configuration,
-            latest,
             shared,
         }
     }
@@ -67,8 +64,8 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
     /// A frame that was given up during the movement; the log has its name and the reason.
     async fn store(&mut self) -> Result<(), Refusal> {
         self.go_to(Station::Storage).await?;
-        let shown = |latest: &LatestAngle| latest.get().0.signed_rad() * DEGREES;
-        self.shared.report(Event::Stored(shown(&self.latest.outer), shown(&self.latest.inner)));
+        let shown = |frame: &Stage<'_, M>| frame.motor.shown().signed_rad() * DEGREES;
+        self.shared.report(Event::Stored(shown(&self.outer), shown(&self.inner)));
         Ok(())
     }
 

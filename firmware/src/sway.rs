@@ -112,8 +112,10 @@ pub struct SwayCompensation<'a, B> {
     axis: [f32; 2],
     /// Whether the sway is observed and subtracted at all.
     compensates: bool,
-    /// Time at which the base unit was given up; [`None`] while it is in use.
-    lost: Option<Instant>,
+    /// Whether the base unit has been given up.
+    is_lost: bool,
+    /// Time at which it was given up.
+    lost: Instant,
 }
 
 impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
@@ -132,7 +134,8 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             stage: Angle(0),
             axis: [1.0, 0.0],
             compensates: true,
-            lost: None,
+            is_lost: false,
+            lost: Instant::MIN,
         }
     }
 
@@ -233,15 +236,16 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         if !self.is_decided() {
             shared.sway.set(SwayNoise::UNMEASURED);
         }
-        self.lost = Some(Instant::now());
+        self.is_lost = true;
+        self.lost = Instant::now();
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
     fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
-        if shared.is_holding() && self.lost.is_some_and(|lost| lost.elapsed() >= RETRY) {
+        if self.is_lost && shared.is_holding() && self.lost.elapsed() >= RETRY {
             self.renew();
         }
-        self.lost.is_some()
+        self.is_lost
     }
 
     /// Reports the decision; called when the decision may have been taken.
@@ -275,7 +279,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        self.lost = None;
+        self.is_lost = false;
         if self.base.start(shared).await.is_err() {
             self.lose(shared);
         }
@@ -284,7 +288,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     }
 
     fn is_decided(&self) -> bool {
-        !self.compensates || self.lost.is_some() || self.sway.decision != Decision::Watching
+        !self.compensates || self.is_lost || self.sway.decision != Decision::Watching
     }
 
     async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
@@ -305,7 +309,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
 
     fn renew(&mut self) {
         self.base.renew();
-        self.lost = None;
+        self.is_lost = false;
     }
 
     fn compensated(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {

@@ -43,6 +43,11 @@ bind_interrupts!(struct Interrupts {
 /// Longest transfer of the IMU on the base before the bus counts as broken; the usual ones take 0.4 ms.
 const BASE_TIMEOUT: Duration = Duration::from_millis(5);
 
+/// Select pins of encoder and motor driver of the axis, or of the outer one.
+type AxisPins = (Peri<'static, PD0>, Peri<'static, PD5>);
+/// Select pins of what only some carriers have.
+type Selects = (Peri<'static, PB2>, Peri<'static, PA4>, Peri<'static, PA3>, Peri<'static, PB4>);
+
 /// The connections that several carriers have, and the pins of the others, which stay unconnected until
 /// they are needed: a pin takes no memory.
 pub struct Board {
@@ -50,10 +55,10 @@ pub struct Board {
     converter: ConverterWires,
     outlets: Outlets,
     accelerometer: Peri<'static, PA15>,
-    axis: (Peri<'static, PD0>, Peri<'static, PD5>),
+    axis: AxisPins,
     motor_enable: Peri<'static, PD2>,
     base: BasePins,
-    selects: (Peri<'static, PB2>, Peri<'static, PA4>, Peri<'static, PA3>, Peri<'static, PB4>),
+    selects: Selects,
     ready: (Peri<'static, PB0>, Peri<'static, PB1>, Peri<'static, PC4>, Peri<'static, PC3>),
     lines: (Peri<'static, EXTI0>, Peri<'static, EXTI1>, Peri<'static, EXTI4>, Peri<'static, EXTI3>),
 }
@@ -96,27 +101,23 @@ impl Board {
 
     /// Connections of a stage or a turntable.
     pub fn axis(self) -> AxisPlatformWires {
-        let (encoder, motor) = self.axis;
-        let axes = self.buses.axis(encoder, motor);
-        PlatformWires {
-            converter: self.converter,
-            accelerometer: self.buses.accelerometer(self.accelerometer),
-            axes,
-            base: self.base.connect(),
-            motor_enable: Output::new(self.motor_enable, Level::Low, Speed::Low),
-            outlets: self.outlets,
-        }
+        self.platform(|buses, (encoder, motor), _| buses.axis(encoder, motor))
     }
 
     /// Connections of two frames; the inner one has the select pins of a vehicle's further gyros.
     pub fn two_frames(self) -> FramesWires {
-        let Self { axis: (encoder, motor), selects: (inner_encoder, inner_motor, ..), .. } = self;
-        let outer = self.buses.axis(encoder, motor);
-        let inner = self.buses.axis(inner_encoder, inner_motor);
+        self.platform(|buses, (encoder, motor), (inner_encoder, inner_motor, ..)| Frames {
+            outer: buses.axis(encoder, motor),
+            inner: buses.axis(inner_encoder, inner_motor),
+        })
+    }
+
+    /// Connections of a platform that turns the gyro, with these axes.
+    fn platform<A>(self, axes: impl FnOnce(Buses, AxisPins, Selects) -> A) -> PlatformWires<A> {
         PlatformWires {
             converter: self.converter,
             accelerometer: self.buses.accelerometer(self.accelerometer),
-            axes: Frames { outer, inner },
+            axes: axes(self.buses, self.axis, self.selects),
             base: self.base.connect(),
             motor_enable: Output::new(self.motor_enable, Level::Low, Speed::Low),
             outlets: self.outlets,

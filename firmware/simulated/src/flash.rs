@@ -71,14 +71,10 @@ impl Flash {
 
     /// Takes one unit of what is left before the supply is lost.
     fn spend(&mut self) -> Result<(), Trouble> {
-        match &mut self.left {
-            None => Ok(()),
-            Some(0) => Err(Trouble::Supply),
-            Some(left) => {
-                *left -= 1;
-                Ok(())
-            }
+        if let Some(left) = &mut self.left {
+            *left = left.checked_sub(1).ok_or(Trouble::Supply)?;
         }
+        Ok(())
     }
 }
 

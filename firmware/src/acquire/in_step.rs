@@ -4,6 +4,9 @@
 //! restarted. A converter that converts at other times than the others is detected by its
 //! data-ready line.
 
+use core::cell::Cell;
+
+use drivers::fault::Fault;
 use embassy_futures::join::join_array;
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use orientation::alignment::refusal::Refusal;
@@ -19,6 +22,9 @@ use crate::shared::Shared;
 /// Number of successive conversions that may be out of step: a single lost edge of a data-ready
 /// line is no reason for a restart.
 const MOST_OUT_OF_STEP: u8 = 3;
+
+/// Arrival of a conversion: its end, or the fault of the chip; none while it is awaited.
+type Arrival = Cell<Option<Result<Instant, Fault>>>;
 
 /// Group of `N` converters with sensors that measure values `V`.
 pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
@@ -88,13 +94,21 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
 
     /// Waits for a conversion of every converter; returns the end of each, or none after a fault.
     pub(super) async fn conversions(&mut self) -> Result<Option<[Instant; N]>, Refusal> {
-        self.converters.iter_mut().for_each(|converter| converter.arrival = None);
-        let waits = self.converters.each_mut().map(Rates::arrive);
-        // A missing conversion is detected below.
-        let _ = with_timeout(self.silence, join_array(waits)).await;
+        let arrivals = [const { Arrival::new(None) }; N];
+        {
+            let mut each = arrivals.iter();
+            // There are as many arrivals as converters, so the default is never used.
+            let none = Arrival::new(None);
+            let waits = self
+                .converters
+                .each_mut()
+                .map(|converter| arrive(converter, each.next().unwrap_or(&none)));
+            // A missing conversion is detected below.
+            let _ = with_timeout(self.silence, join_array(waits)).await;
+        }
         let mut times = [Instant::MIN; N];
-        for (index, time) in times.iter_mut().enumerate() {
-            *time = match self.converters[index].arrival {
+        for (index, (time, arrival)) in times.iter_mut().zip(&arrivals).enumerate() {
+            *time = match arrival.get() {
                 Some(Ok(at)) => at,
                 Some(Err(fault)) => return self.mend(index, Symptom::Chip(fault)).await,
                 None => return self.mend(index, Symptom::Silent).await,
@@ -156,6 +170,12 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         let beside = |index: &usize| times[*index].max(middle) - times[*index].min(middle);
         (0..N).max_by_key(beside).filter(|index| beside(index) > self.period / 4)
     }
+}
+
+/// Stores the time at which a conversion ended.
+async fn arrive<C: InStep<V>, V: Quantity>(converter: &mut Rates<'_, C, V>, arrival: &Arrival) {
+    let outcome = converter.gyro.device.ready().await;
+    arrival.set(Some(outcome.map(|()| Instant::now())));
 }
 
 /// Median of an odd number of times.

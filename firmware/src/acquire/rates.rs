@@ -1,6 +1,5 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
-use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};
 use orientation::device::Device;
 use orientation::units::AngularRate;
@@ -25,9 +24,6 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
-    /// Arrival of a conversion that is awaited with those of other converters: its end, or the
-    /// fault of the chip; none while it is awaited.
-    pub(super) arrival: Option<Result<Instant, Fault>>,
     /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
@@ -46,7 +42,6 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             plausibility: Plausibility::new(sample_rate),
             period,
             latest: None,
-            arrival: None,
             has_clipped: false,
         }
     }
@@ -56,12 +51,6 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         self.gyro.renew();
         self.plausibility.saturated = 0;
         self.has_clipped = false;
-    }
-
-    /// Waits for a conversion, and stores its arrival.
-    pub(super) async fn arrive(&mut self) {
-        let outcome = self.gyro.device.ready().await;
-        self.arrival = Some(outcome.map(|()| Instant::now()));
     }
 
     /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.

@@ -19,12 +19,14 @@ pub mod turning;
 pub use configuration::{CARRIER, Carrier};
 
 use embassy_time::Timer;
+use firmware::acquire::{acquire, on_stage};
 use firmware::health::Health;
 use firmware::keep::Keeping;
 use firmware::link;
 use firmware::log::DefmtLog;
 use firmware::shared::Shared;
 use firmware::sway::SwayCompensation;
+use orientation::alignment::setup::SetupError;
 use orientation::attitude::{Keeper, Setting};
 use static_cell::StaticCell;
 
@@ -60,6 +62,17 @@ fn keeping<T>(store: T) -> Option<Keeping<'static, T>> {
 fn keeper(setting: &Setting) -> &'static mut Keeper {
     static KEEPER: StaticCell<Keeper> = StaticCell::new();
     KEEPER.init_with(|| Keeper::new(setting))
+}
+
+/// What a session begins with; logs why, if it cannot begin.
+fn begun<T>(checked: Result<T, SetupError>) -> Option<T> {
+    checked.inspect_err(|error| defmt::error!("board: no session: {}", error)).ok()
+}
+
+/// Task that acquires samples on a stage or a turntable for ever.
+#[embassy_executor::task]
+async fn stage_acquisition(mut inputs: ports::Inputs<OnBase>, channels: &'static Channels) {
+    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
 }
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:

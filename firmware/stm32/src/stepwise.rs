@@ -2,7 +2,7 @@
 //! and roll afterwards, by the IMU of the board on the base.
 
 use embassy_executor::Spawner;
-use firmware::acquire::{acquire, on_mount, on_stage};
+use firmware::acquire::{acquire, on_mount};
 use firmware::configuration::FramesConfiguration;
 use firmware::gimbal::Gimbal;
 use firmware::ports::{Frames, NoRecorder};
@@ -10,17 +10,17 @@ use firmware::run::navigate;
 use firmware::shared::LatestAngle;
 use firmware::stage::Stage;
 use firmware::sway::SwayCompensation;
-use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::{Prepared, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use static_cell::StaticCell;
 
 use crate::flash::store;
-use crate::ports::{Inputs, MountInputs};
+use crate::ports::MountInputs;
 use crate::wiring::{AxisPlatformWires, FramesWires, Outlets};
 use crate::{
-    Channels, OnBase, channels, configuration, keeping, on_base, ports, report_conclusion,
+    Channels, OnBase, begun, channels, configuration, keeping, on_base, ports, report_conclusion,
+    stage_acquisition,
 };
 
 /// The two frames, and the latest angles of their encoders.
@@ -29,10 +29,8 @@ type Mount = (FramesConfiguration, Frames<LatestAngle>);
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn on_a_stage(spawner: Spawner, wires: AxisPlatformWires) {
-    let session = match session(configuration::setting(), configuration::procedure()) {
-        Ok(session) => session,
-        Err(error) => return defmt::error!("board: no session: {}", error),
-    };
+    let session = session(configuration::setting(), configuration::procedure());
+    let Some(session) = session else { return };
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
     let Outlets { mut link, flash } = outlets;
@@ -57,10 +55,8 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
         Ok(frames) => frames,
         Err(error) => return defmt::error!("board: no mount: {}", error),
     };
-    let session = match session(configuration::mount_setting(), configuration::mount_procedure()) {
-        Ok(session) => session,
-        Err(error) => return defmt::error!("board: no session: {}", error),
-    };
+    let session = session(configuration::mount_setting(), configuration::mount_procedure());
+    let Some(session) = session else { return };
     let FramesWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
     let (Outlets { mut link, flash }, Frames { outer, inner }) = (outlets, axes);
@@ -77,12 +73,6 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
-/// Task that acquires samples on a stage for ever.
-#[embassy_executor::task]
-async fn stage_acquisition(mut inputs: Inputs<OnBase>, channels: &'static Channels) {
-    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
-}
-
 /// Task that acquires samples on two frames for ever.
 #[embassy_executor::task]
 async fn mount_acquisition(
@@ -94,9 +84,9 @@ async fn mount_acquisition(
     acquire(&mut on_mount(&mut inputs, &configuration, frames, latest, channels)).await;
 }
 
-/// Creates the session at its final place in memory.
-fn session(setting: Setting, procedure: Procedure) -> Result<&'static mut Session, SetupError> {
+/// Creates the session at its final place in memory; logs why, if there is none.
+fn session(setting: Setting, procedure: Procedure) -> Option<&'static mut Session> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let prepared = Prepared::new(setting, procedure)?;
-    Ok(SESSION.init_with(|| Session::from(prepared)))
+    let prepared = begun(Prepared::new(setting, procedure))?;
+    Some(SESSION.init_with(|| Session::from(prepared)))
 }

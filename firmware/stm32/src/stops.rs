@@ -9,7 +9,6 @@ use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
 use firmware::shared::Channels;
-use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
@@ -17,16 +16,13 @@ use static_cell::StaticCell;
 use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::{Outlets, VehicleWires};
-use crate::{configuration, keeper, ports, report_conclusion};
+use crate::{begun, configuration, keeper, ports, report_conclusion};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wires: VehicleWires) {
     static CHANNELS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
-    let session = match session() {
-        Ok(session) => session,
-        Err(error) => return defmt::error!("board: no session: {}", error),
-    };
+    let Some(session) = session() else { return };
     let VehicleWires { converters, accelerometer, outlets } = wires;
     let Outlets { mut link, flash } = outlets;
     let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
@@ -48,10 +44,10 @@ async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, Iner
     acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
 }
 
-/// Creates the session at its final place in memory.
-fn session() -> Result<&'static mut Session, SetupError> {
+/// Creates the session at its final place in memory; logs why, if there is none.
+fn session() -> Option<&'static mut Session> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let procedure = configuration::driving_procedure();
-    procedure.check()?;
-    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(), procedure)))
+    begun(procedure.check())?;
+    Some(SESSION.init_with(|| Session::of(configuration::driving_setting(), procedure)))
 }

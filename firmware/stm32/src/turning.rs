@@ -2,7 +2,6 @@
 //! in flash. It holds azimuth, pitch and roll afterwards, by the IMU of the board on the base.
 
 use embassy_executor::Spawner;
-use firmware::acquire::{acquire, on_stage};
 use firmware::run::navigate;
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
@@ -11,10 +10,10 @@ use orientation::alignment::rotating::session::{Session, check};
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
-use crate::ports::Inputs;
 use crate::wiring::{AxisPlatformWires, Outlets};
 use crate::{
-    Channels, OnBase, channels, configuration, keeping, on_base, ports, report_conclusion,
+    Channels, begun, channels, configuration, keeping, on_base, ports, report_conclusion,
+    stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -29,7 +28,7 @@ pub async fn align(spawner: Spawner, wires: AxisPlatformWires) {
     let channels = channels();
     let base = SwayCompensation::for_keeping(on_base(base));
     let inputs = ports::inputs(converter, accelerometer, ports::encoder(axes.encoder), base);
-    spawner.spawn(defmt::unwrap!(acquisition(inputs, channels)));
+    spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let store = &SharedStore::new(store(flash));
     let Some(session) = session(store, channels).await else { return };
     let mut motor = ports::motor(axes.motor);
@@ -37,12 +36,6 @@ pub async fn align(spawner: Spawner, wires: AxisPlatformWires) {
     let outside = (&mut link, &mut CalibrationStore { store, channels });
     let health = navigate(&mut platform, session, keeping(store), &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
-}
-
-/// Task that acquires samples for ever.
-#[embassy_executor::task]
-async fn acquisition(mut inputs: Inputs<OnBase>, channels: &'static Channels) {
-    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.
@@ -53,10 +46,7 @@ async fn session(
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting();
     let mut procedure = configuration::turning_procedure();
-    if let Err(error) = check(&procedure) {
-        defmt::error!("board: no session: {}", error);
-        return None;
-    }
+    begun(check(&procedure))?;
     load_calibration(&mut store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))
 }

@@ -137,6 +137,8 @@ impl Injection {
     /// and spinning bodies by what the sensors show.
     fn clip(&mut self, fault: Fault, middle: Instant) {
         let start_s = middle.as_micros() as f64 * 1e-6;
+        let lasts = matches!(fault, Fault::Saturation | Fault::Overload);
+        let seconds = if lasts { EVER } else { CLIPPED };
         let clipped = |channels: core::ops::Range<usize>, seconds: f64| {
             let until_s = start_s + seconds;
             let saturated = |channel| SensorFault {
@@ -147,14 +149,12 @@ impl Injection {
             channels.map(saturated).collect()
         };
         let (sensors, disturbance) = match fault {
-            Fault::SaturationOnce => {
-                (clipped(1..2, CLIPPED), Disturbance::overload(start_s, CLIPPED))
+            Fault::SaturationOnce | Fault::Saturation => {
+                (clipped(1..2, seconds), Disturbance::overload(start_s, seconds))
             }
-            Fault::Saturation => (clipped(1..2, EVER), Disturbance::overload(start_s, EVER)),
-            Fault::OverloadOnce => {
-                (clipped(3..6, CLIPPED), Disturbance::force_overload(start_s, CLIPPED))
+            Fault::OverloadOnce | Fault::Overload => {
+                (clipped(3..6, seconds), Disturbance::force_overload(start_s, seconds))
             }
-            Fault::Overload => (clipped(3..6, EVER), Disturbance::force_overload(start_s, EVER)),
             Fault::DoorSlam => (Vec::new(), Disturbance::door_slam(start_s)),
             Fault::Nudge => {
                 let (seconds, rate_deg_h, none) = (4.0, 2.0, Disturbance::default());

@@ -29,12 +29,13 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 use measure::counter::Counter;
 use measure::stack;
-use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::etalon::series::SeriesError;
-use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::{self, rotating, stepwise};
+use orientation::attitude::Keeper;
 use orientation::filter::DesignError;
 use orientation::noise::allan::Allan;
+use orientation::roll::Spin;
 
 use report::{Report, figure, heading};
 
@@ -93,26 +94,24 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 fn sizes() -> Result<(), Failure> {
     matching::report_stack().map_err(Failure::Series)?;
     let stack_of_conclusion = conclusion::stack().map_err(Failure::Filter)?;
-    figure("stack of a conclusion of 60 dwells", stack_of_conclusion as u64);
-    figure("stack of a noise fit of the full grid", noise::stack() as u64);
-    figure("stack of a plan", planning::stack() as u64);
-    figure("stack of a conclusion of two stops", stops::stack() as u64);
-    figure("stack of this image at its deepest", stack::greatest_stack() as u64);
-    figure("a Session", size_of::<Session>() as u64);
-    figure("a Session on a turning platform", size_of::<rotating::Session>() as u64);
-    figure(
-        "a Session from stops",
-        size_of::<orientation::alignment::stops::session::Session>() as u64,
-    );
-    figure("a Keeper", size_of::<orientation::attitude::Keeper>() as u64);
-    figure("a Spin", size_of::<orientation::roll::Spin>() as u64);
-    figure("a Conclusion", size_of::<Conclusion>() as u64);
-    figure("an Allan variance", size_of::<Allan>() as u64);
-    figure("static memory of this image", memory::statics() as u64);
-    figure(
-        "flash of this image, its measuring and the etalon table included",
-        memory::flash() as u64,
-    );
+    for (name, bytes) in [
+        ("stack of a conclusion of 60 dwells", stack_of_conclusion),
+        ("stack of a noise fit of the full grid", noise::stack()),
+        ("stack of a plan", planning::stack()),
+        ("stack of a conclusion of two stops", stops::stack()),
+        ("stack of this image at its deepest", stack::greatest_stack()),
+        ("a Session", size_of::<stepwise::Session>()),
+        ("a Session on a turning platform", size_of::<rotating::Session>()),
+        ("a Session from stops", size_of::<alignment::stops::Session>()),
+        ("a Keeper", size_of::<Keeper>()),
+        ("a Spin", size_of::<Spin>()),
+        ("a Conclusion", size_of::<Conclusion>()),
+        ("an Allan variance", size_of::<Allan>()),
+        ("static memory of this image", memory::statics()),
+        ("flash of this image, its measuring and the etalon table included", memory::flash()),
+    ] {
+        figure(name, bytes as u64);
+    }
     Ok(())
 }
 
