@@ -74,7 +74,6 @@ enum AnyMethod {
 }
 
 /// The sampling half of an instrument: sensors, configuration and channels.
-#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 pub enum Sampling {
     /// On a stage or on a turntable.
     Stage(SimulatedSensors<'static, Metering>, Configuration, Lines),
