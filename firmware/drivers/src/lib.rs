@@ -6,6 +6,8 @@
 //!  base ─────rates, forces─▶ lsm6dsl ─▶ sway
 //! ```
 //!
+//! The instrument reaches a chip by a port, which `chips.rs` of the crate `firmware` makes of its driver.
+//!
 //! A codec converts bytes to units and back without a bus, so it can be tested alone; a shell makes
 //! the transfers on [`embedded_hal_async`] and nothing else. Every reading is either valid or a
 //! [`Fault`](fault::Fault) that names its remedy. A driver never blocks for ever and never repeats

@@ -12,6 +12,6 @@ pub struct CoarseClass {
 impl CoarseClass {
     /// LSM6DSL (data sheet, Mechanical characteristics): 4 m°/s/√Hz, 90 µg/√Hz.
     pub const LSM6DSL: Self = Self { rate_mdps_sqrt_hz: 4.0, force_ug_sqrt_hz: 90.0 };
-    /// What the best micromechanical sensors have, in the same place: 0.3 m°/s/√Hz, 25 µg/√Hz.
+    /// The best micromechanical sensors on a base: 0.3 m°/s/√Hz, 25 µg/√Hz.
     pub const FINE: Self = Self { rate_mdps_sqrt_hz: 0.3, force_ug_sqrt_hz: 25.0 };
 }

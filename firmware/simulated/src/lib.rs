@@ -1,6 +1,10 @@
 //! The board as it is simulated: chips, stage and Earth of `hal-mock` behind the instrument's ports.
 //!
-//! Host and emulator run exactly this, so that their results can be compared bit for bit.
+//! A scenario says what is true and what the board is given: a stage ([`scenario`]), two frames ([`mount`]),
+//! a [`turntable`], a [`vehicle`], a spinning body ([`spin`]). [`Wires`] connects the drivers to its chips,
+//! [`fault`] is the catalogue of what may go wrong, [`hold`] how a run goes on after its alignment, and
+//! [`trace`] what is compared. Host and emulator run exactly this, so that their results can be compared
+//! bit for bit.
 #![no_std]
 #![forbid(unsafe_code)]
 

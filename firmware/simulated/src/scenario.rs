@@ -1,4 +1,4 @@
-//! One simulated alignment: what is true, what the board is given, and what goes wrong.
+//! One simulated alignment: what is true, and what the board is given.
 
 use drivers::ads1262::configuration::{self as converter, DataRate, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};

@@ -2,14 +2,14 @@
 //! the sampling period.
 //!
 //! The load of the processor is checked separately, in instructions (`firmware/budget.toml`).
-//! Burov's method is stated for 10 kHz; an ADS1262 gives 7 200 or 14 400 samples per second, so the
+//! The method of Nekrasova 2017 is stated for 10 kHz; an ADS1262 gives 7 200 or 14 400 samples per second, so the
 //! next higher rate is taken.
 
 use drivers::ads1262::{self, BYTES_PER_SAMPLE, GREATEST_BUS_HERTZ};
 
 use super::configuration::CHANNELS;
 
-/// Sampling rate for which the method is stated (Burov), Hz.
+/// Sampling rate for which the method is stated (Nekrasova 2017), Hz.
 pub const PAPER_HERTZ: u32 = 10_000;
 /// The next higher data rate of an ADS1262, Hz (SBAS661C, table 9-3).
 pub const SAMPLE_HERTZ: u32 = 14_400;

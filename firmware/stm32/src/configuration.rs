@@ -7,7 +7,7 @@
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
-//! | [`HOLDS`] | on a stage or on two frames, once the azimuth is known: a choice |
+//! | [`HOLDS`] | on a stage, two frames or a turntable, once the azimuth is known: a choice |
 //! | [`GEOMETRY`], [`ORTHOGONALITY_SIGMA`], [`PASSES`] | of two frames: their calibration, and how often each heading is taken |
 //! | [`SPEEDS`], [`SENSOR`], [`MODULATED_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
@@ -193,7 +193,7 @@ pub fn procedure() -> Procedure {
     }
 }
 
-/// Whether a stage or a mount holds azimuth, pitch and roll without end after the alignment, by the
+/// Whether a stage, a mount or a turntable holds azimuth, pitch and roll without end after the alignment, by the
 /// LSM6DSL of the board itself. It compensates the sway of the base too: the board is fixed to the
 /// base, the chip's x axis forward, y to the right, z down.
 pub const HOLDS: bool = true;
@@ -228,7 +228,7 @@ pub fn base_sensors() -> CoarseSensors {
     }
 }
 
-/// Site and gyros for attitude and heading on a stage or on two frames.
+/// Site and gyros for attitude and heading on the base of a stage, two frames or a turntable.
 pub fn base_keeper() -> keep::Setting {
     let (bias_deg_s, scale_sigma, force_bias_sigma) = BASE_SIGMAS;
     let usual = keep::Gyro::coarse();
@@ -239,7 +239,7 @@ pub fn base_keeper() -> keep::Setting {
     keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds: base_period() }
 }
 
-/// Policy after the alignment on a stage or on two frames: the azimuth is held without end, and its σ
+/// Policy after the alignment on a stage, two frames or a turntable: the azimuth is held without end, and its σ
 /// grows; only a restart aligns anew.
 pub fn base_policy() -> Policy {
     let [_, _, beside] = base_keeper().gyros;

@@ -1,5 +1,5 @@
 //! Independent watchdog, and the reason of the last reset: a program that hangs is reset, and the
-//! reset is reported.
+//! reset is reported. The registers are those of an STM32L4; other families have them elsewhere.
 
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::pac::{DBGMCU, IWDG, RCC};

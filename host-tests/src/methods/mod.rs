@@ -1,6 +1,6 @@
 //! The registry of methods: what `replay` can do with a recording, under which name, of which kinds.
 //!
-//! A further method is an entry here; its replay, its outcome and its causes stand in folders of their own.
+//! A further method is an entry here; its replay and its outcome stand in a folder of their own, what its refusals come from in `cause`.
 
 pub mod asked;
 pub mod error;

@@ -176,8 +176,8 @@ pub fn read_from(name: &str, reader: impl Read) -> Result<Recording, ReadError> 
     parse(reader).map_err(|fault| fault.in_file(name))
 }
 
-/// Reads a recording. Another kind is another arm here, and one each in [`Body`] and
-/// [`check_times`], beside its row.
+/// Reads a recording. A further kind is one of [`Kind`] and of [`Body`], with its row; the compiler names the
+/// places that tell them apart.
 fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let mut lines = Lines::new(reader)?;
     let (entries, names) = preamble(&mut lines)?;

@@ -142,7 +142,7 @@ const CHIPS: [Chip; 15] = [
     chip(Device::Stage, Select::Actuator, "stage", &[Stage, Turntable]),
     chip(Device::OuterFrame, Select::Actuator, "outer-frame", &[TwoFrame]),
     chip(Device::InnerFrame, Select::InnerActuator, "inner-frame", &[TwoFrame]),
-    Chip { device: Device::Base, select: None, name: "coarse-imu", platforms: &[Stage, TwoFrame] },
+    Chip { device: Device::Base, select: None, name: "coarse-imu", platforms: super::TURNED },
 ];
 
 impl Chip {

@@ -20,10 +20,10 @@ use firmware::ports::Frames;
 const MIDDLE: Instant = Instant::from_secs(65);
 /// How long a passing fault of an axis lasts: it spans the rotation that follows.
 const PASSING: Duration = Duration::from_secs(15);
-/// For how long a sensor clips that clips once, s, and one of a spinning body.
+/// Duration of a passing saturation of a sensor, s; the second one on a spinning body.
 const CLIPPED: f64 = 2.0;
 const CLIPPED_SPINNING: f64 = 0.3;
-/// For how long a sensor clips that clips for good, s.
+/// Duration of a lasting saturation of a sensor, s: longer than any run.
 const EVER: f64 = 1e6;
 /// Angles at which a cable is caught, rad: 200° on a stage, 60° on a frame, whose travel ends at 100°.
 const CAUGHT: f64 = 200.0 / 360.0 * TURN;

@@ -120,7 +120,7 @@ pub enum Fault {
     OutOfStep,
     /// The gyro's output, in a vehicle that of the right gyro, clips for two seconds.
     SaturationOnce,
-    /// An output that clips does so to the end.
+    /// The gyro's output, in a vehicle that of the right gyro, clips to the end.
     Saturation,
     /// The accelerometer's output clips for two seconds.
     OverloadOnce,

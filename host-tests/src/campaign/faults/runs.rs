@@ -113,8 +113,9 @@ fn on_frames(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 }
 
 fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    // Its alignment does not need the coarse IMU, which measures no sway of its base.
     let scenario = TurntableScenario {
-        base: base(fault, seed),
+        base: Scenario { sway_deg: 0.0, ..base(fault, seed) },
         speeds_hz: [SPEED_HZ, 0.0],
         modulated_turns: MODULATED_TURNS,
         turns: TURNS,

@@ -50,8 +50,8 @@ impl KeepingOptions {
         }
     }
 
-    /// What keeping with stops of so many seconds needs; and what an azimuth from outside takes the place of, unless the vehicle aligns itself anew
-    /// later: the options that plan an alignment.
+    /// Refuses options of keeping that need others, for stops of so many seconds; and options that plan an alignment,
+    /// where an azimuth from outside takes its place and the vehicle does not align itself anew later.
     ///
     /// # Errors
     /// The option, and why it does not go with the others.

@@ -19,6 +19,7 @@ use simulated::turntable::TurntableScenario;
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
 use super::{Ran, Shown, Simulated, Terminal, finished};
+use crate::command::faults::FaultChoice;
 use crate::command::files::Written;
 use crate::command::stated::Stated;
 use crate::command::whole;
@@ -112,7 +113,8 @@ impl TurntableOptions {
         let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
         // A fault shows in the alignment; and a run by a flash begins where the one before began, not where it ended.
         let hold = self.keeping.hold(self.common.fault.is_some() || self.flash.is_some());
-        let has_base_imu = hold.seconds > 0.0;
+        let has_base_imu =
+            hold.seconds > 0.0 || self.common.fault.is_some_and(FaultChoice::is_of_base_imu);
         let given = self.place.scenario(seed);
         let base = Scenario { pitch_deg, roll_deg, hold, has_base_imu, ..given };
         let gyro = if self.place.gyro.is_some() { base.gyro } else { usual.base.gyro };
