@@ -67,10 +67,10 @@ pub enum Carrier {
 /// The carriers, and which of them a feature of this crate has chosen.
 const CARRIERS: [(Carrier, bool); 5] = [
     (Carrier::Stage, cfg!(feature = "stage")),
-    (Carrier::TwoFrames, cfg!(feature = "two-frames")),
+    (Carrier::TwoFrames, cfg!(feature = "two-frame")),
     (Carrier::Turntable, cfg!(feature = "turntable")),
     (Carrier::Vehicle, cfg!(feature = "vehicle")),
-    (Carrier::SpinningBody, cfg!(feature = "spinning-body")),
+    (Carrier::SpinningBody, cfg!(feature = "spin")),
 ];
 
 /// Platform of this instrument. Code for the others is not in the image.
