@@ -5,7 +5,7 @@
 
 use embassy_time::Duration;
 use orientation::alignment::stepwise::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
-use orientation::units::DEGREE;
+use orientation::units::{DEGREE, Radians};
 
 use crate::calibration::Harmonics;
 use crate::ports::Frames;
@@ -114,9 +114,9 @@ impl FramesConfiguration {
     /// # Errors
     /// A geometry with which the sensitive axis cannot be brought to one of the orientations.
     pub fn new(geometry: TwoFrame, encoders: Frames<Harmonics>) -> Result<Self, MountError> {
-        let drive = |zero| StageConfiguration {
-            index: FRAME_INDEX + zero,
-            travel: [-LIMIT, LIMIT],
+        let drive = |zero: Radians| StageConfiguration {
+            index: FRAME_INDEX + zero.0,
+            travel: [-LIMIT.0, LIMIT.0],
             ..StageConfiguration::default()
         };
         let mut stations = [FrameAngles::default(); STATIONS.len()];

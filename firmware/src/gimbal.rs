@@ -12,7 +12,7 @@ use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::Station;
 use orientation::device::{Device, Trouble};
-use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+use orientation::units::{DEGREES_PER_RADIAN as DEGREES, Radians};
 
 use crate::configuration::FramesConfiguration;
 use crate::event::Event;
@@ -69,11 +69,11 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
         Ok(())
     }
 
-    /// Points the sensitive axis to a heading, rad; one that is not a multiple of 90° lies beyond
+    /// Points the sensitive axis to a heading; one that is not a multiple of 90° lies beyond
     /// the travel of this mount.
-    async fn point(&mut self, heading: f64) -> Result<(), Refusal> {
+    async fn point(&mut self, heading: Radians) -> Result<(), Refusal> {
         let station = Station::at_heading(heading).map_err(|_| {
-            self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
+            self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading.into()))
         })?;
         self.go_to(station).await
     }
@@ -81,7 +81,7 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
     /// Turns both frames to an orientation at the same time.
     async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
         let angles = self.configuration.angles(station);
-        both(join(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await)
+        both(join(self.outer.turn_to(angles.outer.0), self.inner.turn_to(angles.inner.0)).await)
     }
 }
 

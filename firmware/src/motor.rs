@@ -4,7 +4,7 @@
 use embassy_time::{Duration, Instant, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::{Device, Trouble};
-use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
+use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Degrees};
 
 use crate::event::Event;
 use crate::guarded::Guarded;
@@ -161,7 +161,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
 
     /// The trouble of a stalled axis, with the angle at which it stands, °.
     pub(crate) fn blocked(&self) -> Trouble {
-        Trouble::Stalled(self.nearest_shown(self.motion.angle) * DEGREES)
+        Trouble::Stalled(Degrees(self.nearest_shown(self.motion.angle) * DEGREES))
     }
 
     /// Gives the motor up if two angles that should be equal differ by more than `most`, rad. Not
@@ -169,7 +169,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
     #[inline(never)]
     pub(crate) fn check(&self, apart: f64, most: f64) -> Result<(), Break> {
         if apart.abs() > most {
-            return Err(self.fail(Trouble::Disagrees(apart * DEGREES)).into());
+            return Err(self.fail(Trouble::Disagrees(Degrees(apart * DEGREES))).into());
         }
         Ok(())
     }

@@ -16,7 +16,7 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
 use orientation::alignment::stepwise::session::procedure::STILL;
 use orientation::device::Device;
-use orientation::units::{Angle, DEGREE};
+use orientation::units::{Angle, DEGREE, Radians};
 
 use crate::calibration::{Calibration, Harmonics};
 use crate::configuration::{Configuration, FramesConfiguration};
@@ -253,7 +253,7 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
             },
             geometry: frames.geometry(),
             rest: frames.rest,
-            still: Angle::from_rad(STILL).0,
+            still: Angle::from_rad(STILL.0).0,
             level: Angle::from_rad(LEVEL).0,
             jump: 0,
             anchor: Frames::default(),
@@ -279,10 +279,10 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
         if self.seen.replace(angles) == Some(angles) {
             return;
         }
-        let Frames { outer, inner } = angles.map(Angle::signed_rad);
+        let Frames { outer, inner } = angles.map(|angle| Radians(angle.signed_rad()));
         let pointing = self.geometry.pointing(FrameAngles { outer, inner });
-        self.aim.heading = Angle::from_rad(pointing.heading);
-        self.aim.elevation = Some(Angle::from_rad(pointing.elevation));
+        self.aim.heading = Angle::from_rad(pointing.heading.0);
+        self.aim.elevation = Some(Angle::from_rad(pointing.elevation.0));
     }
 }
 

@@ -11,7 +11,7 @@ use orientation::attitude::Report;
 use orientation::navigation::{self, aligner};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
-use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
+use orientation::units::{Angle, AngularRate, Metres, MetresPerSecond, SpecificForce, Temperature};
 
 use crate::event::Event;
 
@@ -219,14 +219,14 @@ pub trait Aiding {
         None
     }
 
-    /// Velocity over ground north and east, m/s. Asked once a second.
-    fn velocity(&self) -> Option<[f64; 2]> {
+    /// Velocity over ground north and east. Asked once a second.
+    fn velocity(&self) -> Option<[MetresPerSecond; 2]> {
         None
     }
 
-    /// Displacement of the vehicle, north and east, m, from a point that stays the same. Asked at
+    /// Displacement of the vehicle, north and east, from a point that stays the same. Asked at
     /// every stop until it is known.
-    fn displacement(&self) -> Option<[f64; 2]> {
+    fn displacement(&self) -> Option<[Metres; 2]> {
         None
     }
 }

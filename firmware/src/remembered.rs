@@ -1,7 +1,6 @@
 //! A stored axis misalignment, as events and results report it.
 
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
-use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
 use orientation::words::Rounded;
 
@@ -23,8 +22,8 @@ pub struct Remembered {
 impl From<&AxisMisalignment> for Remembered {
     fn from(misalignment: &AxisMisalignment) -> Self {
         Self {
-            angle: misalignment.angle() * DEGREES,
-            rate: misalignment.frequency * DEGREES,
+            angle: misalignment.angle().degrees(),
+            rate: misalignment.frequency.degrees_per_second(),
             day: Day::of(misalignment.date),
             temperature: misalignment.temperature,
         }

@@ -12,7 +12,7 @@ use embassy_time::{Instant, Timer};
 use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
-use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+use orientation::units::{DEGREES_PER_RADIAN as DEGREES, Degrees};
 
 use crate::configuration::StageConfiguration;
 use crate::event::Event;
@@ -115,7 +115,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
     pub(crate) async fn turn_to(&mut self, target: f64) -> Result<(), Refusal> {
         let [low, high] = self.configuration.travel;
         if !(low..=high).contains(&target) {
-            return Err(self.motor.fail(Trouble::BeyondTravel(target * DEGREES)));
+            return Err(self.motor.fail(Trouble::BeyondTravel(Degrees(target * DEGREES))));
         }
         let begun = Instant::now();
         self.motor.report(|axis| Event::Turning(axis, target * DEGREES));
@@ -131,7 +131,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
                 }
                 Ok(off) => {
                     self.motor.report(|axis| Event::Corrected(axis, off * DEGREES));
-                    trouble = Some(Trouble::NotThere(off * DEGREES));
+                    trouble = Some(Trouble::NotThere(Degrees(off * DEGREES)));
                     aim -= off;
                 }
                 Err(Break::Stalled) if attempt == MOVES => trouble = None,
@@ -193,7 +193,7 @@ impl<M: Actuator> Mechanism for Stage<'_, M> {
         shared.homed.signal(());
         loop {
             if let Request::Point(target) = shared.wanted.wait().await {
-                self.turn_to(target).await?;
+                self.turn_to(target.0).await?;
             }
         }
     }

@@ -98,13 +98,14 @@ impl Status {
             Progress::Stops(stops::Progress::MayDrive(stop, ..)) => Self::MayDrive(stop as u16),
             Progress::Stops(stops::Progress::Driving) => Self::Driving,
             Progress::Roll(roll::Progress::Tracked(angle, sigma, condition)) => {
-                let angle = thousandths(wrapped(angle));
-                Self::Rolling { roll: sigma.map(|sigma| [angle, bound(sigma)]), condition }
+                let angle = thousandths(wrapped(angle.0));
+                Self::Rolling { roll: sigma.map(|sigma| [angle, bound(sigma.0)]), condition }
             }
             Progress::Roll(roll::Progress::Ended(_)) => Self::RollEnded,
-            Progress::Concluded(Solution { azimuth, .. }) => {
-                Self::Concluded { azimuth: thousandths(azimuth.angle), sigma: bound(azimuth.sigma) }
-            }
+            Progress::Concluded(Solution { azimuth, .. }) => Self::Concluded {
+                azimuth: thousandths(azimuth.angle.0),
+                sigma: bound(azimuth.sigma.0),
+            },
             Progress::Refused(_) => Self::Refused,
             _ => self,
         }
@@ -114,8 +115,8 @@ impl Status {
 impl From<&Attitude> for Status {
     fn from(attitude: &Attitude) -> Self {
         let Attitude { azimuth, pitch, roll, state, is_recalled } = *attitude;
-        let azimuth = azimuth.map(|it| [thousandths(it.angle), bound(it.sigma)]);
-        let level = [pitch, roll].map(|angle| libm::round(angle * DEGREES * 1e3) as i32);
+        let azimuth = azimuth.map(|it| [thousandths(it.angle.0), bound(it.sigma.0)]);
+        let level = [pitch, roll].map(|angle| libm::round(angle.degrees() * 1e3) as i32);
         Self::Keeping { azimuth, level, state, is_recalled }
     }
 }

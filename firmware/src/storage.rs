@@ -16,6 +16,7 @@ use orientation::alignment::rotating::session::Procedure;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::attitude::restart::Remembered as Heading;
 use orientation::signal::Sample;
+use orientation::units::RadiansPerSecond;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
@@ -114,14 +115,14 @@ const SAME_SPEED: f64 = 0.1;
 /// The fault of the store.
 pub async fn recall<S: Store>(
     store: &mut S,
-    speeds: &[f64],
+    speeds: &[RadiansPerSecond],
     today: Today,
 ) -> Result<Option<[Option<AxisMisalignment>; SPEEDS]>, Fault> {
     let mut misalignments = [None; SPEEDS];
     for ((slot, place), speed) in (0..).zip(&mut misalignments).zip(speeds) {
-        let is_near = |found: f64| (found - speed).abs() < SAME_SPEED * speed;
+        let is_near = |found: f64| (found - speed.0).abs() < SAME_SPEED * speed.0;
         let found = store.load(slot).await?.as_ref().and_then(AxisMisalignment::from_bytes);
-        *place = found.filter(|found| today.is_fresh(found) && is_near(found.frequency));
+        *place = found.filter(|found| today.is_fresh(found) && is_near(found.frequency.0));
         if place.is_none() {
             return Ok(None);
         }

@@ -258,7 +258,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             Decision::Swaying(size, noise) => {
                 let hertz = f64::from(size.rate / size.angle) / TURN;
                 let [angle, left] =
-                    [f64::from(size.angle), noise.angle_sigma()].map(|angle| angle * DEGREES);
+                    [f64::from(size.angle), noise.angle_sigma().0].map(|angle| angle * DEGREES);
                 (noise, Event::BaseSways(angle, hertz, left))
             }
         };

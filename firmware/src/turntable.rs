@@ -115,7 +115,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         self.motor.ask(Command::Seek(self.rate)).await?;
         loop {
             match select(shared.wanted.wait(), Timer::at(self.looked + POLL)).await {
-                Either::First(Request::Turn(rate)) => self.turn_at(rate).await?,
+                Either::First(Request::Turn(rate)) => self.turn_at(rate.0).await?,
                 Either::First(_) => {}
                 Either::Second(()) => self.watch().await?,
             }

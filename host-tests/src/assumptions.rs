@@ -13,6 +13,7 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stepwise::tilt::Tilt;
 use orientation::math::Complex;
+use orientation::units::RadiansPerSecond;
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;
@@ -90,8 +91,8 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
     let Some(conclusion) = session.conclusion() else { return Vec::new() };
     let (Some(fit), Ok(azimuth)) = (conclusion.fit, conclusion.verdict) else { return Vec::new() };
     let shown = Shown {
-        azimuth: azimuth.angle,
-        sigma: azimuth.sigma,
+        azimuth: azimuth.angle.0,
+        sigma: azimuth.sigma.0,
         ratio: fit.ratio,
         unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
         felt: felt(&session.setting().site, fit.tilt),
@@ -117,10 +118,10 @@ fn pole(session: &rotating::Session, conclusion: &PlatformConclusion) -> Option<
     let horizontal = setting.site.latitude.horizontal_rate();
     let off = |pair: &Pair| {
         let misalignment = misalignment::nearest(&conclusion.misalignments, pair.speed())?;
-        let is_there = (misalignment.frequency / pair.speed() - 1.0).abs() < SAME_SPEED;
+        let is_there = (misalignment.frequency.0 / pair.speed() - 1.0).abs() < SAME_SPEED;
         let [clockwise, counter] = pair.senses().map(|average| average.turning);
         let felt = misalignment.sine.abs() * (clockwise - counter).size() * 0.5;
-        (!is_there).then_some(felt / horizontal)
+        (!is_there).then_some(felt / horizontal.0)
     };
     let most = conclusion.pairs.iter().filter_map(off).reduce(f64::max);
     most.filter(|_| !setting.sensor.is_flat).map(|off| {
@@ -164,9 +165,9 @@ struct Shown {
 fn felt(site: &Site, tilt: Complex) -> [Complex; 2] {
     let [along, across] = site.g_sensitivity;
     let latitude = site.latitude;
-    [latitude.vertical_rate(), -latitude.vertical_rate()].map(|vertical| {
-        let per_tilt = Complex::new(vertical + along, across);
-        (per_tilt * tilt).scaled(1.0 / latitude.horizontal_rate())
+    [latitude.vertical_rate(), RadiansPerSecond(-latitude.vertical_rate().0)].map(|vertical| {
+        let per_tilt = Complex::new(vertical.0 + along.0, across.0);
+        (per_tilt * tilt).scaled(1.0 / latitude.horizontal_rate().0)
     })
 }
 
@@ -177,8 +178,8 @@ fn shown_by_stage(setting: &Setting, conclusion: &Conclusion) -> Option<Shown> {
     // Two positions take the Earth rate for granted.
     let sigma = if fit.model.is_single_axis { f64::INFINITY } else { fit.ratio_sigma };
     Some(Shown {
-        azimuth: azimuth.angle,
-        sigma: azimuth.sigma,
+        azimuth: azimuth.angle.0,
+        sigma: azimuth.sigma.0,
         ratio: fit.direction.amplitude,
         unnoticed: UNNOTICED * sigma + tolerance,
         felt: felt(&setting.site, Complex::new(real, imaginary)),

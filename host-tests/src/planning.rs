@@ -7,14 +7,14 @@ use orientation::planner::order::Order;
 use orientation::planner::{
     Conditions, FEWEST, POSITIONS, Plan, PlanError, Rotation, for_sigma, for_time,
 };
-use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
+use orientation::units::{DEGREES_PER_RADIAN, RadiansPerSecond, Seconds};
 use serde::Serialize;
 use thiserror::Error;
 
 /// Shortest dwell that is planned, s.
 pub const SHORTEST: f64 = 1.0;
 /// Longest time that is planned for a wanted σ, s.
-const LONGEST: f64 = burov::LONGEST;
+const LONGEST: f64 = burov::LONGEST.0;
 
 /// What is asked of a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ pub enum Unplanned {
 /// What the planner of the core is given about a gyro on a stage that turns so.
 pub(crate) fn conditions(noise: GyroNoise, rotation: Rotation) -> Conditions {
     let orders = &Order::COMPARED;
-    Conditions { noise, rotation, shortest: SHORTEST, fewest: FEWEST, orders }
+    Conditions { noise, rotation, shortest: Seconds(SHORTEST), fewest: FEWEST, orders }
 }
 
 impl Request {
@@ -138,60 +138,63 @@ impl Request {
             burov,
             burov_least_sigma_deg,
             optimum: self.described(&optimum),
-            one_pass_sigma_deg: one_pass.map(|plan| self.degrees(plan.rate_sigma)),
+            one_pass_sigma_deg: one_pass.map(|plan| self.degrees(plan.rate_sigma.0)),
         })
     }
 
     /// What the planner of the core is given.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
-        conditions(self.noise, Rotation::fixed(self.rotation))
+        conditions(self.noise, Rotation::fixed(Seconds(self.rotation)))
     }
 
     fn degrees(&self, rate_sigma: f64) -> f64 {
-        rate_sigma / self.latitude.horizontal_rate() * DEGREES_PER_RADIAN
+        rate_sigma / self.latitude.horizontal_rate().0 * DEGREES_PER_RADIAN
     }
 
     fn optimum(&self) -> Result<Plan, Unplanned> {
         let conditions = self.conditions();
         let plan = match self.wanted {
-            Wanted::Seconds(seconds) => for_time(&conditions, seconds),
+            Wanted::Seconds(seconds) => for_time(&conditions, Seconds(seconds)),
             Wanted::Sigma(sigma) => {
-                for_sigma(&conditions, sigma * self.latitude.horizontal_rate(), LONGEST)
+                let wanted = RadiansPerSecond(sigma * self.latitude.horizontal_rate().0);
+                for_sigma(&conditions, wanted, Seconds(LONGEST))
             }
         };
         plan.map_err(|error| match error {
             PlanError::TooShort => Unplanned::TooShort,
             PlanError::NoNoise => Unplanned::NoNoise,
-            PlanError::OutOfReach(rate) => Unplanned::OutOfReach(self.degrees(rate)),
+            PlanError::OutOfReach(rate) => Unplanned::OutOfReach(self.degrees(rate.0)),
         })
     }
 
     /// Burov's schedule, or the least rate error of either of two components, rad/s.
     fn burov(&self) -> Result<Result<Autocompensation, f64>, Unplanned> {
+        let rotation = Seconds(self.rotation);
         match self.wanted {
             Wanted::Seconds(seconds) => {
-                burov::best(&self.noise, seconds, self.rotation).map(Ok).ok_or(Unplanned::TooShort)
+                let best = burov::best(&self.noise, Seconds(seconds), rotation);
+                best.map(Ok).ok_or(Unplanned::TooShort)
             }
             Wanted::Sigma(sigma) => {
-                let rate = sigma * self.latitude.horizontal_rate();
+                let rate = sigma * self.latitude.horizontal_rate().0;
                 let flicker = burov::flicker_floor(&self.noise);
-                let left = (0.5 * rate * rate - flicker * flicker).max(0.0).sqrt();
-                let found = burov::least_time(&self.noise, left, self.rotation);
-                Ok(found.map_err(|least| std::f64::consts::SQRT_2 * least.hypot(flicker)))
+                let left = (0.5 * rate * rate - flicker.0 * flicker.0).max(0.0).sqrt();
+                let found = burov::least_time(&self.noise, RadiansPerSecond(left), rotation);
+                Ok(found.map_err(|least| std::f64::consts::SQRT_2 * least.0.hypot(flicker.0)))
             }
         }
     }
 
     fn of_burov(&self, best: &Autocompensation) -> OfBurov {
         let flicker = burov::flicker_floor(&self.noise);
-        let one_axis = self.degrees(best.rate_error.hypot(flicker));
+        let one_axis = self.degrees(best.rate_error.0.hypot(flicker.0));
         OfBurov {
             positions: best.positions,
-            dwell_s: best.dwell,
-            seconds: best.seconds,
-            rate_error_deg_h: best.rate_error / DEGREE_PER_HOUR,
-            flicker_deg_h: flicker / DEGREE_PER_HOUR,
+            dwell_s: best.dwell.0,
+            seconds: best.seconds.0,
+            rate_error_deg_h: best.rate_error.degrees_per_hour(),
+            flicker_deg_h: flicker.degrees_per_hour(),
             one_axis_sigma_deg: one_axis,
             sigma_deg: std::f64::consts::SQRT_2 * one_axis,
         }
@@ -202,10 +205,10 @@ impl Request {
             order: plan.order.name(),
             passes: plan.passes,
             positions: plan.positions(),
-            dwell_s: plan.dwell,
-            seconds: plan.seconds,
-            rate_error_deg_h: plan.rate_sigma / DEGREE_PER_HOUR,
-            sigma_deg: self.degrees(plan.rate_sigma),
+            dwell_s: plan.dwell.0,
+            seconds: plan.seconds.0,
+            rate_error_deg_h: plan.rate_sigma.degrees_per_hour(),
+            sigma_deg: self.degrees(plan.rate_sigma.0),
         }
     }
 }

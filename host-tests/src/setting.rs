@@ -3,7 +3,7 @@
 use orientation::alignment::site::Site;
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{GSensitivity, MetresPerSecondSquared};
 
 use crate::assumptions::or_assumed;
 use crate::recording::{Body, Header};
@@ -53,10 +53,10 @@ pub fn describe(
     Site {
         noise: stated(noise(header)),
         scale_sigma,
-        g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
-        g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,
+        g_sensitivity: kappa.map(GSensitivity::from_degrees_per_hour),
+        g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(kappa_sigma),
         g_sensitivity_known: kappa_known,
-        accelerometer_bias_sigma,
+        accelerometer_bias_sigma: MetresPerSecondSquared(accelerometer_bias_sigma),
         ..Site::at(latitude)
     }
 }

@@ -7,7 +7,7 @@ use orientation::alignment::stepwise::session::{Phase, Session};
 use orientation::alignment::{Input, Method, Request};
 use orientation::planner::Rotation;
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
+use orientation::units::{Angle, AngularRate, Instant, Radians, SpecificForce, Temperature};
 
 /// A reading of the simulated instruments in the stage path's units.
 #[must_use]
@@ -37,11 +37,11 @@ impl ObedientStage {
     }
 
     fn state(&self, now: f64) -> StageState {
-        let seconds = self.rotation.seconds(self.to - self.from);
-        if now - self.since >= seconds {
+        let seconds = self.rotation.seconds(Radians(self.to - self.from));
+        if now - self.since >= seconds.0 {
             return StageState { angle_rad: self.to, rate_rad_s: 0.0 };
         }
-        minimum_jerk(self.from, self.to, seconds, now - self.since)
+        minimum_jerk(self.from, self.to, seconds.0, now - self.since)
     }
 }
 
@@ -66,8 +66,8 @@ pub fn run(
         let reading = instruments.sample(now, &disturbance::total(disturbances, now));
         match session.feed(Input::Sample(&stage_path(&reading))) {
             Request::Point(to) => {
-                sent.push(to);
-                stage.send(to, now);
+                sent.push(to.0);
+                stage.send(to.0, now);
             }
             Request::Done => break,
             _ => {}

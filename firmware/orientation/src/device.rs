@@ -2,6 +2,7 @@
 //! for good only after the retries and restarts of its retry budget are used up; what a retry mends
 //! is logged and never becomes a [`Trouble`].
 
+use crate::units::Degrees;
 use crate::words::Rounded;
 
 /// A sensor, actuator or sensor group of the board, as it is named in logs and refusals.
@@ -92,16 +93,16 @@ pub enum Trouble {
     OutOfStep,
     /// The mechanism moves and does not come to rest within its time limit.
     Restless,
-    /// The mechanism does not turn beyond this angle, °.
-    Stalled(f64),
-    /// Commanded motor position and encoder angle differ by this angle, °.
-    Disagrees(f64),
+    /// The mechanism does not turn beyond this angle.
+    Stalled(Degrees),
+    /// Commanded motor position and encoder angle differ by this angle.
+    Disagrees(Degrees),
     /// No index (zero) mark of the encoder was found in a full search.
     NoIndex,
-    /// The mechanism was commanded to this angle, °, which lies outside its travel.
-    BeyondTravel(f64),
-    /// The mechanism came to rest this far from the commanded angle, °.
-    NotThere(f64),
+    /// The mechanism was commanded to this angle, which lies outside its travel.
+    BeyondTravel(Degrees),
+    /// The mechanism came to rest this far from the commanded angle.
+    NotThere(Degrees),
 }
 
 crate::words! { Trouble:
@@ -118,9 +119,9 @@ crate::words! { Trouble:
     Self::Saturated => "it stays at the limit of its range";
     Self::OutOfStep => "it falls out of step with the others: check its clock";
     Self::Restless => "it does not come to rest";
-    Self::Stalled(angle) => "it is blocked at {}°", Rounded::<1>(angle);
-    Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle);
+    Self::Stalled(angle) => "it is blocked at {}°", Rounded::<1>(angle.0);
+    Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle.0);
     Self::NoIndex => "its index was not found";
-    Self::BeyondTravel(angle) => "{}° is beyond its travel", Rounded::<2>(angle);
-    Self::NotThere(angle) => "it stands {}° from where it was sent", Rounded::<3>(angle);
+    Self::BeyondTravel(angle) => "{}° is beyond its travel", Rounded::<2>(angle.0);
+    Self::NotThere(angle) => "it stands {}° from where it was sent", Rounded::<3>(angle.0);
 }

@@ -1,7 +1,7 @@
 //! The Earth as gyro and accelerometer measure it: rotation rate and normal gravity at a latitude
 //! (WGS84).
 
-use crate::units::TURN;
+use crate::units::{Metres, MetresPerSecondSquared, RadiansPerSecond, TURN};
 
 /// Earth's rotation rate, rad/s (WGS84; 15.041067 °/h).
 pub const EARTH_RATE: f64 = 7.292_115e-5;
@@ -40,35 +40,35 @@ impl Latitude {
         self.0
     }
 
-    /// Horizontal part of the Earth rate, Ω cos φ, rad/s; points north.
+    /// Horizontal part of the Earth rate, Ω cos φ; points north.
     #[must_use]
-    pub fn horizontal_rate(self) -> f64 {
-        EARTH_RATE * libm::cos(self.0)
+    pub fn horizontal_rate(self) -> RadiansPerSecond {
+        RadiansPerSecond(EARTH_RATE * libm::cos(self.0))
     }
 
-    /// Vertical part of the Earth rate, Ω sin φ, rad/s; points up where positive.
+    /// Vertical part of the Earth rate, Ω sin φ; points up where positive.
     #[must_use]
-    pub fn vertical_rate(self) -> f64 {
-        EARTH_RATE * libm::sin(self.0)
+    pub fn vertical_rate(self) -> RadiansPerSecond {
+        RadiansPerSecond(EARTH_RATE * libm::sin(self.0))
     }
 
-    /// Normal gravity on the ellipsoid, m/s² (Somigliana, WGS84).
+    /// Normal gravity on the ellipsoid (Somigliana, WGS84).
     #[must_use]
-    pub fn gravity(self) -> f64 {
+    pub fn gravity(self) -> MetresPerSecondSquared {
         let sine = libm::sin(self.0);
         let squared = sine * sine;
-        GRAVITY_EQUATOR * (1.0 + SOMIGLIANA * squared)
-            / libm::sqrt(1.0 - ECCENTRICITY_SQUARED * squared)
+        let part = libm::sqrt(1.0 - ECCENTRICITY_SQUARED * squared);
+        MetresPerSecondSquared(GRAVITY_EQUATOR * (1.0 + SOMIGLIANA * squared) / part)
     }
 
     /// Radii of curvature of the ellipsoid along the meridian and along the parallel's normal
-    /// section, m (WGS84), in this order.
+    /// section (WGS84), in this order.
     #[must_use]
-    pub fn radii(self) -> [f64; 2] {
+    pub fn radii(self) -> [Metres; 2] {
         let sine = libm::sin(self.0);
         let part = 1.0 - ECCENTRICITY_SQUARED * sine * sine;
         let across = SEMI_MAJOR_AXIS / libm::sqrt(part);
-        [across * (1.0 - ECCENTRICITY_SQUARED) / part, across]
+        [across * (1.0 - ECCENTRICITY_SQUARED) / part, across].map(Metres)
     }
 
     /// Whether an azimuth can be determined here: |φ| ≤ 85°.

@@ -9,17 +9,17 @@
 //! use orientation::alignment::stepwise::session::procedure::Procedure;
 //! use orientation::alignment::stepwise::session::schedule::Schedule;
 //! use orientation::alignment::stepwise::{Session, setting::Setting};
-//! use orientation::alignment::{Input, Method, Request};
+//! use orientation::alignment::{Azimuth, Input, Method, Request};
 //! use orientation::earth::Latitude;
 //! use orientation::signal::Sample;
-//! use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
+//! use orientation::units::{Angle, AngularRate, Instant, Radians, Seconds, SpecificForce};
 //!
 //! let latitude = Latitude::from_degrees(48.0).expect("a latitude");
-//! let (azimuth, period) = (30_f64.to_radians(), 0.01);
-//! let procedure = Procedure::new(Schedule::closed_circle(8, 2.0), period);
+//! let azimuth = Radians::from_degrees(30.0);
+//! let procedure = Procedure::new(Schedule::closed_circle(8, Seconds(2.0)), Seconds(0.01));
 //! let mut session = Session::new(Setting::at(latitude), procedure)?;
 //!
-//! let (mut microseconds, mut stage) = (0_u32, 0.0);
+//! let (mut microseconds, mut stage) = (0_u32, Radians(0.0));
 //! let mut request = session.begin(&mut |progress| println!("{progress}"));
 //! while request != Request::Done {
 //!     if let Request::Point(angle) = request {
@@ -28,18 +28,18 @@
 //!     microseconds += 10_000;
 //!     // A gyro that shows no noise is refused as stuck.
 //!     let noise = 1e-7 * f64::from(microseconds).sin();
-//!     let rate = latitude.horizontal_rate() * (azimuth + stage).cos() + noise;
+//!     let rate = latitude.horizontal_rate().0 * (azimuth.0 + stage.0).cos() + noise;
 //!     let sample = Sample {
 //!         time: Instant(microseconds.into()),
-//!         stage: Angle::from_rad(stage),
+//!         stage: Angle::from_rad(stage.0),
 //!         rate: AngularRate::from_rad_per_s(rate),
-//!         force: Some([0.0, 0.0, -latitude.gravity()].map(SpecificForce::from_m_per_s2)),
+//!         force: Some([0.0, 0.0, -latitude.gravity().0].map(SpecificForce::from_m_per_s2)),
 //!         ..Sample::default()
 //!     };
 //!     request = session.feed(Input::Sample(&sample));
 //! }
-//! let solution = session.verdict().expect("it is over")?;
-//! assert!((solution.azimuth.angle - azimuth).abs() < 5.0 * solution.azimuth.sigma);
+//! let Azimuth { angle, sigma } = session.verdict().expect("it is over")?.azimuth;
+//! assert!((angle.0 - azimuth.0).abs() < 5.0 * sigma.0);
 //! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
@@ -94,8 +94,13 @@
 //! # Conventions
 //! The navigation frame is north, east, down; the body frame is forward, right, down. An azimuth is
 //! that of body x from true north, clockwise from above. Angles are in rad and rates in rad/s
-//! unless a name or a doc line says otherwise; `1σ` is one standard deviation. Every conversion
-//! between integers and SI units is in [`units`].
+//! unless a name or a doc line says otherwise; `1σ` is one standard deviation.
+//!
+//! Quantities that are stated and read have types that are named after their unit, as
+//! [`units::Radians`] and [`units::Seconds`]; `.0` is their number. Samples are integers, such as
+//! [`units::AngularRate`]. Ratios, variances and densities, and everything within the kernels of
+//! [`math`], [`filter`] and the fits, are plain `f64` in SI units. Every conversion between integers
+//! and SI units is in [`units`].
 //!
 //! # Glossary
 //! The methods, and the terms of this crate, under their names in inertial navigation:

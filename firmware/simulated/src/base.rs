@@ -16,7 +16,7 @@ use hal_mock::violation::Violation;
 use orientation::attitude as keep;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
-use orientation::units::DEGREE;
+use orientation::units::{DEGREE, RadiansPerSecond};
 
 use super::coarse::CoarseClass;
 use super::fault::PortWrapper;
@@ -130,7 +130,7 @@ pub(super) fn gyros(scenario: &Scenario) -> ([keep::Gyro; 3], f64) {
     let noise = GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0);
     let gyro = keep::Gyro {
         noise: GyroNoise { angle_random_walk: noise.angle_random_walk, ..class.noise },
-        bias_sigma: RATE_BIAS * DEGREE,
+        bias_sigma: RadiansPerSecond(RATE_BIAS * DEGREE),
         scale_sigma: SCALE,
     };
     ([gyro; 3], CALIBRATED * 1e-3 * 9.80665)

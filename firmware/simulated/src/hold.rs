@@ -6,7 +6,7 @@ use embassy_time::Instant;
 use orientation::alignment::Azimuth;
 use orientation::attitude as keep;
 use orientation::navigation::{Policy, Realignment};
-use orientation::units::DEGREE;
+use orientation::units::{Radians, Seconds};
 
 use firmware::ports::Aiding;
 
@@ -64,7 +64,7 @@ impl Hold {
         precise: keep::Gyro,
     ) -> Policy {
         Policy {
-            hold_seconds: self.seconds,
+            hold_seconds: Seconds(self.seconds),
             knows_stops: realignment == Realignment::BetweenStops,
             realignment: if self.realigns { realignment } else { Realignment::Never },
             skips_known: self.handover.is_some(),
@@ -93,6 +93,6 @@ impl Aiding for HandoverAiding {
             return None;
         }
         self.pending.set(None);
-        Some(Azimuth { angle: azimuth * DEGREE, sigma: sigma * DEGREE })
+        Some(Azimuth { angle: Radians::from_degrees(azimuth), sigma: Radians::from_degrees(sigma) })
     }
 }

@@ -8,7 +8,7 @@ use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::attitude as keep;
 use orientation::earth::Latitude;
 use orientation::navigation::{Policy, Realignment};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{MetresPerSecondSquared, RadiansPerSecond, Seconds};
 
 use super::base;
 use super::hold::{Hold, STAND_SECONDS};
@@ -25,7 +25,7 @@ impl Scenario {
     pub fn precise(&self) -> keep::Gyro {
         keep::Gyro {
             noise: self.gyro.noise(),
-            bias_sigma: self.gyro.bias_sigma_deg_h * DEGREE_PER_HOUR,
+            bias_sigma: RadiansPerSecond::from_degrees_per_hour(self.gyro.bias_sigma_deg_h),
             scale_sigma: scenario::SCALE_SIGMA,
         }
     }
@@ -35,7 +35,8 @@ impl Scenario {
     pub fn keeper(&self) -> Option<keep::Setting> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;
         let (gyros, force_bias_sigma) = base::gyros(self);
-        let sample_seconds = base::period(self);
+        let force_bias_sigma = MetresPerSecondSquared(force_bias_sigma);
+        let sample_seconds = Seconds(base::period(self));
         Some(keep::Setting { latitude, gyros, force_bias_sigma, sample_seconds })
     }
 
@@ -43,13 +44,13 @@ impl Scenario {
     #[must_use]
     pub fn policy(&self) -> Option<Policy> {
         let [_, _, down] = self.keeper()?.gyros;
-        Some(self.hold.policy(Realignment::AtStops(STAND_SECONDS), down, self.precise()))
+        Some(self.hold.policy(Realignment::AtStops(Seconds(STAND_SECONDS)), down, self.precise()))
     }
 
     /// How long an alignment on a stage takes, s.
     #[must_use]
     pub fn alignment_seconds(&self) -> f64 {
-        let rest_s = scenario::ROTATION.rest + scenario::RINGS_SECONDS;
+        let rest_s = scenario::ROTATION.rest.0 + scenario::RINGS_SECONDS;
         self.seconds_of(&self.procedure(), rest_s)
     }
 
@@ -58,7 +59,7 @@ impl Scenario {
     pub(super) fn seconds_of(&self, procedure: &Procedure, rest_s: f64) -> f64 {
         let schedule = &procedure.schedule;
         let movements = schedule.len() as f64 * (rest_s + MOVEMENT_SECONDS);
-        let usual = schedule.seconds() + movements;
+        let usual = schedule.seconds().0 + movements;
         self.survey_s
             + match self.aim {
                 Aim::Circle => usual,

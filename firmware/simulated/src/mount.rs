@@ -23,7 +23,7 @@ use orientation::attitude as keep;
 use orientation::planner::POSITIONS;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
-use orientation::units::DEGREE;
+use orientation::units::{DEGREE, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds};
 
 use super::fault::{Injection, PortWrapper};
 use super::scenario::{self, Scenario, Turning};
@@ -33,12 +33,15 @@ use firmware::ports::{Frames, Sensors};
 
 /// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
 /// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
-const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+const FORCE_BIAS_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e-4 * 9.80665);
 
 /// How long the frames take: the stage's ramp, each on its own way; they stand 1.5 s before they are
 /// believed.
-const ROTATION: Rotation =
-    Rotation { rest: scenario::ROTATION.rest + 1.5, speed: 0.35, wraps: true };
+const ROTATION: Rotation = Rotation {
+    rest: Seconds(scenario::ROTATION.rest.0 + 1.5),
+    speed: RadiansPerSecond(0.35),
+    wraps: true,
+};
 
 /// What a movement of the frames takes, s, more than a usual one of a stage: half a turn is the longest.
 const FRAMES_SECONDS: f64 = 7.0;
@@ -74,12 +77,12 @@ impl Default for FramesScenario {
             base: Scenario::default(),
             passes: 6,
             calibrated: TwoFrame {
-                azimuth: 0.05 * DEGREE,
-                pitch: -0.08 * DEGREE,
-                frames: 0.15 * DEGREE,
-                gyro: -0.12 * DEGREE,
-                outer_zero: 0.1 * DEGREE,
-                inner_zero: -0.2 * DEGREE,
+                azimuth: Radians::from_degrees(0.05),
+                pitch: Radians::from_degrees(-0.08),
+                frames: Radians::from_degrees(0.15),
+                gyro: Radians::from_degrees(-0.12),
+                outer_zero: Radians::from_degrees(0.1),
+                inner_zero: Radians::from_degrees(-0.2),
             },
             orthogonality_sigma: 5.0 / 3600.0 * DEGREE,
             is_calibrated: true,
@@ -106,15 +109,15 @@ impl FramesScenario {
     pub fn setting(&self) -> Option<Setting> {
         let site = self.base.site()?;
         let encoder_sigma =
-            azimuth_sigma(self.orthogonality_sigma, site.encoder_sigma, site.latitude);
+            azimuth_sigma(Radians(self.orthogonality_sigma), site.encoder_sigma, site.latitude);
         let site = Site { accelerometer_bias_sigma: FORCE_BIAS_SIGMA, encoder_sigma, ..site };
         Some(Setting { mount: TWO_FRAMES, half: self.base.half, ..Setting::new(site) })
     }
 
     /// How the board goes about it.
     pub fn procedure(&self) -> Procedure {
-        let pass =
-            PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
+        let seconds = Seconds(self.base.dwell_s);
+        let pass = PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds });
         let positions = core::iter::repeat_n(pass, self.passes).flatten().take(POSITIONS).collect();
         let turning = Turning {
             rotation: ROTATION,
@@ -152,14 +155,14 @@ impl FramesScenario {
         let mut left = |sigma: f64| sigma * chance.gaussian();
         let stated = &self.calibrated;
         let misalignment = Misalignment {
-            azimuth_rad: stated.azimuth,
-            pitch_rad: stated.pitch,
-            frames_rad: stated.frames + left(self.orthogonality_sigma),
-            gyro_rad: stated.gyro + left(self.orthogonality_sigma),
+            azimuth_rad: stated.azimuth.0,
+            pitch_rad: stated.pitch.0,
+            frames_rad: stated.frames.0 + left(self.orthogonality_sigma),
+            gyro_rad: stated.gyro.0 + left(self.orthogonality_sigma),
         };
         let disturbances = &injection.disturbances;
         let mut plant = PlantConfiguration { journey, disturbances, ..self.base.plant() };
-        plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA;
+        plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA.0;
         let sigma = scenario::G_SENSITIVITY_SIGMA;
         for part in &mut plant.instruments.gyro.g_sensitivity_deg_h_g {
             *part += left(sigma);
@@ -168,8 +171,8 @@ impl FramesScenario {
         let Injection { axes, caught, .. } = injection;
         let start = self.start_deg;
         GimbalConfiguration {
-            outer: frame(&plant, &axes.outer, caught.outer, stated.outer_zero, start.outer),
-            inner: frame(&plant, &axes.inner, caught.inner, stated.inner_zero, start.inner),
+            outer: frame(&plant, &axes.outer, caught.outer, stated.outer_zero.0, start.outer),
+            inner: frame(&plant, &axes.inner, caught.inner, stated.inner_zero.0, start.inner),
             plant,
             misalignment,
             third_g_sensitivity_deg_h_g,
@@ -198,7 +201,7 @@ impl FramesScenario {
     /// How long an alignment takes, s.
     #[must_use]
     pub fn alignment_seconds(&self) -> f64 {
-        self.base.seconds_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
+        self.base.seconds_of(&self.procedure(), ROTATION.rest.0 + FRAMES_SECONDS)
     }
 }
 

@@ -21,7 +21,9 @@ use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
-use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
+use orientation::units::{
+    AngularRate, DEGREE, GSensitivity, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
+};
 
 use super::coarse::CoarseClass;
 use super::hold::Hold;
@@ -37,7 +39,7 @@ pub(super) const SCALE_SIGMA: f64 = 5e-4;
 /// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
 pub(super) const FORCE_NOISE: f64 = 25e-6 * 9.80665;
 /// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
-const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+const FORCE_BIAS_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(0.0083 * 9.80665);
 /// What the accelerometer's driver is given: more outputs than are read.
 pub const FORCE: OutputRate = OutputRate::Hz125;
 /// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
@@ -71,7 +73,8 @@ pub(super) const RINGS_SECONDS: f64 = 0.25;
 
 /// How long the stage takes to turn: its motor driver's ramp, 1.20 s for 15° and 18.41 s for 360°, and
 /// what it rests and looks around after it.
-pub(super) const ROTATION: Rotation = Rotation { rest: 0.45 + 0.3, speed: 0.35, wraps: false };
+pub(super) const ROTATION: Rotation =
+    Rotation { rest: Seconds(0.45 + 0.3), speed: RadiansPerSecond(0.35), wraps: false };
 /// Shortest dwell of a plan, s.
 const SHORTEST: f64 = 2.0;
 /// Greatest 1σ of an azimuth that is accepted where none is asked for, rad.
@@ -259,26 +262,26 @@ impl Scenario {
         Some(Site {
             noise: StatedNoise::Whole(self.gyro.noise()),
             scale_sigma: SCALE_SIGMA,
-            g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
-            g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
+            g_sensitivity: G_SENSITIVITY.map(GSensitivity::from_degrees_per_hour),
+            g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(G_SENSITIVITY_SIGMA),
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
-            encoder_sigma: ENCODER_SIGMA,
-            required_sigma: self.required_sigma(),
+            encoder_sigma: Radians(ENCODER_SIGMA),
+            required_sigma: Radians(self.required_sigma()),
             ..Site::at(latitude)
         })
     }
 
     /// How the board goes about it.
     pub fn procedure(&self) -> Procedure {
-        let circle = Schedule::closed_circle(self.positions, self.dwell_s);
+        let circle = Schedule::closed_circle(self.positions, Seconds(self.dwell_s));
         self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })
     }
 
     /// The procedure on any mount, which turns like this.
     pub(super) fn procedure_on(&self, turning: &Turning) -> Procedure {
-        let procedure = Procedure::new(self.schedule(turning), 1.0 / self.sample_rate_hz);
+        let procedure = Procedure::new(self.schedule(turning), Seconds(1.0 / self.sample_rate_hz));
         let mut procedure = Procedure {
-            settle_seconds: RINGS_SECONDS,
+            settle_seconds: Seconds(RINGS_SECONDS),
             period_tolerance: CONVERTER_TOLERANCE,
             ..procedure
         };
@@ -286,7 +289,7 @@ impl Scenario {
             procedure = procedure.after(self.survey(turning));
         }
         match self.aim {
-            Aim::Accuracy { seconds, .. } => procedure.until_accurate(seconds),
+            Aim::Accuracy { seconds, .. } => procedure.until_accurate(Seconds(seconds)),
             Aim::Circle | Aim::Time(_) => procedure,
         }
     }
@@ -306,16 +309,17 @@ impl Scenario {
         let conditions = Conditions {
             noise: self.gyro.noise(),
             rotation: turning.rotation,
-            shortest: SHORTEST,
+            shortest: Seconds(SHORTEST),
             fewest: FEWEST,
             orders: turning.orders,
         };
         let plan = match (self.aim, Latitude::from_degrees(self.latitude_deg)) {
             (Aim::Circle, _) | (_, None) => return usual(),
-            (Aim::Time(seconds), _) => for_time(&conditions, seconds),
+            (Aim::Time(seconds), _) => for_time(&conditions, Seconds(seconds)),
             (Aim::Accuracy { seconds, .. }, Some(latitude)) => {
-                let wanted = self.required_sigma() * latitude.horizontal_rate();
-                for_sigma(&conditions, wanted, seconds).or_else(|_| for_time(&conditions, seconds))
+                let wanted = self.required_sigma() * latitude.horizontal_rate().0;
+                for_sigma(&conditions, RadiansPerSecond(wanted), Seconds(seconds))
+                    .or_else(|_| for_time(&conditions, Seconds(seconds)))
             }
         };
         plan.map_or_else(|_| usual(), Schedule::Planned)
@@ -324,13 +328,13 @@ impl Scenario {
     fn survey(&self, turning: &Turning) -> Survey {
         let plan_seconds = match self.aim {
             Aim::Circle => turning.usual.seconds(),
-            Aim::Time(seconds) | Aim::Accuracy { seconds, .. } => seconds,
+            Aim::Time(seconds) | Aim::Accuracy { seconds, .. } => Seconds(seconds),
         };
         Survey {
-            seconds: self.survey_s,
+            seconds: Seconds(self.survey_s),
             rotation: turning.rotation,
             orders: turning.orders,
-            shortest: SHORTEST,
+            shortest: Seconds(SHORTEST),
             plan_seconds,
         }
     }
@@ -362,7 +366,7 @@ impl Scenario {
             },
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: FORCE_NOISE,
-                bias_sigma_m_s2: FORCE_BIAS_SIGMA,
+                bias_sigma_m_s2: FORCE_BIAS_SIGMA.0,
                 ..AccelerometerConfiguration::default()
             },
             encoder: EncoderConfiguration {

@@ -62,9 +62,10 @@ impl Trace for stops::Session {
 impl Trace for Flight {
     fn trace(&self, rows: Rows) {
         let [scale, scale_sigma] = self.spin.scale().unwrap_or([f64::NAN; 2]);
-        let [course, pitch] = [self.attitude.course, self.attitude.pitch];
+        let [course, pitch] = [self.attitude.course.0, self.attitude.pitch.0];
         let roll = self.spin.roll().rad();
-        let [sigma, lift] = [self.spin.sigma(), self.spin.lift()].map(or_absent);
+        let sigma = or_absent(self.spin.sigma().map(|sigma| sigma.0));
+        let lift = or_absent(self.spin.lift().map(|lift| lift.0));
         let [roll, course, pitch] = [roll, course, pitch].map(f64::to_bits);
         let [scale, scale_sigma] = [scale, scale_sigma].map(f64::to_bits);
         rows(FLIGHT, &[roll, sigma, course, pitch, scale, scale_sigma, lift]);
@@ -73,9 +74,9 @@ impl Trace for Flight {
 
 impl Trace for Dwell {
     fn trace(&self, rows: Rows) {
-        let [x, y, z] = self.force.map_or([ABSENT; 3], |force| force.map(f64::to_bits));
-        let [middle, seconds] = [self.middle, self.seconds].map(f64::to_bits);
-        let [rate, taper] = [self.rate, self.taper].map(f64::to_bits);
+        let [x, y, z] = self.force.map_or([ABSENT; 3], |force| force.map(|part| part.0.to_bits()));
+        let [middle, seconds] = [self.middle.0, self.seconds.0].map(f64::to_bits);
+        let [rate, taper] = [self.rate.0, self.taper].map(f64::to_bits);
         let [stage, samples] = [self.stage.0, self.samples].map(u64::from);
         let temperature = or_absent(self.temperature.get());
         let numbers = [stage, middle, seconds, samples, rate, taper, x, y, z, temperature];
@@ -96,16 +97,16 @@ impl Trace for Turn {
 impl Trace for Stop {
     fn trace(&self, rows: Rows) {
         let ([a, b, c], [d, e, f]) = (self.turned.mean(), self.force.mean());
-        rows(STOP, &[self.from, self.to, a, b, c, d, e, f].map(f64::to_bits));
+        rows(STOP, &[self.from.0, self.to.0, a, b, c, d, e, f].map(f64::to_bits));
     }
 }
 
 impl Trace for Report {
     fn trace(&self, rows: Rows) {
-        let azimuth = or_absent(self.azimuth.map(|azimuth| azimuth.angle));
-        let sigma = or_absent(self.azimuth.map(|azimuth| azimuth.sigma));
+        let azimuth = or_absent(self.azimuth.map(|azimuth| azimuth.angle.0));
+        let sigma = or_absent(self.azimuth.map(|azimuth| azimuth.sigma.0));
         let [w, x, y, z] = self.attitude.map(f64::to_bits);
-        let [pitch, roll] = [self.pitch, self.roll].map(f64::to_bits);
+        let [pitch, roll] = [self.pitch.0, self.roll.0].map(f64::to_bits);
         rows(KEPT, &[self.time.0, azimuth, sigma, pitch, roll, w, x, y, z]);
     }
 }

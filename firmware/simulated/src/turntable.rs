@@ -16,7 +16,7 @@ use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::session::Procedure;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::alignment::rotating::{Sensor, Setting};
-use orientation::units::{DEGREE, TURN};
+use orientation::units::{DEGREE, Radians, RadiansPerSecond, Seconds, TURN};
 
 use super::fault::{Fault, Injection};
 use super::scenario::{GyroClass, Scenario};
@@ -117,23 +117,23 @@ impl TurntableScenario {
         let setting = Setting::new(self.base.site()?, self.sensor());
         Some(Setting {
             misalignments: self.stored,
-            encoder_zero_sigma: ENCODER_ZERO_SIGMA,
+            encoder_zero_sigma: Radians(ENCODER_ZERO_SIGMA),
             ..setting
         })
     }
 
     fn sensor(&self) -> Sensor {
         let Some(dynamics) = self.molecular else { return Sensor::GYRO };
-        let settle_seconds = SETTLED / (TURN * dynamics.high_pass_hz);
+        let settle_seconds = Seconds(SETTLED / (TURN * dynamics.high_pass_hz));
         Sensor { settle_seconds, ..Sensor::MOLECULAR }
     }
 
     /// How the board goes about it.
     pub fn procedure(&self) -> Procedure {
-        let speeds = self.speeds_hz.map(|speed| speed * TURN);
-        let count = speeds.iter().take_while(|speed| **speed > 0.0).count();
+        let speeds = self.speeds_hz.map(|speed| RadiansPerSecond(speed * TURN));
+        let count = speeds.iter().take_while(|speed| speed.0 > 0.0).count();
         let Self { modulated_turns, turns, .. } = *self;
-        let sample_seconds = 1.0 / self.base.sample_rate_hz;
+        let sample_seconds = Seconds(1.0 / self.base.sample_rate_hz);
         Procedure { modulated_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
     }
 
@@ -149,13 +149,13 @@ impl TurntableScenario {
     #[must_use]
     pub fn alignment_seconds(&self) -> f64 {
         let procedure = self.procedure();
-        let settled = procedure.ramp_seconds + self.sensor().settle_seconds;
-        let at = |(index, speed): (usize, &f64)| {
+        let settled = procedure.ramp_seconds.0 + self.sensor().settle_seconds.0;
+        let at = |(index, speed): (usize, &RadiansPerSecond)| {
             let modulated = f64::from(1 + procedure.modulated_turns);
             let each_way = f64::from(1 + procedure.turns_at(index));
-            (modulated + 2.0 * each_way) * TURN / speed + 3.0 * settled
+            (modulated + 2.0 * each_way) * TURN / speed.0 + 3.0 * settled
         };
-        procedure.level_seconds + procedure.speeds.iter().enumerate().map(at).sum::<f64>()
+        procedure.level_seconds.0 + procedure.speeds.iter().enumerate().map(at).sum::<f64>()
     }
 
     /// What is true of everything that the chips feel and move, on a base that goes along a journey where
@@ -184,7 +184,7 @@ impl TurntableScenario {
         let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
         let turns = f64::from(self.modulated_turns) + 0.5 * f64::from(self.turns);
         let phases = if self.modulated_turns > 0 { 2.0 } else { 1.0 };
-        let seconds = START_SECONDS + level_seconds + phases * ramp_seconds;
+        let seconds = START_SECONDS + level_seconds.0 + phases * ramp_seconds.0;
         let seconds = seconds + turns / self.speeds_hz[0];
         Injection::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
     }

@@ -45,7 +45,10 @@ use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::signal::sway::CoarseSensors;
-use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
+use orientation::units::{
+    AngularRate, DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared,
+    Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds, TURN,
+};
 use orientation::{attitude as keep, roll as spin};
 
 /// Platform that carries the gyro.
@@ -115,12 +118,12 @@ const G_SENSITIVITY_SIGMA: f64 = 0.1;
 
 /// Standard deviation of the accelerometer's biases, 1σ, m/s²: the ADXL355's offset is at most 25
 /// mg (data sheet rev. C, table 1).
-const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+const FORCE_BIAS_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(0.0083 * 9.80665);
 
 /// Harmonics of the encoder's error, rad.
 const ENCODER: Harmonics = Harmonics { first: [0.0; 2], second: [0.0; 2] };
-/// Standard deviation of the remaining encoder error as it enters the azimuth, 1σ, rad.
-const ENCODER_SIGMA: f64 = 0.05 * DEGREE;
+/// Standard deviation of the remaining encoder error as it enters the azimuth, 1σ.
+const ENCODER_SIGMA: Radians = Radians::from_degrees(0.05);
 
 /// Configuration of the converter: sample rate, filter and gain.
 pub const CONVERTER: Converter =
@@ -143,12 +146,18 @@ const SURVEY: Option<f64> = None;
 const ACCURACY: Option<(f64, f64)> = None;
 /// Positions on the full circle; the first is repeated at the end.
 const POSITIONS: usize = 24;
-/// Time at each position, s.
-const DWELL: f64 = 10.0;
+/// Time at each position.
+const DWELL: Seconds = Seconds(10.0);
 /// Rotation time of the stage: 1.20 s for 15° and 18.41 s for 360°, plus the settling check.
-const ROTATION: Rotation = Rotation { rest: 0.75, speed: 0.35, wraps: false };
-/// Time for which the stage rings after an arrival, s.
-const RINGING: f64 = 0.25;
+const ROTATION: Rotation =
+    Rotation { rest: Seconds(0.75), speed: RadiansPerSecond(0.35), wraps: false };
+/// Time for which the stage rings after an arrival.
+const RINGING: Seconds = Seconds(0.25);
+
+/// Sample period of the converter that takes the precise gyros.
+fn period() -> Seconds {
+    Seconds(1.0 / CONVERTER.rate.hertz())
+}
 
 /// Site and instrument.
 fn site() -> Site {
@@ -156,11 +165,11 @@ fn site() -> Site {
     Site {
         noise: StatedNoise::Whole(GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0)),
         scale_sigma: GYRO_SCALE_SIGMA,
-        g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
-        g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
+        g_sensitivity: G_SENSITIVITY.map(GSensitivity::from_degrees_per_hour),
+        g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(G_SENSITIVITY_SIGMA),
         accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
         encoder_sigma: ENCODER_SIGMA,
-        required_sigma: ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE,
+        required_sigma: Radians(ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE),
         ..Site::at(latitude)
     }
 }
@@ -174,21 +183,21 @@ pub fn setting() -> Setting {
 pub fn procedure() -> Procedure {
     let schedule = Schedule::closed_circle(POSITIONS, DWELL);
     let plan_seconds = schedule.seconds();
-    let procedure = Procedure::new(schedule, 1.0 / CONVERTER.rate.hertz());
+    let procedure = Procedure::new(schedule, period());
     let mut procedure =
         Procedure { settle_seconds: RINGING, period_tolerance: CONVERTER_TOLERANCE, ..procedure };
     if let Some(seconds) = SURVEY {
         let orders = &Order::COMPARED;
         procedure = procedure.after(Survey {
-            seconds,
+            seconds: Seconds(seconds),
             rotation: ROTATION,
             orders,
-            shortest: 2.0,
+            shortest: Seconds(2.0),
             plan_seconds,
         });
     }
     match ACCURACY {
-        Some((_, seconds)) => procedure.until_accurate(seconds),
+        Some((_, seconds)) => procedure.until_accurate(Seconds(seconds)),
         None => procedure,
     }
 }
@@ -234,9 +243,11 @@ pub fn base_keeper() -> keep::Setting {
     let usual = keep::Gyro::coarse();
     let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
     let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
-    let gyro = keep::Gyro { noise, bias_sigma: bias_deg_s * DEGREE, scale_sigma };
+    let gyro = keep::Gyro { noise, bias_sigma: RadiansPerSecond(bias_deg_s * DEGREE), scale_sigma };
     let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
-    keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds: base_period() }
+    let force_bias_sigma = MetresPerSecondSquared(force_bias_sigma);
+    let sample_seconds = Seconds(base_period());
+    keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds }
 }
 
 /// Policy after the alignment on a stage, two frames or a turntable: the azimuth is held without end, and its σ
@@ -244,7 +255,7 @@ pub fn base_keeper() -> keep::Setting {
 pub fn base_policy() -> Policy {
     let [_, _, beside] = base_keeper().gyros;
     Policy {
-        hold_seconds: f64::INFINITY,
+        hold_seconds: Seconds(f64::INFINITY),
         realignment: Realignment::Never,
         knows_stops: false,
         skips_known: false,
@@ -255,10 +266,16 @@ pub fn base_policy() -> Policy {
 
 /// Calibration of the two frames; until it is known a perfect mount, and a greater
 /// [`ORTHOGONALITY_SIGMA`].
-const GEOMETRY: TwoFrame =
-    TwoFrame { azimuth: 0.0, pitch: 0.0, frames: 0.0, gyro: 0.0, outer_zero: 0.0, inner_zero: 0.0 };
-/// Standard deviation of each non-orthogonality that the calibration leaves, 1σ, rad.
-const ORTHOGONALITY_SIGMA: f64 = 0.05 * DEGREE;
+const GEOMETRY: TwoFrame = TwoFrame {
+    azimuth: Radians(0.0),
+    pitch: Radians(0.0),
+    frames: Radians(0.0),
+    gyro: Radians(0.0),
+    outer_zero: Radians(0.0),
+    inner_zero: Radians(0.0),
+};
+/// Standard deviation of each non-orthogonality that the calibration leaves, 1σ.
+const ORTHOGONALITY_SIGMA: Radians = Radians::from_degrees(0.05);
 /// Number of times that the four headings are taken, each for a dwell.
 const PASSES: usize = 6;
 /// Headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
@@ -275,9 +292,10 @@ pub fn mount_setting() -> Setting {
 
 /// Procedure of the session on two frames.
 pub fn mount_procedure() -> Procedure {
-    let pass = PASS.map(|heading| Position { angle: heading * DEGREE, seconds: DWELL });
+    let pass =
+        PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds: DWELL });
     let positions = core::iter::repeat_n(pass, PASSES).flatten().collect();
-    let procedure = Procedure::new(Schedule::Listed(positions), 1.0 / CONVERTER.rate.hertz());
+    let procedure = Procedure::new(Schedule::Listed(positions), period());
     Procedure {
         arrival: ARRIVAL,
         settle_seconds: RINGING,
@@ -311,7 +329,7 @@ const MODULATED_TURNS: Option<u32> = None;
 
 /// Standard deviation of the encoder's zero on a rotating platform, as it enters the azimuth, 1σ,
 /// rad: without an index no rotation shows it.
-const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
+const ENCODER_ZERO_SIGMA: Radians = Radians::from_degrees(0.15);
 
 /// Site and instrument on a rotating platform.
 pub fn turning_setting() -> rotating::Setting {
@@ -321,9 +339,9 @@ pub fn turning_setting() -> rotating::Setting {
 
 /// Procedure of the session on a rotating platform.
 pub fn turning_procedure() -> Turning {
-    let mut speeds = [0.0; SPEEDS.len()];
-    speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| *speed = hertz * TURN);
-    let usual = Turning::new(&speeds, 1.0 / CONVERTER.rate.hertz());
+    let mut speeds = [RadiansPerSecond::default(); SPEEDS.len()];
+    speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| speed.0 = hertz * TURN);
+    let usual = Turning::new(&speeds, period());
     Turning { modulated_turns: MODULATED_TURNS.unwrap_or(usual.modulated_turns), ..usual }
 }
 
@@ -339,16 +357,16 @@ const STOPS: usize = 3;
 const BIAS_SIGMA: f64 = 0.5;
 /// Standard deviation of the accelerometers' biases after calibration, 1σ, m/s²: in a vehicle they
 /// act as tilt.
-const FORCE_CALIBRATED_SIGMA: f64 = 1e-4 * 9.80665;
-/// Noise of the accelerometers, m/s²/√Hz: 25 µg/√Hz (ADXL355 data sheet, table 1), raised for the
+const FORCE_CALIBRATED_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e-4 * 9.80665);
+/// Noise of the accelerometers: 25 µg/√Hz (ADXL355 data sheet, table 1), raised for the
 /// outputs that are not read.
-const FORCE_NOISE: f64 = 1.2 * 25e-6 * 9.80665;
+const FORCE_NOISE: ForceNoise = ForceNoise(1.2 * 25e-6 * 9.80665);
 
 /// Site and instrument in a vehicle.
 pub fn driving_setting() -> stops::Setting {
     let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site() };
     stops::Setting {
-        bias_sigma: Some(BIAS_SIGMA * DEGREE_PER_HOUR),
+        bias_sigma: Some(RadiansPerSecond::from_degrees_per_hour(BIAS_SIGMA)),
         force_noise: FORCE_NOISE,
         ..stops::Setting::new(site)
     }
@@ -356,7 +374,7 @@ pub fn driving_setting() -> stops::Setting {
 
 /// Procedure of the session in a vehicle.
 pub fn driving_procedure() -> Driving {
-    Driving::new(STOPS, 1.0 / CONVERTER.rate.hertz())
+    Driving::new(STOPS, period())
 }
 
 /// Configuration of the vehicle's devices.
@@ -374,10 +392,9 @@ const ALIGNS_ALWAYS: bool = true;
 /// Site and gyros for attitude and heading.
 pub fn keeper() -> keep::Setting {
     let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
-    let period = 1.0 / CONVERTER.rate.hertz();
     keep::Setting {
         force_bias_sigma: FORCE_CALIBRATED_SIGMA,
-        ..keep::Setting::precise(latitude, period, kept_gyro())
+        ..keep::Setting::precise(latitude, period(), kept_gyro())
     }
 }
 
@@ -385,7 +402,7 @@ pub fn keeper() -> keep::Setting {
 fn kept_gyro() -> keep::Gyro {
     keep::Gyro {
         noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
-        bias_sigma: BIAS_SIGMA * DEGREE_PER_HOUR,
+        bias_sigma: RadiansPerSecond::from_degrees_per_hour(BIAS_SIGMA),
         scale_sigma: GYRO_SCALE_SIGMA,
     }
 }
@@ -393,7 +410,7 @@ fn kept_gyro() -> keep::Gyro {
 /// Policy after the alignment: the azimuth is held without end.
 pub fn policy() -> Policy {
     Policy {
-        hold_seconds: f64::INFINITY,
+        hold_seconds: Seconds(f64::INFINITY),
         realignment: if REALIGNS { Realignment::BetweenStops } else { Realignment::Never },
         knows_stops: true,
         skips_known: !ALIGNS_ALWAYS,
@@ -425,17 +442,17 @@ pub const SPIN_CONVERTER: Converter =
 /// Properties of the gyro about x, for the roll.
 pub fn spin_setting() -> spin::Setting {
     spin::Setting {
-        sample_seconds: 1.0 / SPIN_CONVERTER.rate.hertz(),
-        angle_random_walk: SPIN_WALK * DEGREE_PER_SQRT_HOUR,
+        sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
+        angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
         scale_sigma: SPIN_SCALE_SIGMA,
-        bias_sigma: SPIN_BIAS_SIGMA * DEGREE_PER_HOUR,
+        bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),
         method: spin::Method::PhaseLocked,
     }
 }
 
-/// Course and pitch at the start, rad.
-pub fn launch() -> [f64; 2] {
-    LAUNCH.map(|angle| angle * DEGREE)
+/// Course and pitch at the start.
+pub fn launch() -> [Radians; 2] {
+    LAUNCH.map(Radians::from_degrees)
 }
 
 /// Configuration of the sensors; `None` where a scale factor is zero.

@@ -9,7 +9,7 @@ use orientation::noise::allan::Point;
 use orientation::noise::allan::covariance::degrees_of_freedom;
 use orientation::noise::fit::{FitError, NoiseFit};
 use orientation::noise::model::GyroNoise;
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Seconds};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::Record;
@@ -156,7 +156,7 @@ impl Analysis {
         let factors = record.factors().into_iter();
         let points: Vec<Point> = factors.filter_map(|m| record.strided(m, 1)).collect();
         let period = rest.spacing.period_s;
-        let fit = NoiseFit::of_points(&points, period)?;
+        let fit = NoiseFit::of_points(&points, Seconds(period))?;
         // What rounds like this in steps says the step and not the gyro.
         let rounding = rest.step() * rest.step() / 12.0;
         if points.first().is_some_and(|point| point.variance < rounding) {
@@ -173,7 +173,7 @@ fn confident(point: &Point, noise: &GyroNoise, period: f64) -> Confident {
     let degrees = degrees_of_freedom(point, noise, period);
     let deviation = point.variance.sqrt();
     let limits = factors(degrees).map(|factor| factor * deviation);
-    Confident { seconds: point.seconds, deviation, limits, degrees, terms: point.terms }
+    Confident { seconds: point.seconds.0, deviation, limits, degrees, terms: point.terms }
 }
 
 /// By what a deviation with so many degrees of freedom is multiplied for its 68.3 % limits; for

@@ -8,6 +8,7 @@ pub mod analysis;
 pub mod speed;
 
 use orientation::noise::allan::Point;
+use orientation::units::Seconds;
 
 /// Rates in segments, ready for any averaging time.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,9 +56,9 @@ impl Record {
         let (sum, terms) = of_segments.fold((0.0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
         let averaged = 2.0 * (factor as f64) * (factor as f64);
         Some(Point {
-            seconds: factor as f64 * self.period,
+            seconds: Seconds(factor as f64 * self.period),
             variance: sum / terms as f64 / averaged,
-            stride: stride as f64 * self.period,
+            stride: Seconds(stride as f64 * self.period),
             terms,
         })
     }

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use orientation::noise::allan::{Allan, Point};
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Seconds};
 
 use super::Record;
 use super::analysis::Rest;
@@ -58,11 +58,11 @@ fn differences(rates: &[AngularRate], period: f64) -> Vec<f64> {
     let points = streamed(rates);
     let samples = |seconds: f64| (seconds / period).round() as usize;
     let difference = |point: Point| {
-        let same = record.strided(samples(point.seconds), samples(point.stride))?;
+        let same = record.strided(samples(point.seconds.0), samples(point.stride.0))?;
         let is_same = same.terms == point.terms;
         Some(if is_same { (same.variance / point.variance - 1.0).abs() } else { f64::INFINITY })
     };
-    points.points(period).filter_map(difference).collect()
+    points.points(Seconds(period)).filter_map(difference).collect()
 }
 
 /// Samples a second of some work on so many.

@@ -37,7 +37,7 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
     let slow = conclusion.slow_motions(session.setting(), session.dwells());
     let motions = [TURNING, TILTING].into_iter().zip(slow);
-    motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma)).collect()
+    motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma.0)).collect()
 }
 
 /// Slow motions of the base that a turning platform does not show.
@@ -46,14 +46,14 @@ pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
     let turn = conclusion.slow_turn(session.setting(), &session.turn_accumulator);
-    Unseen::of(TURNING, turn, azimuth.sigma).into_iter().collect()
+    Unseen::of(TURNING, turn, azimuth.sigma.0).into_iter().collect()
 }
 
 impl Unseen {
     /// Nothing where it hides in the azimuth's σ, rad.
     fn of(motion: Motion, slow: Option<SlowMotion>, sigma: f64) -> Option<Self> {
         let slow = slow?;
-        let unseen = Self { motion, rate: STATED * slow.sigma, lever: slow.lever.abs() };
+        let unseen = Self { motion, rate: STATED * slow.sigma.0, lever: slow.lever.0.abs() };
         (unseen.rate * unseen.lever > WORTH_STATING * sigma).then_some(unseen)
     }
 

@@ -6,7 +6,7 @@ use std::fmt::Display;
 use orientation::alignment::{Azimuth, Refusal, Solution, Verdict};
 use serde::Serialize;
 
-use crate::output::{azimuth_error, degrees};
+use crate::output::azimuth_error;
 
 /// One alignment against the truth, in degrees.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +26,8 @@ impl Answer {
     /// The refusal of the verdict.
     pub fn of(verdict: Verdict, truth_deg: f64) -> Result<Self, Refusal> {
         let Solution { azimuth: Azimuth { angle, sigma }, limit } = verdict?;
-        let error = azimuth_error(degrees(angle), truth_deg);
-        Ok(Self { error, sigma: degrees(sigma), limit: degrees(limit) })
+        let error = azimuth_error(angle.degrees(), truth_deg);
+        Ok(Self { error, sigma: sigma.degrees(), limit: limit.degrees() })
     }
 }
 

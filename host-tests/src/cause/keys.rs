@@ -53,7 +53,7 @@ pub fn noise(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
     let replay = stepwise::replay(&silent, body, asked, |_| {}).ok()?;
     let conclusion = replay.session.conclusion()?;
     let Ok(Azimuth { .. }) = conclusion.verdict else { return None };
-    let shown = conclusion.angle_random_walk / DEGREE * 60.0;
+    let shown = conclusion.angle_random_walk.0 / DEGREE * 60.0;
     let is_other = shown > OTHER_NOISE * stated || stated > OTHER_NOISE * shown;
     is_other.then(|| {
         format!(

@@ -36,10 +36,10 @@ pub fn of(session: &Session, refusal: &Refusal) -> Option<String> {
     if !is_scattered || dwells.len() < 5 + FREE {
         return None;
     }
-    let (_, chi_square) = solved(dwells, dwells.len(), rate)?;
+    let (_, chi_square) = solved(dwells, dwells.len(), rate.0)?;
     let one = chi_square / (dwells.len() - 3) as f64;
     let places = FEWEST..=dwells.len() - FEWEST;
-    let two = places.filter_map(|place| two(dwells, place, rate));
+    let two = places.filter_map(|place| two(dwells, place, rate.0));
     let Two { left, angle, after } = two.min_by(|a, b| a.left.total_cmp(&b.left))?;
     (left < LEFT * one).then(|| {
         format!(
@@ -61,7 +61,7 @@ fn solved(dwells: &[Dwell], place: usize, rate: f64) -> Option<([f64; 5], f64)> 
         } else {
             [0.0, 0.0, cosine, -sine, 1.0]
         };
-        regression.push(&columns, (dwell.rate - dwells[0].rate) / rate);
+        regression.push(&columns, (dwell.rate.0 - dwells[0].rate.0) / rate);
     }
     let after = if place < dwells.len() { Column::Free } else { Column::Absent };
     let model = [Column::Free, Column::Free, after, after, Column::Free];
@@ -77,5 +77,5 @@ fn two(dwells: &[Dwell], place: usize, rate: f64) -> Option<Two> {
     let turn = wrapped(d.atan2(c) - b.atan2(a));
     let angle = if turn > 0.5 * TURN { turn - TURN } else { turn };
     let left = chi_square / (dwells.len() - 5) as f64;
-    is_one.then(|| Two { left, angle, after: dwells[place].start() })
+    is_one.then(|| Two { left, angle, after: dwells[place].start().0 })
 }

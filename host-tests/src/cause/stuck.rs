@@ -22,7 +22,7 @@ const TURNS: f64 = 0.01;
 pub fn of_stage(header: &Header, body: &Body) -> Option<String> {
     let Body::Stage(rows) = body else { return None };
     let horizontal = header.latitude_deg.and_then(Latitude::from_degrees);
-    let horizontal = horizontal.map_or(EARTH_RATE, Latitude::horizontal_rate);
+    let horizontal = horizontal.map_or(EARTH_RATE, |latitude| latitude.horizontal_rate().0);
     let line = |row: &StageRow| row.line;
     let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| describe("g_rad_s", run, line));
     gyro.or_else(|| {

@@ -34,9 +34,9 @@ pub fn of(session: &Session, refusal: &Refusal, is_reversed: bool) -> Option<Str
             | Refusal::Stepwise(stepwise::Refusal::TiltStepped { .. })
     );
     let (dwells, gravity) = (session.dwells(), session.setting().site.latitude.gravity());
-    let steady = fit(dwells, gravity, 1.0, Column::Absent)?;
-    let drifting = fit(dwells, gravity, 1.0, Column::Free)?;
-    let reversed = fit(dwells, gravity, -1.0, Column::Absent).filter(|_| is_reversed);
+    let steady = fit(dwells, gravity.0, 1.0, Column::Absent)?;
+    let drifting = fit(dwells, gravity.0, 1.0, Column::Free)?;
+    let reversed = fit(dwells, gravity.0, -1.0, Column::Absent).filter(|_| is_reversed);
     let is_likely = match reversed {
         Some(reversed) => {
             drifting.explains_more_than(&steady) && !reversed.explains_more_than(&drifting)
@@ -75,10 +75,10 @@ fn fit(dwells: &[Dwell], gravity: f64, sign: f64, change: Column) -> Option<Foun
     let mut regression = Regression::<COLUMNS>::default();
     for (dwell, [x, y, _]) in forces() {
         let (sine, cosine) = (sign * dwell.stage.rad()).sin_cos();
-        let part = (dwell.middle - begin) / (end - begin);
+        let part = (dwell.middle.0 - begin.0) / (end.0 - begin.0);
         let square = part * part;
-        regression.push(&[cosine, -sine, 1.0, 0.0, part, 0.0, square, 0.0], x / gravity);
-        regression.push(&[-sine, -cosine, 0.0, 1.0, 0.0, part, 0.0, square], y / gravity);
+        regression.push(&[cosine, -sine, 1.0, 0.0, part, 0.0, square, 0.0], x.0 / gravity);
+        regression.push(&[-sine, -cosine, 0.0, 1.0, 0.0, part, 0.0, square], y.0 / gravity);
     }
     let free = Column::Free;
     let model = [free, free, free, free, change, change, change, change];

@@ -63,7 +63,7 @@ impl Outcome {
         method.trace(&mut add);
         let verdict = method.verdict();
         if let Some(Ok(Solution { azimuth, .. })) = &verdict {
-            add(AZIMUTH, &[azimuth.angle, azimuth.sigma].map(f64::to_bits));
+            add(AZIMUTH, &[azimuth.angle.0, azimuth.sigma.0].map(f64::to_bits));
         }
         let reason = verdict.and_then(Result::err).map(|reason| reason.to_string());
         Self { rows, reason }

@@ -96,21 +96,21 @@ impl Point {
     #[must_use]
     pub fn azimuth_error(&self) -> Option<[f64; 2]> {
         let azimuth = self.report.azimuth?;
-        Some([short(azimuth.angle - self.truth.azimuth_rad), azimuth.sigma])
+        Some([short(azimuth.angle.0 - self.truth.azimuth_rad), azimuth.sigma.0])
     }
 
     /// The azimuth, its stated 1σ and its error, °; none where it is not known.
     #[must_use]
     pub fn azimuth_deg(&self) -> Option<[f64; 3]> {
         let [error, sigma] = self.azimuth_error()?;
-        Some([self.report.azimuth?.angle, sigma, error].map(f64::to_degrees))
+        Some([self.report.azimuth?.angle.0, sigma, error].map(f64::to_degrees))
     }
 
     /// Errors of pitch and roll, rad.
     #[must_use]
     pub fn level_error(&self) -> [f64; 2] {
         let Report { pitch, roll, .. } = self.report;
-        [short(pitch - self.truth.pitch_rad), short(roll - self.truth.roll_rad)]
+        [short(pitch.0 - self.truth.pitch_rad), short(roll.0 - self.truth.roll_rad)]
     }
 }
 

@@ -4,7 +4,7 @@ use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
-use orientation::units::DEGREE;
+use orientation::units::{DEGREE, Radians};
 
 use super::error::ReplayError;
 use crate::recording::{Body, Header};
@@ -68,6 +68,6 @@ impl Asked {
     /// Puts what the user states in the place of what a session was given.
     pub(crate) fn change(&self, site: &mut Site) {
         site.latitude = self.latitude.unwrap_or(site.latitude);
-        site.required_sigma = self.required_sigma.unwrap_or(site.required_sigma);
+        site.required_sigma = Radians(self.required_sigma.unwrap_or(site.required_sigma.0));
     }
 }

@@ -4,7 +4,6 @@ use super::keys::Keys;
 use super::run::RunDetails;
 use super::{Finished, Outcome, Source};
 use crate::instrument::kept::Point;
-use crate::output::degrees;
 use crate::recording::Truth;
 
 /// A run whose azimuth is kept while no alignment's conclusion stands: it came from outside, or the session was begun
@@ -37,9 +36,9 @@ impl Outcome {
             azimuth_deg: azimuth.map(|[azimuth, ..]| azimuth),
             sigma_deg: azimuth.map(|[_, sigma, _]| sigma),
             error_deg: azimuth.map(|[.., error]| error),
-            pitch_deg: last.map(|last| degrees(last.report.pitch)),
-            roll_deg: last.map(|last| degrees(last.report.roll)),
-            seconds: last.map_or(0.0, |last| last.report.seconds),
+            pitch_deg: last.map(|last| last.report.pitch.degrees()),
+            roll_deg: last.map(|last| last.report.roll.degrees()),
+            seconds: last.map_or(0.0, |last| last.report.seconds.0),
             run: Some(run),
             ..this
         }

@@ -12,13 +12,14 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::budget::Budget;
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::refusal::Refusal;
+use orientation::units::Radians;
 use serde::{Serialize, Serializer};
 
 use self::keys::Keys;
 use self::run::RunDetails;
 use crate::methods::asked::Asked;
 use crate::methods::vertical::Moment;
-use crate::output::{azimuth_error, degrees, positive_zero};
+use crate::output::{azimuth_error, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part as ReportPart, Report, Table};
 
@@ -141,16 +142,16 @@ pub struct FitDetails {
 pub struct BudgetDetails(Budget);
 
 impl BudgetDetails {
-    /// The parts, rad; a displacement only where a vehicle drove.
-    fn shown(&self) -> impl Iterator<Item = (Part, f64)> {
+    /// The parts; a displacement only where a vehicle drove.
+    fn shown(&self) -> impl Iterator<Item = (Part, Radians)> {
         let parts = self.0.parts().into_iter();
-        parts.filter(|(source, part)| *source != Part::Displacement || *part > 0.0)
+        parts.filter(|(source, part)| *source != Part::Displacement || part.0 > 0.0)
     }
 }
 
 impl Serialize for BudgetDetails {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.shown().map(|(source, part)| (source, degrees(part))))
+        serializer.collect_map(self.shown().map(|(source, part)| (source, part.degrees())))
     }
 }
 
@@ -198,10 +199,10 @@ impl Outcome {
     #[must_use]
     pub fn judged(self, verdict: &Result<Azimuth, Refusal>, truth_deg: Option<f64>) -> Self {
         let azimuth = verdict.as_ref().ok();
-        let found = azimuth.map(|azimuth| degrees(azimuth.angle));
+        let found = azimuth.map(|azimuth| azimuth.angle.degrees());
         Self {
             azimuth_deg: found,
-            sigma_deg: azimuth.map(|azimuth| degrees(azimuth.sigma)),
+            sigma_deg: azimuth.map(|azimuth| azimuth.sigma.degrees()),
             error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
             remedy: verdict.as_ref().err().map_or("", Refusal::remedy),
             ..self.settled(verdict.as_ref().err().map(ToString::to_string))
@@ -291,15 +292,16 @@ fn earth_rate(fit: &FitDetails) -> Option<String> {
 fn budget_table(details: &BudgetDetails) -> Table {
     let budget = &details.0;
     let sigma = budget.sigma();
+    let share = |part: f64| 100.0 * (part / sigma.0) * (part / sigma.0);
     let sum =
-        vec!["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
+        vec!["root sum of squares".to_owned(), format!("{:.4}", sigma.degrees()), String::new()];
     let dominant =
         budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
     let title = format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default());
     Columns::of(&title, &details.shown().collect::<Vec<_>>())
         .column("source", |(source, _)| source)
-        .fixed("part, °", 4, |(_, part)| degrees(*part))
-        .fixed("share of the variance, %", 1, |(_, part)| 100.0 * (part / sigma) * (part / sigma))
+        .fixed("part, °", 4, |(_, part)| part.degrees())
+        .fixed("share of the variance, %", 1, |(_, part)| share(part.0))
         .table(Some(sum))
 }
 

@@ -115,9 +115,9 @@ fn of_kept<R>(run: &Run<R>, last: &Point) -> Keys {
         .with("sigma_deg", azimuth.map(|[_, sigma, _]| sigma))
         .with("error_deg", azimuth.map(|[.., error]| error))
         .with("greatest_sigmas", greatest_sigmas(&run.kept))
-        .with("pitch_deg", degrees(pitch))
-        .with("roll_deg", degrees(roll))
-        .with("level_sigma_deg", degrees(level_sigma))
+        .with("pitch_deg", pitch.degrees())
+        .with("roll_deg", roll.degrees())
+        .with("level_sigma_deg", level_sigma.degrees())
         .with("level_error_deg", last.level_error().map(degrees))
         .with("level_rms_deg", level_rms(&run.kept).map(degrees))
         .with("state", last.report.state.to_string())
@@ -135,11 +135,11 @@ fn in_words<R>(run: &Run<R>, last: &Point) -> Lines {
         let (sigmas, greatest) = (error / sigma, greatest_sigmas(&run.kept).unwrap_or(0.0));
         format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way")
     });
-    let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(degrees(angle), 5e-4));
-    let sigma = degrees(level_sigma);
+    let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle.degrees(), 5e-4));
+    let sigma = level_sigma.degrees();
     let [pitch_rms, roll_rms] = level_rms(&run.kept).map(degrees);
     let times = Some(realigned(run)).filter(|times| *times > 0);
-    Lines::new(&format!("Kept for {seconds:.0} s"))
+    Lines::new(&format!("Kept for {:.0} s", seconds.0))
         .with("azimuth of body x", azimuth)
         .with_found("its error", error)
         .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))

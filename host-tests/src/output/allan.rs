@@ -3,7 +3,7 @@
 mod page;
 
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde_json::{Value, json};
 
 use super::degrees_per_hour;
@@ -123,8 +123,8 @@ impl Shown<'_> {
                 .to_owned()
         });
         let hidden = fit.filter(|fit| matches!(fit.estimates, [.., Estimate::Found { .. }]));
-        let hidden = hidden.and_then(|fit| fit.hidden_slope(seconds)).map(|slope| {
-            let slope = slope / DEGREE_PER_HOUR * 3600.0;
+        let hidden = hidden.and_then(|fit| fit.hidden_slope(Seconds(seconds))).map(|slope| {
+            let slope = slope.0 / DEGREE_PER_HOUR * 3600.0;
             format!("a random walk that is not observable may hide beside the ramp: ± {slope:.3} °/h² then")
         });
         self.rest.notes().into_iter().chain(misfit).chain(hidden).collect()

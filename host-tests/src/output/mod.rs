@@ -9,6 +9,7 @@ use std::io::{self, Write};
 
 use orientation::alignment::stepwise::fit::{Fit, Hypothesis};
 use orientation::math::regression::Column;
+use orientation::units::RadiansPerSecond;
 
 /// Writes a line to standard error. A line that has no reader is lost, which is no error.
 pub fn say(line: &str) {
@@ -31,6 +32,12 @@ pub fn positive_zero(value: f64, half: f64) -> f64 {
 #[must_use]
 pub fn degrees_per_hour(rate: f64) -> f64 {
     rate.to_degrees() * 3600.0
+}
+
+/// Rates about three axes in °/h.
+#[must_use]
+pub fn in_degrees_per_hour(rates: [RadiansPerSecond; 3]) -> [f64; 3] {
+    rates.map(|rate| degrees_per_hour(rate.0))
 }
 
 /// The difference of two azimuths in degrees, (−180, 180].

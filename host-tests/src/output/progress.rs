@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use orientation::alignment::stepwise::session::Session;
+use orientation::units::Radians;
 
-use super::{degrees, say};
+use super::say;
 
 /// Lines that a whole task may print where there is no terminal.
 const LINES: u64 = 12;
@@ -79,7 +80,7 @@ impl Progress {
 fn so_far(session: &Session) -> String {
     match session.preview().fit {
         Some(fit) => {
-            let [sigma, limit] = [fit.sigma(), fit.limit].map(degrees);
+            let [sigma, limit] = [fit.sigma(), fit.limit].map(Radians::degrees);
             format!("σ so far {sigma:.4}°, limit {limit:.4}°")
         }
         None => "not yet determined".to_owned(),

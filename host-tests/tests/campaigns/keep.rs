@@ -13,7 +13,7 @@ use orientation::alignment::Azimuth;
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, Radians, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
@@ -47,17 +47,18 @@ const RATE_HZ: f64 = 50.0;
 fn stored(latitude_deg: f64, bias: f64, turning: f64) -> f64 {
     let latitude = Latitude::from_degrees(latitude_deg).expect("it is one");
     let noise = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);
-    let gyro = Gyro { noise, bias_sigma: 30.0 * DEGREE_PER_HOUR, scale_sigma: 0.0 };
-    let mut keeper = Keeper::new(&Setting::precise(latitude, 1.0 / RATE_HZ, gyro));
+    let gyro =
+        Gyro { noise, bias_sigma: RadiansPerSecond::from_degrees_per_hour(30.0), scale_sigma: 0.0 };
+    let mut keeper = Keeper::new(&Setting::precise(latitude, Seconds(1.0 / RATE_HZ), gyro));
     let mut path = Converter::default();
     let mut azimuth = 70.0_f64.to_radians();
     let mut push = |keeper: &mut Keeper, index: u32, turning: f64| {
         let middle = azimuth + 0.5 * turning / RATE_HZ;
         azimuth += turning / RATE_HZ;
         let level = latitude.horizontal_rate();
-        let earth = [level * middle.cos(), -level * middle.sin(), -latitude.vertical_rate()];
+        let earth = [level.0 * middle.cos(), -level.0 * middle.sin(), -latitude.vertical_rate().0];
         let turned = [earth[0] + bias, earth[1] + bias, earth[2] + bias + turning];
-        let force = [0.0, 0.0, -latitude.gravity()];
+        let force = [0.0, 0.0, -latitude.gravity().0];
         let time_s = f64::from(index + 1) / RATE_HZ;
         keeper.push(&path.sample(time_s, turned.map(|rate| rate / RATE_HZ), force));
     };
@@ -65,11 +66,11 @@ fn stored(latitude_deg: f64, bias: f64, turning: f64) -> f64 {
     for index in 0..rest {
         push(&mut keeper, index, 0.0);
     }
-    keeper.hand_over(Azimuth { angle: 70.0_f64.to_radians(), sigma: 1e-4 });
+    keeper.hand_over(Azimuth { angle: Radians::from_degrees(70.0), sigma: Radians(1e-4) });
     for index in rest..rest + (600.0 * RATE_HZ) as u32 {
         push(&mut keeper, index, turning);
     }
-    keeper.report().azimuth.expect("it was handed over").angle.to_degrees()
+    keeper.report().azimuth.expect("it was handed over").angle.degrees()
 }
 
 #[test]

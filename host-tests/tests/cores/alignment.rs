@@ -14,7 +14,9 @@ use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::noise::whitener::Whitener;
 use orientation::signal::blocks::Blocks;
 use orientation::signal::dwell::Dwell;
-use orientation::units::Angle;
+use orientation::units::{
+    Angle, MetresPerSecondSquared, RadiansPerRootSecond, RadiansPerSecond, RateRandomWalk, Seconds,
+};
 
 /// Solves A x = b by Gauss–Jordan with pivoting: the independent way.
 fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
@@ -76,7 +78,7 @@ fn whitened_covariance(
 fn a_random_walk_is_whitened_exactly() {
     let (rows, times) = circle(12, 10.0);
     let (white, k) = (0.3, 0.05);
-    let noise = GyroNoise { rate_random_walk: k, ..GyroNoise::default() };
+    let noise = GyroNoise { rate_random_walk: RateRandomWalk(k), ..GyroNoise::default() };
     let middle = |i: usize| times[i].0 + 0.5 * times[i].1;
     let c: Vec<Vec<f64>> = (0..12)
         .map(|i| {
@@ -107,7 +109,7 @@ fn flicker_is_whitened_to_within_two_per_cent() {
     for (count, length, white) in [(12, 10.0, 0.05), (8, 30.0, 0.01), (60, 1.0, 0.3)] {
         let (rows, times) = circle(count, length);
         let b: f64 = 0.7;
-        let noise = GyroNoise { bias_instability: b, ..GyroNoise::default() };
+        let noise = GyroNoise { bias_instability: RadiansPerSecond(b), ..GyroNoise::default() };
         let density = b * b / std::f64::consts::PI;
         let c: Vec<Vec<f64>> = (0..count)
             .map(|i| {
@@ -231,7 +233,10 @@ fn two_azimuths_that_fit_alike_have_no_margin() {
 
 /// The tilt of dwells on the stage at the equator, with accelerometers of this bias, 1σ, m/s².
 fn levelled(dwells: &[Dwell], accelerometer_bias_sigma: f64) -> Tilt {
-    let site = Site { accelerometer_bias_sigma, ..Site::at(Latitude::EQUATOR) };
+    let site = Site {
+        accelerometer_bias_sigma: MetresPerSecondSquared(accelerometer_bias_sigma),
+        ..Site::at(Latitude::EQUATOR)
+    };
     tilt(&Setting::new(site), dwells.iter())
 }
 
@@ -243,7 +248,11 @@ fn leaning(theta_deg: f64, tilt: [f64; 2], bias: [f64; 2]) -> Dwell {
     let gravity = Latitude::EQUATOR.gravity();
     Dwell {
         stage: Angle::from_rad(theta_deg.to_radians()),
-        force: Some([gravity * x, gravity * y, -gravity]),
+        force: Some([
+            MetresPerSecondSquared(gravity.0 * x),
+            MetresPerSecondSquared(gravity.0 * y),
+            MetresPerSecondSquared(-gravity.0),
+        ]),
         ..Dwell::default()
     }
 }
@@ -261,7 +270,9 @@ fn a_full_circle_frees_the_tilt_of_the_bias_and_an_arc_does_not() {
     // On an arc with some mg of scatter the tilt is known no better than the bias: 0.3/9.8 g.
     let mut arc = at(&[0.0, 2.0, 4.0, 6.0]);
     for (dwell, push) in arc.iter_mut().zip([0.05, -0.05, -0.05, 0.05]) {
-        dwell.force = dwell.force.map(|[x, y, z]| [x + push, y - push, z]);
+        dwell.force = dwell.force.map(|[x, y, z]| {
+            [MetresPerSecondSquared(x.0 + push), MetresPerSecondSquared(y.0 - push), z]
+        });
     }
     let found = levelled(&arc, 0.3);
     let sigma = found.covariance[0][0].sqrt();
@@ -276,7 +287,7 @@ fn pitch_and_roll_come_from_the_phasor() {
     let dwells: Vec<Dwell> =
         (0..12).map(|i| leaning(f64::from(i) * 30.0, phasor, [0.0, 0.0])).collect();
     let found = levelled(&dwells, 0.05);
-    assert!((found.pitch() - pitch).abs() < 1e-8 && (found.roll() - roll).abs() < 1e-8);
+    assert!((found.pitch().0 - pitch).abs() < 1e-8 && (found.roll().0 - roll).abs() < 1e-8);
     assert!(!levelled(&[Dwell::default()], 0.0).measured);
 }
 
@@ -291,7 +302,8 @@ fn blocks(generator: &mut Generator, samples: u32, add: impl Fn(u32) -> f64) -> 
 
 /// N for one µrad/s a sample at 100 Hz.
 fn gyro() -> Setting {
-    let noise = GyroNoise { angle_random_walk: 1e-6 * 0.1, ..GyroNoise::default() };
+    let noise =
+        GyroNoise { angle_random_walk: RadiansPerRootSecond(1e-6 * 0.1), ..GyroNoise::default() };
     let latitude = Latitude::from_degrees(50.0).expect("it is one");
     Setting::new(Site { noise: StatedNoise::Whole(noise), ..Site::at(latitude) })
 }
@@ -318,9 +330,15 @@ fn the_stop_criteria_name_dwells_in_which_a_vehicle_turned_or_drove() {
     let dph = 1f64.to_radians() / 3600.0;
     // A gyro of 40 °/h bias on a stage at 50°, an accelerometer 0.2 m/s² beside gravity: biases are no motion.
     let mut dwell = |index: u32, rate: f64, force: f64| Dwell {
-        seconds: 10.0,
-        rate: (40.0 + 9.67 * f64::from(index * 15).to_radians().cos() + rate) * dph,
-        force: Some([0.1, -0.05, -9.81 - 0.2 - force]),
+        seconds: Seconds(10.0),
+        rate: RadiansPerSecond(
+            (40.0 + 9.67 * f64::from(index * 15).to_radians().cos() + rate) * dph,
+        ),
+        force: Some([
+            MetresPerSecondSquared(0.1),
+            MetresPerSecondSquared(-0.05),
+            MetresPerSecondSquared(-9.81 - 0.2 - force),
+        ]),
         ..blocks(&mut generator, 1000, |_| 0.0)
     };
     let healthy: Vec<Dwell> = (0..24).map(|index| dwell(index, 0.0, 0.0)).collect();
@@ -331,9 +349,12 @@ fn the_stop_criteria_name_dwells_in_which_a_vehicle_turned_or_drove() {
     // Twice the Earth rate, and 2 °/h that wind leaves to a mean of 10 s: 45 °/h is more, 20 °/h may be less.
     assert_eq!(norm.disturbance(&dwell(0, 20.0, 0.0)), None);
     let turning = norm.disturbance(&dwell(0, 45.0, 0.0));
-    assert!(matches!(turning, Some(Disturbance::Driving(rate, _)) if rate > 10.0), "{turning:?}");
+    assert!(matches!(turning, Some(Disturbance::Driving(rate, _)) if rate.0 > 10.0), "{turning:?}");
     let driving = norm.disturbance(&dwell(0, 0.0, 0.05));
-    assert!(matches!(driving, Some(Disturbance::Driving(_, force)) if force > 0.04), "{driving:?}");
+    assert!(
+        matches!(driving, Some(Disturbance::Driving(_, force)) if force.0 > 0.04),
+        "{driving:?}"
+    );
 }
 
 #[test]

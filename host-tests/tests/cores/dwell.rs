@@ -11,7 +11,7 @@ use orientation::earth::Latitude;
 use orientation::filter::Coefficients;
 use orientation::signal::Sample;
 use orientation::signal::dwell::{Dwell, DwellAverage};
-use orientation::units::{AngularRate, Instant, SpecificForce, Temperature};
+use orientation::units::{AngularRate, Instant, Seconds, SpecificForce, Temperature};
 
 const SAMPLE_SECONDS: f64 = 0.01;
 
@@ -31,7 +31,7 @@ fn averaged(samples: &[Sample]) -> Dwell {
     for sample in &samples[1..] {
         average.push(&low_pass, sample);
     }
-    average.finish(&low_pass, SAMPLE_SECONDS).expect("it is long enough")
+    average.finish(&low_pass, Seconds(SAMPLE_SECONDS)).expect("it is long enough")
 }
 
 fn mean(values: &[i32]) -> f64 {
@@ -59,7 +59,7 @@ fn forces_and_temperatures_are_averaged_over_the_samples_that_bring_them() {
     let dwell = averaged(&samples);
     let found = dwell.force.expect("some samples brought it");
     for (found, axis) in found.into_iter().zip(&forces) {
-        assert!((found - mean(axis) * 1e-6).abs() < 1e-12, "{found}");
+        assert!((found.0 - mean(axis) * 1e-6).abs() < 1e-12, "{found:?}");
     }
     let found = dwell.temperature.get().expect("some samples brought it");
     assert!((found - mean(&temperatures) * 1e-3).abs() < 1e-10, "{found}");
@@ -77,7 +77,7 @@ fn a_dwell_whose_samples_bring_no_force_has_none() {
 fn the_platform_counts_as_level_only_once_a_force_has_said_so() {
     for (across, is_level) in [(0.0, true), (5.0, false)] {
         let setting = Setting::at(Latitude::from_degrees(50.0).expect("it is one"));
-        let procedure = Procedure::new(Schedule::circle(12, 5.0), SAMPLE_SECONDS);
+        let procedure = Procedure::new(Schedule::circle(12, Seconds(5.0)), Seconds(SAMPLE_SECONDS));
         let mut session = Session::new(setting, procedure).expect("it begins");
         let mut noise = Generator::new(3);
         // The look at the tilt is due after 125 samples.

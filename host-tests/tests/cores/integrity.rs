@@ -24,7 +24,7 @@ use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{GSensitivity, MetresPerSecondSquared, Radians, Seconds};
 use rayon::prelude::*;
 
 /// One instrument at one place, with what the solver is stated of it.
@@ -85,9 +85,9 @@ fn case(seed: u64, arc: bool) -> Case {
     let setting = Setting::new(Site {
         noise: StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r)),
         scale_sigma,
-        g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
-        g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,
-        accelerometer_bias_sigma,
+        g_sensitivity: kappa.map(GSensitivity::from_degrees_per_hour),
+        g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(kappa_sigma),
+        accelerometer_bias_sigma: MetresPerSecondSquared(accelerometer_bias_sigma),
         ..Site::at(Latitude::from_degrees(latitude_deg).expect("it is one"))
     });
     let step = (span / positions as f64).to_radians();
@@ -99,10 +99,10 @@ fn verdict(case: &Case, disturbances: &[Disturbance], seed: u64) -> Result<Azimu
     let positions: Vec<Position> = case
         .stops
         .iter()
-        .map(|stop| Position { angle: stop.angle_rad, seconds: case.seconds })
+        .map(|stop| Position { angle: Radians(stop.angle_rad), seconds: Seconds(case.seconds) })
         .collect();
     let schedule = Schedule::listed(&positions).expect("they fit");
-    let procedure = Procedure { retries: 0, ..Procedure::new(schedule, 0.02) };
+    let procedure = Procedure { retries: 0, ..Procedure::new(schedule, Seconds(0.02)) };
     let mut session = Session::new(case.setting, procedure).expect("it begins");
     let configuration =
         WorldConfiguration { instruments: case.world, stops: &case.stops, disturbances };
@@ -128,7 +128,7 @@ fn sweep(
     for (truth, verdict) in verdicts {
         match verdict {
             Ok(Azimuth { angle, sigma }) => {
-                errors.push(azimuth_error(angle.to_degrees(), truth) / sigma.to_degrees());
+                errors.push(azimuth_error(angle.degrees(), truth) / sigma.degrees());
             }
             Err(reason) => {
                 let name = format!("{reason:?}");
@@ -245,7 +245,7 @@ fn sound() -> Case {
     let gyro = GyroConfiguration { n_deg_sqrt_h: 0.001, ..GyroConfiguration::default() };
     case.world.gyro = gyro;
     *case.setting.site.noise.model_mut() = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);
-    case.setting.site.g_sensitivity = [0.0; 2];
+    case.setting.site.g_sensitivity = [GSensitivity(0.0); 2];
     turned(&mut case, 12, 30.0);
     case
 }
@@ -293,9 +293,9 @@ fn a_short_arc_about_the_turning_point_cannot_tell() {
 #[test]
 fn an_accelerometer_bias_on_a_short_arc_makes_the_tilt_too_uncertain() {
     let mut case = sound();
-    case.setting.site.accelerometer_bias_sigma = 5.0;
+    case.setting.site.accelerometer_bias_sigma = MetresPerSecondSquared(5.0);
     case.world.accelerometer.noise_m_s2_sqrt_hz = 0.5;
-    case.setting.site.required_sigma = 0.5_f64.to_radians();
+    case.setting.site.required_sigma = Radians::from_degrees(0.5);
     turned(&mut case, 12, 4.0);
     let verdict = verdict(&case, &[], 5);
     assert!(
@@ -339,8 +339,8 @@ fn answers(runs: u64, spoil: impl Fn(&mut Case, u64) -> Vec<Disturbance> + Sync)
         let mut case = sound();
         let disturbances = spoil(&mut case, seed);
         let Azimuth { angle, sigma } = verdict(&case, &disturbances, seed).ok()?;
-        let error = azimuth_error(angle.to_degrees(), case.world.azimuth_deg);
-        Some(error / sigma.to_degrees())
+        let error = azimuth_error(angle.degrees(), case.world.azimuth_deg);
+        Some(error / sigma.degrees())
     });
     errors.collect()
 }
@@ -356,7 +356,7 @@ fn an_accelerometer_that_does_not_feel_gravity_is_refused() {
     for bias in spoil {
         let mut case = sound();
         case.world.accelerometer.bias_m_s2 = bias(0.0);
-        case.setting.site.accelerometer_bias_sigma = 0.05;
+        case.setting.site.accelerometer_bias_sigma = MetresPerSecondSquared(0.05);
         let verdict = verdict(&case, &[], 8);
         let refused = matches!(verdict, Err(Refusal::AccelerometerImplausible { .. }));
         assert!(refused, "{:?}: {verdict:?}", bias(0.0));
@@ -383,7 +383,7 @@ fn an_unknown_g_sensitivity_refuses_no_healthy_run_and_leaves_sigma_true() {
         case.world.roll_deg = 6.0 * generator.uniform() - 3.0;
         let kappa = [generator.gaussian(), generator.gaussian()];
         case.world.gyro.g_sensitivity_deg_h_g = kappa.map(|k| 10.0 * k);
-        case.setting.site.g_sensitivity_sigma = 10.0 * DEGREE_PER_HOUR;
+        case.setting.site.g_sensitivity_sigma = GSensitivity::from_degrees_per_hour(10.0);
         case.setting.site.scale_sigma = 0.0;
         if seed % 2 == 0 {
             turned(case, 12, 15.0);

@@ -20,6 +20,7 @@ use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
+use orientation::units::{Radians, Seconds};
 
 use crate::support::files::recording;
 
@@ -47,14 +48,18 @@ impl Trial<'_> {
         let [n, b, k, r] = self.gyro;
         let site = Site {
             noise: StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r)),
-            required_sigma: 20.0_f64.to_radians(),
+            required_sigma: Radians::from_degrees(20.0),
             ..Site::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
         };
         let setting = Setting { half: self.half, ..Setting::new(site) };
-        let position = |angle: &f64| Position { angle: angle.to_radians(), seconds: self.seconds };
+        let position = |angle: &f64| Position {
+            angle: Radians::from_degrees(*angle),
+            seconds: Seconds(self.seconds),
+        };
         let positions: Vec<Position> = self.angles_deg.iter().map(position).collect();
         let schedule = Schedule::listed(&positions).expect("they fit");
-        let procedure = Procedure { retries: 0, ..Procedure::new(schedule, 1.0 / RATE_HZ) };
+        let procedure =
+            Procedure { retries: 0, ..Procedure::new(schedule, Seconds(1.0 / RATE_HZ)) };
         let mut session = Session::new(setting, procedure).expect("it begins");
         let gyro = GyroConfiguration {
             n_deg_sqrt_h: n,
@@ -81,8 +86,8 @@ impl Trial<'_> {
     fn verdict(&self, azimuth_deg: f64, seed: u64) -> Result<(f64, f64), Refusal> {
         let session = self.session(azimuth_deg, seed);
         let azimuth = session.conclusion().expect("done").verdict?;
-        let error = azimuth_error(azimuth.angle.to_degrees(), azimuth_deg);
-        Ok((error, azimuth.sigma.to_degrees()))
+        let error = azimuth_error(azimuth.angle.degrees(), azimuth_deg);
+        Ok((error, azimuth.sigma.degrees()))
     }
 
     /// RMS of error over σ and RMS error, °, over seeds and azimuths.
@@ -104,8 +109,8 @@ fn the_recordings_give_north_by_positions_within_three_and_a_half_sigma() {
         let conclusion = replay.session.conclusion().expect("done");
         let azimuth = conclusion.verdict.expect("north");
         let truth = truth.azimuth_deg.expect("it carries a truth");
-        let error = azimuth_error(azimuth.angle.to_degrees(), truth);
-        assert!(error.abs() <= 3.5 * azimuth.sigma.to_degrees(), "{name}: {error}°");
+        let error = azimuth_error(azimuth.angle.degrees(), truth);
+        assert!(error.abs() <= 3.5 * azimuth.sigma.degrees(), "{name}: {error}°");
         // Both orders go up a circle, in passes or not: plain least squares is not far off.
         let plain = autocompensation(&replay.session, conclusion);
         assert!(plain.plain_off_sigmas.expect("it is determined").abs() < 1.0, "{plain:?}");

@@ -3,6 +3,7 @@
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{rotating, stepwise};
 use orientation::device::{Device, Trouble};
+use orientation::units::Degrees;
 
 #[test]
 fn what_the_samples_do_not_show_stands_in_text_under_its_name() {
@@ -11,7 +12,7 @@ fn what_the_samples_do_not_show_stands_in_text_under_its_name() {
         (Refusal::MovedDuringAlignment, r#""MovedDuringAlignment""#),
         (Refusal::MisalignmentUnknown, r#""MisalignmentUnknown""#),
         (
-            Refusal::LatitudeTooHigh { latitude: 86.125 },
+            Refusal::LatitudeTooHigh { latitude: Degrees(86.125) },
             r#"{"LatitudeTooHigh":{"latitude":86.125}}"#,
         ),
         (
@@ -28,7 +29,7 @@ fn what_the_samples_do_not_show_stands_in_text_under_its_name() {
 fn a_sentence_ends_with_its_remedy() {
     let disturbed = stepwise::Refusal::Disturbed { disturbed: 9, positions: 24 };
     for (refusal, remedy) in [
-        (Refusal::TiltTooGreat { tilt: 7.25, allowed: 5.0 }, ": level it"),
+        (Refusal::TiltTooGreat { tilt: Degrees(7.25), allowed: Degrees(5.0) }, ": level it"),
         (disturbed.into(), ": keep the platform still"),
         (stepwise::Refusal::AzimuthUnobservable.into(), ": turn the stage over a longer arc"),
         (

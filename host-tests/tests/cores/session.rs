@@ -19,7 +19,7 @@ use orientation::noise::fit::FitError;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
-use orientation::signal::dwell::Dwell;
+use orientation::units::{Radians, Seconds};
 
 const N_DEG_SQRT_H: f64 = 0.001;
 const LATITUDE_DEG: f64 = 47.58;
@@ -49,12 +49,12 @@ fn world(azimuth_deg: f64) -> InstrumentsConfiguration {
 }
 
 fn circle() -> Procedure {
-    Procedure::new(Schedule::circle(12, 5.0), 0.01)
+    Procedure::new(Schedule::circle(12, Seconds(5.0)), Seconds(0.01))
 }
 
 #[test]
 fn a_circle_repeats_its_first_position_where_a_board_has_room_for_it() {
-    let length = |positions| Schedule::closed_circle(positions, 1.0).len();
+    let length = |positions| Schedule::closed_circle(positions, Seconds(1.0)).len();
     assert_eq!([4, 24, 63, 64, 100].map(length), [5, 25, 64, 64, 64]);
 }
 
@@ -66,14 +66,15 @@ fn session(procedure: Procedure) -> Session {
 fn error_in_sigmas(session: &Session, azimuth_deg: f64) -> f64 {
     let conclusion = session.conclusion().expect("it has ended");
     let azimuth = conclusion.verdict.expect("there is an azimuth");
-    azimuth_error(azimuth.angle.to_degrees(), azimuth_deg) / azimuth.sigma.to_degrees()
+    azimuth_error(azimuth.angle.degrees(), azimuth_deg) / azimuth.sigma.degrees()
 }
 
 #[test]
 fn a_circle_is_turned_step_by_step_and_gives_north() {
     for (seed, azimuth) in [(1, 3.3), (2, 123.4), (3, 359.9), (4, 200.0)] {
         let mut session = session(circle());
-        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(1.0), 200.0, seed);
+        let sent =
+            run(&mut session, &world(azimuth), &[], Rotation::fixed(Seconds(1.0)), 200.0, seed);
         let expected: Vec<f64> = (1..12).map(|i| f64::from(i) * 30.0_f64.to_radians()).collect();
         assert_eq!(sent.len(), expected.len());
         assert!(sent.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{sent:?}");
@@ -86,7 +87,7 @@ fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
     let nudge =
         Disturbance { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0, ..Disturbance::default() };
     let mut session = session(circle());
-    let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(1.0), 200.0, 5);
+    let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(Seconds(1.0)), 200.0, 5);
     assert_eq!(sent.len(), 11);
     assert_eq!(session.repetitions.len(), 1);
     assert_eq!(session.repetitions[0].position, 2);
@@ -105,7 +106,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
         })
         .collect();
     let mut session = session(circle());
-    run(&mut session, &world(10.0), &lasting, Rotation::fixed(1.0), 2000.0, 6);
+    run(&mut session, &world(10.0), &lasting, Rotation::fixed(Seconds(1.0)), 2000.0, 6);
     let conclusion = session.conclusion().expect("it has ended");
     assert!(
         matches!(conclusion.verdict, Err(Refusal::Stepwise(stepwise::Refusal::Disturbed { .. }))),
@@ -118,17 +119,17 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
 
 #[test]
 fn the_whole_session_is_bounded_in_time() {
-    let mut session = session(Procedure { longest_seconds: 20.0, ..circle() });
-    run(&mut session, &world(10.0), &[], Rotation::fixed(1.0), 2000.0, 7);
+    let mut session = session(Procedure { longest_seconds: Seconds(20.0), ..circle() });
+    run(&mut session, &world(10.0), &[], Rotation::fixed(Seconds(1.0)), 2000.0, 7);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert_eq!(verdict, Err(Refusal::TimeExhausted));
 }
 
 #[test]
 fn a_stage_that_does_not_arrive_is_refused() {
-    let mut session = session(Procedure { longest_rotation: 30.0, ..circle() });
+    let mut session = session(Procedure { longest_rotation: Seconds(30.0), ..circle() });
     // It takes longer for a rotation than is allowed.
-    run(&mut session, &world(10.0), &[], Rotation::fixed(50.0), 2000.0, 8);
+    run(&mut session, &world(10.0), &[], Rotation::fixed(Seconds(50.0)), 2000.0, 8);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(
         matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::StageNotThere { .. }))),
@@ -140,24 +141,29 @@ fn a_stage_that_does_not_arrive_is_refused() {
 fn a_platform_that_is_not_level_enough_is_refused_before_anything_turns() {
     let mut session = session(circle());
     let tilted = InstrumentsConfiguration { pitch_deg: 20.0, ..world(10.0) };
-    let sent = run(&mut session, &tilted, &[], Rotation::fixed(1.0), 200.0, 9);
+    let sent = run(&mut session, &tilted, &[], Rotation::fixed(Seconds(1.0)), 200.0, 9);
     assert_eq!(sent, [0.0; 0]);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::TiltTooGreat { .. })), "{verdict:?}");
 }
 
 fn ascending(positions: usize) -> Procedure {
-    let step = 6.0_f64.to_radians();
-    let schedule = Schedule::TowardMaximum { start: 0.0, step, positions, seconds: 5.0 };
-    let travel = [-200.0_f64.to_radians(), 200.0_f64.to_radians()];
-    Procedure { travel, ..Procedure::new(schedule, 0.01) }
+    let schedule = Schedule::TowardMaximum {
+        start: Radians(0.0),
+        step: Radians::from_degrees(6.0),
+        positions,
+        seconds: Seconds(5.0),
+    };
+    let travel = [-200.0, 200.0].map(Radians::from_degrees);
+    Procedure { travel, ..Procedure::new(schedule, Seconds(0.01)) }
 }
 
 #[test]
 fn the_stage_turns_towards_growing_rate() {
     for (azimuth, towards) in [(60.0, -1.0), (300.0, 1.0), (150.0, -1.0), (210.0, 1.0)] {
         let mut session = session(ascending(20));
-        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(0.5), 400.0, 10);
+        let sent =
+            run(&mut session, &world(azimuth), &[], Rotation::fixed(Seconds(0.5)), 400.0, 10);
         let last = sent.last().expect("it was sent");
         assert!(last * towards > 0.0, "{azimuth}: {sent:?}");
         assert!(error_in_sigmas(&session, azimuth).abs() < 3.5, "{azimuth}");
@@ -168,7 +174,7 @@ fn the_stage_turns_towards_growing_rate() {
 fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short() {
     let positions_with = |stop| {
         let mut session = session(Procedure { stop, ..ascending(40) });
-        run(&mut session, &world(300.0), &[], Rotation::fixed(0.5), 600.0, 11);
+        run(&mut session, &world(300.0), &[], Rotation::fixed(Seconds(0.5)), 600.0, 11);
         assert_eq!(session.phase, Phase::Done);
         session.dwells().len()
     };
@@ -181,29 +187,33 @@ fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short(
 
 #[test]
 fn the_stage_never_leaves_its_travel() {
-    let travel = [-0.2, 0.2];
+    let travel = [-0.2, 0.2].map(Radians);
     let mut session = session(Procedure { travel, ..ascending(20) });
-    let sent = run(&mut session, &world(100.0), &[], Rotation::fixed(0.5), 400.0, 12);
-    assert!(sent.iter().all(|angle| (travel[0]..=travel[1]).contains(angle)), "{sent:?}");
-    let positions = [0.0, 7.0].map(|angle| Position { angle, seconds: 5.0 });
+    let sent = run(&mut session, &world(100.0), &[], Rotation::fixed(Seconds(0.5)), 400.0, 12);
+    assert!(
+        sent.iter().all(|angle| (travel[0]..=travel[1]).contains(&Radians(*angle))),
+        "{sent:?}"
+    );
+    let positions =
+        [0.0, 7.0].map(|angle| Position { angle: Radians(angle), seconds: Seconds(5.0) });
     let listed = Schedule::listed(&positions).expect("they fit");
-    let begun = Session::new(setting(), Procedure::new(listed, 0.01));
-    assert_eq!(begun.err(), Some(SetupError::BeyondTravel(7.0)));
+    let begun = Session::new(setting(), Procedure::new(listed, Seconds(0.01)));
+    assert_eq!(begun.err(), Some(SetupError::BeyondTravel(Radians(7.0))));
 }
 
 #[test]
 fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
     // 20 samples at 100 Hz: the cut-off is a fifth of the sample rate and settling takes 42.
-    let procedure = Procedure::new(Schedule::circle(24, 0.2), 0.01);
+    let procedure = Procedure::new(Schedule::circle(24, Seconds(0.2)), Seconds(0.01));
     let (mut errors, mut ratios) = (Vec::new(), Vec::new());
     for seed in 0..200 {
         let mut session = session(procedure.clone());
         let azimuth = seed as f64 * 1.7;
-        run(&mut session, &world(azimuth), &[], Rotation::fixed(0.1), 60.0, 1000 + seed);
+        run(&mut session, &world(azimuth), &[], Rotation::fixed(Seconds(0.1)), 60.0, 1000 + seed);
         errors.push(error_in_sigmas(&session, azimuth));
         let fit = session.conclusion().and_then(|conclusion| conclusion.fit.as_ref());
         let fit = fit.expect("there is a fit");
-        ratios.push(fit.sigma() / fit.limit);
+        ratios.push(fit.sigma().0 / fit.limit.0);
     }
     let ratio = orientation::math::median(&mut ratios);
     assert!(ratio < 1.12, "{ratio} of the limit");
@@ -214,7 +224,8 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
 
 #[test]
 fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
-    let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.1), 0.01));
+    let begun =
+        Session::new(setting(), Procedure::new(Schedule::circle(12, Seconds(0.1)), Seconds(0.01)));
     assert!(matches!(begun.err(), Some(SetupError::DwellTooShort { samples: 10, .. })));
 }
 
@@ -222,26 +233,28 @@ fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
 fn planned(seconds: f64) -> Schedule {
     let conditions = Conditions {
         noise: *setting().site.noise.model(),
-        rotation: Rotation::fixed(1.0),
-        shortest: 1.0,
+        rotation: Rotation::fixed(Seconds(1.0)),
+        shortest: Seconds(1.0),
         fewest: 8,
         orders: &Order::COMPARED,
     };
-    Schedule::Planned(for_time(&conditions, seconds).expect("there is time"))
+    Schedule::Planned(for_time(&conditions, Seconds(seconds)).expect("there is time"))
 }
 
 /// A session that is to reach σ of so many degrees within so many seconds, by a gyro of so many times
 /// the stated noise; how many dwells it took and what came of it.
 fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) {
     let required_sigma = sigma_deg.to_radians();
-    let procedure = Procedure::new(planned(60.0), 0.01).until_accurate(seconds);
-    let mut session =
-        Session::new(Setting::new(Site { required_sigma, ..setting().site }), procedure)
-            .expect("it begins");
+    let procedure = Procedure::new(planned(60.0), Seconds(0.01)).until_accurate(Seconds(seconds));
+    let mut session = Session::new(
+        Setting::new(Site { required_sigma: Radians(required_sigma), ..setting().site }),
+        procedure,
+    )
+    .expect("it begins");
     let mut configuration = world(123.4);
     configuration.gyro.n_deg_sqrt_h *= noise;
-    run(&mut session, &configuration, &[], Rotation::fixed(1.0), 4.0 * seconds, seed);
-    let end = session.dwells().last().map_or(0.0, Dwell::end);
+    run(&mut session, &configuration, &[], Rotation::fixed(Seconds(1.0)), 4.0 * seconds, seed);
+    let end = session.dwells().last().map_or(0.0, |dwell| dwell.end().0);
     (session, end)
 }
 
@@ -251,7 +264,7 @@ fn a_session_ends_as_soon_as_the_accuracy_asked_for_is_reached() {
     for (wanted, least, most) in [(0.1, 20.0, 62.0), (0.05, 95.0, 130.0), (0.035, 190.0, 250.0)] {
         let (session, end) = until(wanted, 400.0, 1.0, 3);
         let azimuth = session.conclusion().expect("done").verdict.expect("it is reached");
-        assert!(azimuth.sigma.to_degrees() <= wanted, "{wanted}: {azimuth:?}");
+        assert!(azimuth.sigma.degrees() <= wanted, "{wanted}: {azimuth:?}");
         assert!((least..most).contains(&end), "{wanted}° took {end} s");
         assert!(error_in_sigmas(&session, 123.4).abs() < 3.5);
     }
@@ -282,28 +295,32 @@ fn a_session_that_cannot_reach_its_accuracy_in_time_says_so_early_and_how_near_i
     else {
         panic!("{verdict:?}")
     };
-    assert!((required - 0.01).abs() < 1e-9 && seconds == 300.0);
+    assert!((required.0 - 0.01).abs() < 1e-9 && seconds.0 == 300.0);
     // White noise: √2 N/(Ω_h √T) for the dwells' part of 300 s.
-    assert!((0.027..0.032).contains(&sigma), "{sigma}");
+    assert!((0.027..0.032).contains(&sigma.0), "{sigma:?}");
     assert!(end < 70.0, "it took {end} s to see that");
 }
 
 /// A session that stands still for ten minutes first, to know its gyro.
 fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64) -> Session {
     let survey = Survey {
-        seconds: 600.0,
-        rotation: Rotation::fixed(1.0),
+        seconds: Seconds(600.0),
+        rotation: Rotation::fixed(Seconds(1.0)),
         orders: &Order::COMPARED,
-        shortest: 1.0,
-        plan_seconds: 240.0,
+        shortest: Seconds(1.0),
+        plan_seconds: Seconds(240.0),
     };
     let procedure = Procedure { stop, ..circle().after(survey) };
     // What the data sheet says is five times what this gyro does.
     let stated = StatedNoise::Whole(GyroNoise::from_field_units(5.0 * N_DEG_SQRT_H, 0.0, 0.0, 0.0));
     let required_sigma = 0.05_f64.to_radians();
-    let setting = Setting::new(Site { noise: stated, required_sigma, ..setting().site });
+    let setting = Setting::new(Site {
+        noise: stated,
+        required_sigma: Radians(required_sigma),
+        ..setting().site
+    });
     let mut session = Session::new(setting, procedure).expect("it begins");
-    run(&mut session, configuration, &[], Rotation::fixed(1.0), 2000.0, seed);
+    run(&mut session, configuration, &[], Rotation::fixed(Seconds(1.0)), 2000.0, seed);
     session
 }
 
@@ -315,13 +332,15 @@ fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
         let n = found.value().expect("N is observable");
         assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
         let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };
-        assert!((plan.seconds - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions());
+        assert!(
+            (plan.seconds.0 - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions()
+        );
         // √2 N/(Ω_h √T) for the plan's dwells.
-        let standing = plan.dwell * plan.positions() as f64 / 3600.0;
-        let rate = setting().site.latitude.horizontal_rate().to_degrees() * 3600.0;
+        let standing = plan.dwell.0 * plan.positions() as f64 / 3600.0;
+        let rate = setting().site.latitude.horizontal_rate().0.to_degrees() * 3600.0;
         let expected = 2.0_f64.sqrt() * N_DEG_SQRT_H / (rate * standing.sqrt());
         let sigma = session.conclusion().expect("done").verdict.expect("north").sigma;
-        assert!((sigma / expected - 1.0).abs() < 0.05, "{sigma} against {expected}");
+        assert!((sigma.0 / expected - 1.0).abs() < 0.05, "{sigma:?} against {expected}");
         assert!(error_in_sigmas(&session, azimuth).abs() < 3.5);
     }
 }
@@ -330,18 +349,18 @@ fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
 fn a_survey_that_shows_the_accuracy_out_of_reach_ends_before_anything_turns() {
     let mut noisy = world(70.0);
     noisy.gyro.n_deg_sqrt_h = 0.02;
-    let session = surveyed(&noisy, StopRule::Accuracy { seconds: 900.0 }, 24);
+    let session = surveyed(&noisy, StopRule::Accuracy { seconds: Seconds(900.0) }, 24);
     let verdict = session.conclusion().expect("done").verdict;
     // The 900 s after the survey give √2·0.02/(10.15·√(1/4)) rad = 0.32°, less the rotations' time.
     assert!(
-        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::OutOfReach { sigma, .. })) if (0.32..0.36).contains(&sigma)),
+        matches!(verdict, Err(Refusal::Stepwise(stepwise::Refusal::OutOfReach { sigma, .. })) if (0.32..0.36).contains(&sigma.0)),
         "{verdict:?}"
     );
     assert!(session.dwells().is_empty());
     // The same gyro as stated and five times the time: what is asked for is reached.
-    let quiet = surveyed(&world(70.0), StopRule::Accuracy { seconds: 900.0 }, 25);
+    let quiet = surveyed(&world(70.0), StopRule::Accuracy { seconds: Seconds(900.0) }, 25);
     let azimuth = quiet.conclusion().expect("done").verdict.expect("it is reached");
-    assert!(azimuth.sigma.to_degrees() <= 0.05);
+    assert!(azimuth.sigma.degrees() <= 0.05);
 }
 
 #[test]
@@ -359,15 +378,15 @@ fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
     let mut session = Session::new(
         setting(),
         circle().after(Survey {
-            seconds: 300.0,
-            rotation: Rotation::fixed(1.0),
+            seconds: Seconds(300.0),
+            rotation: Rotation::fixed(Seconds(1.0)),
             orders: &Order::COMPARED,
-            shortest: 1.0,
-            plan_seconds: 240.0,
+            shortest: Seconds(1.0),
+            plan_seconds: Seconds(240.0),
         }),
     )
     .expect("it begins");
-    run(&mut session, &world(70.0), &[overload], Rotation::fixed(1.0), 900.0, 27);
+    run(&mut session, &world(70.0), &[overload], Rotation::fixed(Seconds(1.0)), 900.0, 27);
     let verdict = session.conclusion().expect("done").verdict;
     assert_eq!(
         verdict,

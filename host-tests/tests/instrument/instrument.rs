@@ -9,7 +9,7 @@ use host::instrument::recorder::{self, Samples};
 use host::instrument::{Run, Trial};
 use host::methods::asked::Asked;
 use host::methods::stepwise::replay;
-use host::output::{azimuth_error, degrees};
+use host::output::azimuth_error;
 use host::recording::{self, Header};
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use simulated::scenario::Scenario;
@@ -34,9 +34,11 @@ fn bits(run: &Run) -> Vec<u64> {
     let azimuth = conclusion(run).verdict.expect("a healthy run");
     let dwells = run.replay.session.dwells().iter();
     let mut bits: Vec<u64> = dwells
-        .flat_map(|dwell| [u64::from(dwell.stage.0), dwell.rate.to_bits(), dwell.middle.to_bits()])
+        .flat_map(|dwell| {
+            [u64::from(dwell.stage.0), dwell.rate.0.to_bits(), dwell.middle.0.to_bits()]
+        })
         .collect();
-    bits.extend([azimuth.angle.to_bits(), azimuth.sigma.to_bits()]);
+    bits.extend([azimuth.angle.0.to_bits(), azimuth.sigma.0.to_bits()]);
     bits
 }
 
@@ -45,14 +47,14 @@ fn the_default_run_finds_north_and_breaks_no_rule_of_a_chip() {
     let scenario = Scenario::default();
     let run = run(&scenario);
     let azimuth = conclusion(&run).verdict.expect("a healthy run");
-    let error = azimuth_error(degrees(azimuth.angle), scenario.azimuth_deg);
-    assert!(error.abs() < 4.0 * degrees(azimuth.sigma), "off by {error}°");
+    let error = azimuth_error(azimuth.angle.degrees(), scenario.azimuth_deg);
+    assert!(error.abs() < 4.0 * azimuth.sigma.degrees(), "off by {error}°");
     assert_eq!(run.violations, Vec::<String>::new());
     assert_eq!(run.health.faults(), 0, "{:?}", run.health);
     assert_eq!(run.replay.session.dwells().len(), 25);
     let tilt = &conclusion(&run).tilt;
-    assert!((degrees(tilt.pitch()) - scenario.pitch_deg).abs() < 0.01);
-    assert!((degrees(tilt.roll()) - scenario.roll_deg).abs() < 0.01);
+    assert!((tilt.pitch().degrees() - scenario.pitch_deg).abs() < 0.01);
+    assert!((tilt.roll().degrees() - scenario.roll_deg).abs() < 0.01);
 }
 
 #[test]
@@ -84,9 +86,9 @@ fn a_recorded_run_replays_to_the_same_azimuth_without_what_its_session_was_given
         let again = replay(&header, &body, &Asked::default(), |_| {}).expect("it has dwells");
         let again = again.session.conclusion().and_then(|c| c.verdict.ok()).expect("as healthy");
         let found = conclusion(&run).verdict.expect("a healthy run");
-        let apart = azimuth_error(degrees(again.angle), degrees(found.angle)).abs();
-        assert!(apart < 0.1 * degrees(found.sigma), "{apart}° of σ {}°", degrees(found.sigma));
-        assert!((again.sigma / found.sigma - 1.0).abs() < 0.02);
+        let apart = azimuth_error(again.angle.degrees(), found.angle.degrees()).abs();
+        assert!(apart < 0.1 * found.sigma.degrees(), "{apart}° of σ {}°", found.sigma.degrees());
+        assert!((again.sigma.0 / found.sigma.0 - 1.0).abs() < 0.02);
     }
 }
 

@@ -18,7 +18,7 @@ use host::virtual_time;
 use orientation::alignment::{Azimuth, Progress, Solution};
 use orientation::attitude::{State, Trust};
 use orientation::device::{Device, Trouble};
-use orientation::units::Angle;
+use orientation::units::{Angle, Radians, Seconds};
 use proptest::prelude::*;
 
 fn at(microseconds: u64) -> Instant {
@@ -131,8 +131,10 @@ fn every_fault_counts_once() {
 
 #[test]
 fn a_status_never_tells_a_smaller_sigma_than_there_is() {
-    let azimuth = Azimuth { angle: 359.9996_f64.to_radians(), sigma: 0.012_01_f64.to_radians() };
-    let status = Status::Starting.after(&Progress::Concluded(Solution { azimuth, limit: 0.0 }));
+    let azimuth =
+        Azimuth { angle: Radians::from_degrees(359.9996), sigma: Radians::from_degrees(0.012_01) };
+    let status =
+        Status::Starting.after(&Progress::Concluded(Solution { azimuth, limit: Radians(0.0) }));
     assert_eq!(status.to_string(), "azimuth 0.000 sigma 0.013");
     assert_eq!(Status::Measuring { done: 5, of: 24 }.to_string(), "measuring 5/24");
 }
@@ -217,7 +219,7 @@ fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault
         Trust::NoForce,
         Trust::RotationLost,
     ]
-    .map(|trust| State { trust, seconds: 3.2e7 });
+    .map(|trust| State { trust, seconds: Seconds(3.2e7) });
     let reported = Recorded::default();
     let shared = Shared::new(&reported);
     shared.count(|health| health.unsent = u32::MAX);

@@ -148,7 +148,7 @@ fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
     assert_eq!(format!("{again:?}"), format!("{:?}", of_spin(scenario, &run, &again.assumed)));
     let end = again.answer().end;
     assert_eq!(end.roll_rad.to_bits(), run.run.replay.spin.roll().rad().to_bits());
-    assert_eq!(end.sigma_rad, run.run.replay.spin.sigma());
+    assert_eq!(end.sigma_rad, run.run.replay.spin.sigma().map(|sigma| sigma.0));
 }
 
 /// What the command line tells of a flight.

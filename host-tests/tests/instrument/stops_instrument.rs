@@ -6,6 +6,7 @@ use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Progress, stops};
+use orientation::units::Radians;
 use simulated::fault::Fault;
 use simulated::vehicle::{Place, VehicleScenario};
 
@@ -24,7 +25,7 @@ fn reported(found: &VehicleRun) -> Vec<String> {
 
 /// Error of the azimuth, rad, the short way.
 fn error(found: &VehicleRun, azimuth: &Azimuth) -> f64 {
-    let off = azimuth.angle - found.truth.attitude.azimuth_rad;
+    let off = azimuth.angle.0 - found.truth.attitude.azimuth_rad;
     off.sin().atan2(off.cos())
 }
 
@@ -34,9 +35,9 @@ fn north_is_found_within_its_sigma_and_no_rule_of_a_chip_is_broken() {
     for seed in 1..=4 {
         let found = run(&VehicleScenario::usual(seed), None);
         let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
-        let sigmas = error(&found, &azimuth) / azimuth.sigma;
+        let sigmas = error(&found, &azimuth) / azimuth.sigma.0;
         assert!(sigmas.abs() < 3.5, "seed {seed}: {sigmas} σ");
-        assert!(azimuth.sigma.to_degrees() < 0.2, "seed {seed}: {}", azimuth.sigma.to_degrees());
+        assert!(azimuth.sigma.degrees() < 0.2, "seed {seed}: {}", azimuth.sigma.degrees());
         squares += sigmas * sigmas;
         assert_eq!(found.run.violations, [""; 0], "seed {seed}");
         assert_eq!(found.run.health.faults(), 0, "seed {seed}");
@@ -52,7 +53,7 @@ fn three_headings_tell_the_biases_that_the_gyros_have() {
     let solved = conclusion.found.expect("something was found");
     let truth = found.truth.gyro_bias_rad_s;
     for ((bias, sigma), truth) in solved.biases.into_iter().zip(solved.bias_sigmas).zip(truth) {
-        assert!((bias - truth).abs() < 3.5 * sigma, "{bias} is not {truth} within {sigma}");
+        assert!((bias.0 - truth).abs() < 3.5 * sigma.0, "{bias:?} is not {truth} within {sigma:?}");
     }
     let of_gyros = reported(&found).iter().filter(|line| line.contains("gyro: bias ")).count();
     assert_eq!(of_gyros, if solved.are_biases_observed { 3 } else { 0 });
@@ -102,7 +103,7 @@ fn a_stop_is_levelled_as_the_ground_lies_there() {
         Event::Alignment(Progress::Stops(stops::Progress::MayDrive(1, _, level))) => Some(*level),
         _ => None,
     });
-    let [pitch, roll] = level.expect("the first stop is levelled").map(f64::to_degrees);
+    let [pitch, roll] = level.expect("the first stop is levelled").map(Radians::degrees);
     // 0.1 mg of bias is 0.006°; the road itself rocks for the first seconds.
     assert!((pitch - first.pitch_deg).abs() < 0.03, "{pitch} is not {}", first.pitch_deg);
     assert!((roll - first.roll_deg).abs() < 0.03, "{roll} is not {}", first.roll_deg);
@@ -113,7 +114,7 @@ fn an_unknown_displacement_costs_accuracy_and_no_truth() {
     let sigma = |place| {
         let found = run(&VehicleScenario { place, ..VehicleScenario::usual(1) }, None);
         let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("{reason}"));
-        assert!(error(&found, &azimuth).abs() < 3.5 * azimuth.sigma);
+        assert!(error(&found, &azimuth).abs() < 3.5 * azimuth.sigma.0);
         let is_reported = reported(&found).iter().any(|line| line.contains(" north and "));
         assert_eq!(is_reported, place != Place::Unknown);
         azimuth.sigma

@@ -72,8 +72,8 @@ fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {
 fn end(found: &VehicleRun) -> Option<End> {
     match verdict(found) {
         Ok(azimuth) => {
-            let off = azimuth.angle - found.truth.attitude.azimuth_rad;
-            let sigmas = off.sin().atan2(off.cos()) / azimuth.sigma;
+            let off = azimuth.angle.0 - found.truth.attitude.azimuth_rad;
+            let sigmas = off.sin().atan2(off.cos()) / azimuth.sigma.0;
             (sigmas.abs() < 3.5).then_some(End::Survived)
         }
         Err(Refusal::Device { device, trouble }) => Some(End::Named(device, trouble)),
@@ -117,7 +117,7 @@ fn one_lost_conversion_of_any_axis_is_reported_as_a_gap_of_its_length() {
         let Err(Refusal::Stops(Stops::RotationMissing { seconds, .. })) = verdict(&found) else {
             panic!("{device}: {:?}", verdict(&found));
         };
-        assert!((seconds - 0.02).abs() < 1e-4, "{device}: {seconds} s");
+        assert!((seconds.0 - 0.02).abs() < 1e-4, "{device}: {} s", seconds.0);
     }
 }
 

@@ -12,6 +12,7 @@ use host::virtual_time::run;
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
+use orientation::units::{RadiansPerSecond, Seconds};
 use proptest::prelude::*;
 use simulated::flash::Flash;
 use simulated::hold::Hold;
@@ -29,10 +30,10 @@ fn load(store: &mut FlashStore<Flash>) -> Option<[u8; BYTES]> {
 fn misalignment(sine: f64, date: u64) -> AxisMisalignment {
     AxisMisalignment {
         sine,
-        quadrature: 1e-6,
+        quadrature: Seconds(1e-6),
         sine_sigma: 1e-6,
-        quadrature_sigma: 1e-6,
-        frequency: 0.9,
+        quadrature_sigma: Seconds(1e-6),
+        frequency: RadiansPerSecond(0.9),
         date,
         temperature: 21.5,
     }
@@ -102,7 +103,8 @@ fn every_speed_has_its_own_misalignment_and_all_are_needed() {
     let mut store = Flash::default().store();
     let today = Today { date: Some(1_700_000_100), longest: Some(3600) };
     let recalled = |store: &mut FlashStore<Flash>, speeds: &[f64]| {
-        run(recall(store, speeds, today)).expect("it ends").expect("the flash is sound")
+        let speeds: Vec<_> = speeds.iter().copied().map(RadiansPerSecond).collect();
+        run(recall(store, &speeds, today)).expect("it ends").expect("the flash is sound")
     };
     assert_eq!(recalled(&mut store, &[0.9]), None);
     let found = [misalignment(0.01, 1_700_000_000), misalignment(0.02, 1_700_000_050)];
@@ -120,7 +122,7 @@ fn what_is_no_misalignment_is_not_recalled() {
     bytes[12] ^= 1;
     save(&mut store, &bytes).expect("there is room");
     let today = Today { date: None, longest: None };
-    assert_eq!(run(recall(&mut store, &[0.9], today)), Ok(Ok(None)));
+    assert_eq!(run(recall(&mut store, &[RadiansPerSecond(0.9)], today)), Ok(Ok(None)));
 }
 
 /// 2026-03-14, 09:26:53.
@@ -179,9 +181,9 @@ fn what_a_modulated_turn_found_gives_the_same_north_the_next_time() {
     assert_eq!(reported(&second, "rate-modulated"), None);
     assert_eq!(reported(&second, "axis misalignment saved"), None, "nothing new was found");
     let [first, second] = [&first, &second].map(|run| verdict(run).expect("north"));
-    let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
+    let apart = azimuth_error(first.angle.degrees(), second.angle.degrees()).abs();
     // Both have noise of their own.
-    assert!(apart < 3.0 * degrees(first.sigma.hypot(second.sigma)), "{apart}° apart");
+    assert!(apart < 3.0 * degrees(first.sigma.0.hypot(second.sigma.0)), "{apart}° apart");
 }
 
 #[test]
@@ -213,8 +215,8 @@ fn misalignments_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again(
     let mut after = keeping(before.store.into_flash(), NOW);
     let run = aligned(&molecular(0), &mut after);
     let azimuth = verdict(&run).expect("north");
-    let error = azimuth_error(degrees(azimuth.angle), molecular(0).base.azimuth_deg);
-    assert!(error.abs() < 4.0 * degrees(azimuth.sigma), "off by {error}°");
+    let error = azimuth_error(azimuth.angle.degrees(), molecular(0).base.azimuth_deg);
+    assert!(error.abs() < 4.0 * azimuth.sigma.degrees(), "off by {error}°");
     let is_recalled = |event: &Event| matches!(event, Event::Recalled(_));
     assert_eq!(run.run.events.iter().filter(|(_, event)| is_recalled(event)).count(), 2);
 }
@@ -235,7 +237,9 @@ fn a_misalignment_of_another_speed_or_of_tomorrow_is_not_used() {
     run(keep(&mut store, core::iter::once(found))).expect("it ends").expect("there is room");
     let mut recalled = |speed: f64, date| {
         let today = Today { date: Some(date), longest: None };
-        run(recall(&mut store, &[speed], today)).expect("it ends").expect("the flash is sound")
+        run(recall(&mut store, &[RadiansPerSecond(speed)], today))
+            .expect("it ends")
+            .expect("the flash is sound")
     };
     assert!(recalled(0.9, NOW).is_some() && recalled(0.93, NOW).is_some());
     assert_eq!(

@@ -9,7 +9,7 @@ use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Event, Stop, Vehicle};
 use host::methods::asked::Asked;
 use host::methods::stops::{Replay, replay};
-use host::output::{azimuth_error, degrees};
+use host::output::azimuth_error;
 use host::recording::{Body, Header, ImuRow, ImuSample};
 use rayon::prelude::*;
 
@@ -84,12 +84,12 @@ fn answers(seeds: u64, seconds: f64, n_deg_sqrt_h: Option<f64>) -> Vec<[f64; 2]>
             let replay = replayed(&parked(seconds, dither), seed, n_deg_sqrt_h);
             let verdict = replay.session.conclusion().expect("it has ended").verdict;
             let azimuth = verdict.unwrap_or_else(|why| panic!("{seed}, {dither}″: {why}"));
-            let error = azimuth_error(degrees(azimuth.angle), AZIMUTH_DEG);
+            let error = azimuth_error(azimuth.angle.degrees(), AZIMUTH_DEG);
             println!(
                 "{seconds} s, {dither}″, {seed}: {error:+.3}° ± {:.3}°",
-                degrees(azimuth.sigma)
+                azimuth.sigma.degrees()
             );
-            [error, degrees(azimuth.sigma)]
+            [error, azimuth.sigma.degrees()]
         })
         .collect()
 }
@@ -139,7 +139,7 @@ fn a_minute_gives_north_to_a_tenth_of_a_degree_with_n_from_the_recording() {
 fn dither_and_increments_are_not_taken_for_angle_random_walk() {
     let replay = replayed(&parked(HALF_AN_HOUR_S, 1.0), 3, None);
     let walk = replay.session.setting().site.noise.model().angle_random_walk;
-    let n = walk / orientation::units::DEGREE_PER_SQRT_HOUR;
+    let n = walk.0 / orientation::units::DEGREE_PER_SQRT_HOUR;
     println!("N {n:.5} °/√h");
     assert!((n / GYRO[0] - 1.0).abs() < 0.25, "{n} °/√h");
 }

@@ -14,7 +14,7 @@ use orientation::alignment::stops::stop_detector::Rests;
 use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::signal::InertialSample;
-use orientation::units::Instant;
+use orientation::units::{Instant, Seconds};
 
 use crate::support::files::recording;
 
@@ -52,8 +52,10 @@ fn a_rate_that_the_times_contradict_by_more_than_a_per_cent_is_refused_with_both
 /// A session that is given one period and given another, s.
 fn paced(reported: f64, given: f64, tolerance: f64) -> Option<Refusal> {
     let latitude = Latitude::from_degrees(50.0).expect("a latitude");
-    let procedure =
-        Procedure { period_tolerance: tolerance, ..Procedure::recorded(Rests::Whole, reported) };
+    let procedure = Procedure {
+        period_tolerance: tolerance,
+        ..Procedure::recorded(Rests::Whole, Seconds(reported))
+    };
     let setting = Setting::new(Site::at(latitude));
     let mut session = Session::new(setting, procedure).expect("a procedure");
     for index in 1..2000 {
@@ -168,7 +170,7 @@ fn noise_that_was_stated_too_small_is_taken_as_the_recording_shows_it() {
         header.gyro_n_deg_sqrt_h = Some(true_n / 10.0);
         let replay = replayed(&header, &rows).expect("it replays");
         let walk = replay.session.setting().site.noise.model().angle_random_walk;
-        let n = walk / orientation::units::DEGREE_PER_SQRT_HOUR;
+        let n = walk.0 / orientation::units::DEGREE_PER_SQRT_HOUR;
         println!("{name}: {n:.4} °/√h of {true_n}");
         assert!((n / true_n - 1.0).abs() < 0.3, "{name}: {n}");
         let is_reported = |words: &String| words.contains("more than the stated");
@@ -186,7 +188,7 @@ fn a_false_bias_of_a_vehicle_that_stands_widens_sigma() {
             .session
             .conclusion()
             .and_then(|it| it.found)
-            .map(|found| (found.azimuth.sigma, found.widening))
+            .map(|found| (found.azimuth.sigma.0, found.widening))
     };
     let (honest, _) = sigma(&header).expect("something was found");
     header.gyro_bias_deg_h = Some(0.0002);

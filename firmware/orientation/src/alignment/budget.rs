@@ -2,6 +2,8 @@
 //! because σ and the refusal of a poor azimuth both follow from it; an error source that is left
 //! out would show up as a wrong north with a small σ.
 
+use crate::units::Radians;
+
 /// Source of the uncertainty of an azimuth: one line of the error budget; see [`Budget`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -43,31 +45,31 @@ crate::words! { Source:
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
     /// White noise of the gyro.
-    pub noise: f64,
+    pub noise: Radians,
     /// Bias instability, random walk and ramp of the gyro, the cost of estimating a trend, and slow
     /// rotation or tilting of the base.
-    pub drift: f64,
+    pub drift: Radians,
     /// Unknown part of the g-sensitivity times the tilt, over the horizontal Earth rate:
     /// `σ_κ`·|F|/`Ω_h`.
-    pub g_sensitivity: f64,
+    pub g_sensitivity: Radians,
     /// Tilt error: the accelerometer's noise and bias.
-    pub accelerometer: f64,
+    pub accelerometer: Radians,
     /// Zero, first and second harmonic of the encoder.
-    pub encoder: f64,
+    pub encoder: Radians,
     /// Uncertainty of the latitude.
-    pub latitude: f64,
+    pub latitude: Radians,
     /// Uncertainty of the gyro's scale factor.
-    pub scale: f64,
+    pub scale: Radians,
     /// Cost of estimating a temperature slope of the bias.
-    pub temperature: f64,
+    pub temperature: Radians,
     /// Uncertainty of the distance that a vehicle drove between stops.
-    pub displacement: f64,
+    pub displacement: Radians,
 }
 
 impl Budget {
     /// The parts with their names, in the order in which they are printed.
     #[must_use]
-    pub fn parts(&self) -> [(Source, f64); 9] {
+    pub fn parts(&self) -> [(Source, Radians); 9] {
         [
             (Source::Noise, self.noise),
             (Source::Drift, self.drift),
@@ -81,19 +83,19 @@ impl Budget {
         ]
     }
 
-    /// Standard deviation of the azimuth: root sum of squares of all contributions, rad.
+    /// Standard deviation of the azimuth: root sum of squares of all contributions.
     #[must_use]
-    pub fn sigma(&self) -> f64 {
-        libm::sqrt(self.parts().iter().map(|(_, part)| part * part).sum())
+    pub fn sigma(&self) -> Radians {
+        Radians(libm::sqrt(self.parts().iter().map(|(_, part)| part.0 * part.0).sum()))
     }
 
-    /// Root sum of squares of all contributions except noise, rad.
-    pub(crate) fn beside_noise(&self) -> f64 {
-        Self { noise: 0.0, ..*self }.sigma()
+    /// Root sum of squares of all contributions except noise.
+    pub(crate) fn beside_noise(&self) -> Radians {
+        Self { noise: Radians(0.0), ..*self }.sigma()
     }
 
     /// Largest contribution and its source.
-    pub(crate) fn greatest(&self) -> (Source, f64) {
+    pub(crate) fn greatest(&self) -> (Source, Radians) {
         let parts = self.parts();
         parts.into_iter().fold(parts[0], |most, part| if part.1 > most.1 { part } else { most })
     }
@@ -103,7 +105,7 @@ impl Budget {
     #[must_use]
     pub fn dominant(&self) -> Option<Source> {
         let (source, part) = self.greatest();
-        let dominates = part * part > 0.5 * self.sigma() * self.sigma();
+        let dominates = part.0 * part.0 > 0.5 * self.sigma().0 * self.sigma().0;
         (dominates && source != Source::Noise).then_some(source)
     }
 }

@@ -15,6 +15,7 @@ use super::refusal::Refusal;
 use super::rotating::misalignment::AxisMisalignment;
 use super::verdict::Verdict;
 use crate::signal::SwayNoise;
+use crate::units::{Metres, Radians, RadiansPerSecond};
 
 /// Input of an alignment whose samples are of the type `S`.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +24,9 @@ pub enum Input<'a, S> {
     Sample(&'a S),
     /// Noise that the compensated sway of the base leaves in the samples, before the first of them.
     Sway(&'a SwayNoise),
-    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east, m, from a point
+    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east, from a point
     /// that stays the same.
-    Displaced(&'a [f64; 2]),
+    Displaced(&'a [Metres; 2]),
     /// The end of the samples.
     End,
     /// A permanent failure of the instrument.
@@ -37,10 +38,10 @@ pub enum Input<'a, S> {
 pub enum Request {
     /// Continue sampling.
     Continue,
-    /// Point the gyro at this stage angle, rad, not wrapped to one turn.
-    Point(f64),
-    /// Turn the platform at this rate, rad/s, clockwise positive; zero brings it to rest.
-    Turn(f64),
+    /// Point the gyro at this stage angle, not wrapped to one turn.
+    Point(Radians),
+    /// Turn the platform at this rate, clockwise positive; zero brings it to rest.
+    Turn(RadiansPerSecond),
     /// Set the sensitive axis of a two-frame mount vertical, to hold the azimuth.
     Vertical,
     /// State how far the vehicle has driven, if that is known, by [`Input::Displaced`].

@@ -1,6 +1,7 @@
 //! Sample period: how far time stamps may contradict the configured one.
 
 use super::refusal::Refusal;
+use crate::units::{Milliseconds, Seconds};
 
 /// Default tolerance of the time stamps' mean step against the period, relative: a recorder's clock
 /// is far better, a converter's own oscillator is not.
@@ -9,9 +10,10 @@ pub(crate) const PERIOD_TOLERANCE: f64 = 0.01;
 /// oscillator accuracy), which holds for a board's samples.
 pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
-/// Refuses samples whose time stamps show a period of `found` s where `stated` s is configured,
+/// Refuses samples whose time stamps show a period of `found` where `stated` is configured,
 /// beyond a relative tolerance.
-pub(crate) fn contradiction(stated: f64, found: f64, tolerance: f64) -> Option<Refusal> {
-    let is_off = (found / stated - 1.0).abs() > tolerance;
-    is_off.then_some(Refusal::PeriodContradicted { stated: 1e3 * stated, found: 1e3 * found })
+pub(crate) fn contradiction(stated: Seconds, found: Seconds, tolerance: f64) -> Option<Refusal> {
+    let is_off = (found.0 / stated.0 - 1.0).abs() > tolerance;
+    let [stated, found] = [stated, found].map(|period| Milliseconds(1e3 * period.0));
+    is_off.then_some(Refusal::PeriodContradicted { stated, found })
 }

@@ -6,7 +6,7 @@ use super::stepwise::progress as stepwise;
 use super::stops::progress as stops;
 use super::verdict::Solution;
 use crate::roll::progress as roll;
-use crate::units::DEGREES_PER_RADIAN as DEGREES;
+use crate::units::{MetresPerSecondSquared, Radians};
 use crate::words::Rounded;
 
 /// Receiver of an alignment's progress.
@@ -15,8 +15,8 @@ pub type Listener<'a> = &'a mut dyn FnMut(Progress);
 /// Progress of an alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
-    /// The platform is level enough: inclination along and across the gyro's sensitive axis, rad.
-    Levelled([f64; 2]),
+    /// The platform is level enough: inclination along and across the gyro's sensitive axis.
+    Levelled([Radians; 2]),
     /// Progress of a multi-position alignment.
     Stepwise(stepwise::Progress),
     /// Progress of an alignment by continuous rotation.
@@ -34,22 +34,22 @@ pub enum Progress {
 crate::words! { Progress:
     Self::Levelled([along, across]) =>
         "level: platform inclined by {}° along and {}° across the gyro's axis",
-        Rounded::<3>(along * DEGREES), Rounded::<3>(across * DEGREES);
+        Rounded::<3>(along.degrees()), Rounded::<3>(across.degrees());
     Self::Stepwise(progress) => "{}", progress;
     Self::Rotating(progress) => "{}", progress;
     Self::Stops(progress) => "{}", progress;
     Self::Roll(progress) => "{}", progress;
     Self::Concluded(Solution { azimuth, limit }) =>
         "azimuth {}° ± {}° (1σ), limit {}°",
-        Rounded::<4>(azimuth.angle * DEGREES), Rounded::<4>(azimuth.sigma * DEGREES),
-        Rounded::<4>(limit * DEGREES);
+        Rounded::<4>(azimuth.angle.degrees()), Rounded::<4>(azimuth.sigma.degrees()),
+        Rounded::<4>(limit.degrees());
     Self::Refused(reason) => "no azimuth: {}", reason;
 }
 
 impl Progress {
-    /// The platform's inclination by its mean specific force at rest, m/s².
-    pub(crate) fn levelled([along, across, down]: [f64; 3]) -> Self {
-        Self::Levelled([along, across].map(|force| libm::atan2(force, -down)))
+    /// The platform's inclination by its mean specific force at rest.
+    pub(crate) fn levelled([along, across, down]: [MetresPerSecondSquared; 3]) -> Self {
+        Self::Levelled([along, across].map(|force| Radians(libm::atan2(force.0, -down.0))))
     }
 }
 

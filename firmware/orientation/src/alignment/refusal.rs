@@ -8,6 +8,7 @@ use super::rotating::refusal as rotating;
 use super::stepwise::refusal as stepwise;
 use super::stops::refusal as stops;
 use crate::device::{Device, Trouble};
+use crate::units::{Degrees, MilliG, Milliseconds, Seconds};
 use crate::words::Rounded;
 
 /// Reason for which no azimuth is given. Angles are in degrees and times in seconds, ready to
@@ -17,24 +18,24 @@ use crate::words::Rounded;
 pub enum Refusal {
     /// The latitude is within 5° of a pole: the horizontal Earth rate is below 9 % of the whole.
     LatitudeTooHigh {
-        /// The latitude, °.
-        latitude: f64,
+        /// The latitude.
+        latitude: Degrees,
     },
     /// The standard deviation of the azimuth is greater than the required one.
     BudgetNotMet {
-        /// Standard deviation that was reached, 1σ, °.
-        sigma: f64,
-        /// Greatest standard deviation that is accepted, 1σ, °.
-        required: f64,
+        /// Standard deviation that was reached, 1σ.
+        sigma: Degrees,
+        /// Greatest standard deviation that is accepted, 1σ.
+        required: Degrees,
         /// Largest contribution to the error budget.
         source: Source,
     },
     /// The platform is inclined more than the method allows.
     TiltTooGreat {
-        /// Tilt of the platform that was measured, °.
-        tilt: f64,
-        /// Greatest tilt that the configuration allows, °.
-        allowed: f64,
+        /// Tilt of the platform that was measured.
+        tilt: Degrees,
+        /// Greatest tilt that the configuration allows.
+        allowed: Degrees,
     },
     /// The residuals of the fit are larger than the stated noise of the gyro explains.
     ResidualsNotWhite {
@@ -49,15 +50,15 @@ pub enum Refusal {
     },
     /// The heading of the platform stepped between two dwells.
     HeadingStepped {
-        /// Size of the heading step, °.
-        angle: f64,
+        /// Size of the heading step.
+        angle: Degrees,
         /// Time at which the heading stepped, s after the first dwell began.
-        after: f64,
+        after: Seconds,
     },
     /// The accelerometer's readings do not turn with the stage angle that the encoder shows.
     AccelerometerDisagrees {
-        /// RMS of the readings that no constant tilt explains, mg.
-        scatter: f64,
+        /// RMS of the readings that no constant tilt explains.
+        scatter: MilliG,
     },
     /// The mean specific force on the vertical axis is not that of gravity.
     AccelerometerImplausible {
@@ -78,10 +79,10 @@ pub enum Refusal {
     MovedDuringAlignment,
     /// The time stamps contradict the configured sample period.
     PeriodContradicted {
-        /// Configured sample period, ms.
-        stated: f64,
-        /// Sample period found from the time stamps, ms.
-        found: f64,
+        /// Configured sample period.
+        stated: Milliseconds,
+        /// Sample period found from the time stamps.
+        found: Milliseconds,
     },
     /// The axis misalignment is unknown: neither configured, nor measured by rate-modulated turns.
     MisalignmentUnknown,
@@ -108,13 +109,13 @@ impl core::error::Error for Refusal {}
 crate::words! { Refusal:
     Self::LatitudeTooHigh { latitude } =>
         "latitude {}° is beyond ±85°: too little of the Earth rate is horizontal",
-        Rounded::<2>(latitude);
+        Rounded::<2>(latitude.0);
     Self::BudgetNotMet { sigma, required, source } =>
         "σ would be {}°, above the accepted {}°; {} contributes most",
-        Rounded::<3>(sigma), Rounded::<3>(required), source;
+        Rounded::<3>(sigma.0), Rounded::<3>(required.0), source;
     reason @ Self::TiltTooGreat { tilt, allowed } =>
         "the platform is inclined by {}°, more than {}°{}",
-        Rounded::<2>(tilt), Rounded::<1>(allowed),
+        Rounded::<2>(tilt.0), Rounded::<1>(allowed.0),
         reason.remedy();
     Self::ResidualsNotWhite { ratio } =>
         "residuals are not white: {} times the stated noise power", Rounded::<1>(ratio);
@@ -122,14 +123,14 @@ crate::words! { Refusal:
         "residuals are not white: neighbours correlate by {}", Rounded::<2>(correlation);
     Self::HeadingStepped { angle, after } =>
         "the heading steps by {}° after {} s: the encoder slipped, or the base was turned",
-        Rounded::<2>(angle), Rounded::<1>(after);
+        Rounded::<2>(angle.0), Rounded::<1>(after.0);
     Self::AccelerometerImplausible { ratio } =>
         "the accelerometer feels {} of gravity: check its axes, signs and units",
         Rounded::<3>(ratio);
     Self::AccelerometerDisagrees { scatter } =>
         "the accelerometer is off by {} mg from any tilt: check which way the encoder counts, the axes, its noise, and \
          whether it warms up",
-        Rounded::<1>(scatter);
+        Rounded::<1>(scatter.0);
     Self::EarthRateMismatch { ratio, sigma } =>
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
         Rounded::<3>(ratio), Rounded::<3>(sigma);
@@ -137,7 +138,7 @@ crate::words! { Refusal:
     Self::MovedDuringAlignment => "the vehicle drove on before it was aligned";
     Self::PeriodContradicted { stated, found } =>
         "samples come every {} ms, not every {} ms as stated: correct the sample rate or the times",
-        Rounded::<3>(found), Rounded::<3>(stated);
+        Rounded::<3>(found.0), Rounded::<3>(stated.0);
     Self::MisalignmentUnknown =>
         "the axis misalignment of the sensor is not known: modulate the platform's rate first";
     Self::Device { device, trouble } => "{}: {}", device, trouble;

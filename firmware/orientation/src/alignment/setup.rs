@@ -1,7 +1,7 @@
 //! Reasons for which an alignment cannot begin, with the sentences that are printed for them.
 
 use crate::filter::DesignError;
-use crate::units::TURN;
+use crate::units::{Radians, TURN};
 use crate::words::Rounded;
 
 /// Reason for which an alignment cannot begin.
@@ -16,8 +16,8 @@ pub enum SetupError {
         /// Number of samples that the filter needs.
         needed: u32,
     },
-    /// A position lies outside the stage's travel, rad.
-    BeyondTravel(f64),
+    /// A position lies outside the stage's travel.
+    BeyondTravel(Radians),
     /// The schedule has no position.
     NoPosition,
     /// A rotating platform lacks speeds above zero, two turns in each sense, or a modulation of its
@@ -37,7 +37,7 @@ crate::words! { SetupError:
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;
     Self::BeyondTravel(angle) =>
-        "position {}° is beyond the stage's travel", Rounded::<2>(angle / TURN * 360.0);
+        "position {}° is beyond the stage's travel", Rounded::<2>(angle.0 / TURN * 360.0);
     Self::NoPosition => "there is no position";
     Self::NoStops =>
         "stops need a sample period and a length above zero, and two to eight of them";

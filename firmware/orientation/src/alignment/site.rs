@@ -4,7 +4,10 @@ use super::budget::Source;
 use super::refusal::{Passed, Refusal, refuse_if};
 use crate::earth::Latitude;
 use crate::noise::{GyroNoise, StatedNoise};
-use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as DEGREES, TURN};
+use crate::units::{
+    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, Degrees, GSensitivity, MetresPerSecondSquared, Radians,
+    RadiansPerRootSecond, TURN,
+};
 
 /// Site, instrument and requirements. A standard deviation of zero means exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,30 +15,30 @@ use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN as 
 pub struct Site {
     /// Geodetic latitude.
     pub latitude: Latitude,
-    /// Standard deviation of the latitude, 1σ, rad.
-    pub latitude_sigma: f64,
+    /// Standard deviation of the latitude, 1σ.
+    pub latitude_sigma: Radians,
     /// Noise of the gyro; where its white part is unknown, the data show it.
     pub noise: StatedNoise,
     /// Standard deviation of the gyro's scale factor, 1σ, relative.
     pub scale_sigma: f64,
     /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; on a
     /// two-frame mount along the inner frame's axis instead.
-    pub g_sensitivity: [f64; 2],
+    pub g_sensitivity: [GSensitivity; 2],
     /// Standard deviation of either part of κ, 1σ, rad/s per g; on a two-frame mount also of the
     /// third part, which is taken as zero.
-    pub g_sensitivity_sigma: f64,
+    pub g_sensitivity_sigma: GSensitivity,
     /// Whether κ and its σ are known; otherwise κ is taken as zero and its σ follows from the
     /// gyro's noise ([`Self::kappa_sigma`]).
     pub g_sensitivity_known: bool,
-    /// Standard deviation of each accelerometer bias, 1σ, m/s².
-    pub accelerometer_bias_sigma: f64,
-    /// Standard deviation of the azimuth due to the encoder's zero and harmonics, 1σ, rad; on a
+    /// Standard deviation of each accelerometer bias, 1σ.
+    pub accelerometer_bias_sigma: MetresPerSecondSquared,
+    /// Standard deviation of the azimuth due to the encoder's zero and harmonics, 1σ; on a
     /// two-frame mount including the residual of its calibration ([`super::stepwise::mount::azimuth_sigma`]).
-    pub encoder_sigma: f64,
-    /// Greatest standard deviation of the azimuth that is accepted, rad.
-    pub required_sigma: f64,
-    /// Greatest tilt of the platform that is accepted, rad.
-    pub allowed_tilt: f64,
+    pub encoder_sigma: Radians,
+    /// Greatest standard deviation of the azimuth that is accepted.
+    pub required_sigma: Radians,
+    /// Greatest tilt of the platform that is accepted.
+    pub allowed_tilt: Radians,
 }
 
 /// Relative uncertainty of the Earth rate below which it counts as exact: it has no effect on the
@@ -62,32 +65,33 @@ impl Site {
     pub fn at(latitude: Latitude) -> Self {
         Self {
             latitude,
-            latitude_sigma: 0.0,
+            latitude_sigma: Radians(0.0),
             noise: StatedNoise::ExceptWhite(GyroNoise::default()),
             scale_sigma: 0.0,
-            g_sensitivity: [0.0; 2],
-            g_sensitivity_sigma: 0.0,
+            g_sensitivity: [GSensitivity(0.0); 2],
+            g_sensitivity_sigma: GSensitivity(0.0),
             g_sensitivity_known: true,
-            accelerometer_bias_sigma: 0.0,
-            encoder_sigma: 0.0,
-            required_sigma: 10.0 / 360.0 * TURN,
-            allowed_tilt: 15.0 / 360.0 * TURN,
+            accelerometer_bias_sigma: MetresPerSecondSquared(0.0),
+            encoder_sigma: Radians(0.0),
+            required_sigma: Radians(10.0 / 360.0 * TURN),
+            allowed_tilt: Radians(15.0 / 360.0 * TURN),
         }
     }
 
-    /// Standard deviation of either part of κ, 1σ, rad/s per g, for a gyro with this N, rad/√s.
+    /// Standard deviation of either part of κ, 1σ, for a gyro with this N.
     #[must_use]
-    pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
+    pub fn kappa_sigma(&self, angle_random_walk: RadiansPerRootSecond) -> GSensitivity {
         if self.g_sensitivity_known {
             self.g_sensitivity_sigma
         } else {
-            (KAPPA_OF_NOISE * angle_random_walk * angle_random_walk).min(GREATEST_KAPPA)
+            let n = angle_random_walk.0;
+            GSensitivity((KAPPA_OF_NOISE * n * n).min(GREATEST_KAPPA))
         }
     }
 
     /// Relative 1σ of the horizontal Earth rate as the gyro measures it: scale factor and latitude.
     pub(crate) fn amplitude_sigma(&self) -> f64 {
-        let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma;
+        let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma.0;
         let sigma = libm::hypot(self.scale_sigma, latitude);
         if sigma < EXACT_AMPLITUDE { 0.0 } else { sigma }
     }
@@ -102,7 +106,7 @@ impl Site {
     /// # Errors
     /// [`Refusal::LatitudeTooHigh`].
     pub fn check_latitude(&self) -> Passed {
-        let latitude = self.latitude.rad() * DEGREES;
+        let latitude = Radians(self.latitude.rad()).into();
         refuse_if(!self.latitude.has_north(), Refusal::LatitudeTooHigh { latitude })
     }
 
@@ -111,20 +115,20 @@ impl Site {
     /// # Errors
     /// [`Refusal::TiltTooGreat`].
     pub fn check_tilt(&self, sine: f64) -> Passed {
-        let (tilt, allowed) = (libm::asin(sine.min(1.0)), self.allowed_tilt);
+        let (tilt, allowed) = (Radians(libm::asin(sine.min(1.0))), self.allowed_tilt);
         let is_great = tilt > allowed;
-        let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
+        let [tilt, allowed] = [tilt, allowed].map(Degrees::from);
         refuse_if(is_great, Refusal::TiltTooGreat { tilt, allowed })
     }
 
-    /// Refuses a standard deviation of the azimuth, rad, that is zero, not a number, or greater
+    /// Refuses a standard deviation of the azimuth that is zero, not a number, or greater
     /// than required; the source is that of its greatest part.
     ///
     /// # Errors
     /// [`Refusal::BudgetNotMet`].
-    pub fn check_sigma(&self, sigma: f64, source: Source) -> Passed {
-        let is_met = sigma > 0.0 && sigma <= self.required_sigma;
-        let [sigma, required] = [sigma, self.required_sigma].map(|angle| angle * DEGREES);
+    pub fn check_sigma(&self, sigma: Radians, source: Source) -> Passed {
+        let is_met = sigma.0 > 0.0 && sigma <= self.required_sigma;
+        let [sigma, required] = [sigma, self.required_sigma].map(Degrees::from);
         refuse_if(!is_met, Refusal::BudgetNotMet { sigma, required, source })
     }
 }

@@ -1,14 +1,15 @@
 //! Verdict of an alignment: an azimuth with its standard deviation, or the reason for none.
 
 use super::refusal::Refusal;
+use crate::units::Radians;
 
 /// An azimuth that passed every test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Azimuth {
-    /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
-    pub angle: f64,
-    /// Standard deviation of the azimuth, 1σ, rad: the whole error budget.
-    pub sigma: f64,
+    /// Azimuth of body x from true north, clockwise from above, [0, 2π).
+    pub angle: Radians,
+    /// Standard deviation of the azimuth, 1σ: the whole error budget.
+    pub sigma: Radians,
 }
 
 /// An azimuth beside the least standard deviation that its data allow.
@@ -16,8 +17,8 @@ pub struct Azimuth {
 pub struct Solution {
     /// The azimuth with its 1σ.
     pub azimuth: Azimuth,
-    /// Cramér–Rao bound of the 1σ for the same data and unknowns, rad.
-    pub limit: f64,
+    /// Cramér–Rao bound of the 1σ for the same data and unknowns.
+    pub limit: Radians,
 }
 
 /// Outcome of an alignment.

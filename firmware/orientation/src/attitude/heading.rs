@@ -10,7 +10,7 @@ use super::setting::Gyro;
 use super::vertical::Vertical;
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
-use crate::units::{TURN, wrapped};
+use crate::units::{MetresPerSecond, Radians, TURN, wrapped};
 
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other.
 const BOUND: f64 = 4.0;
@@ -50,17 +50,17 @@ impl Heading {
     pub(super) fn begin(azimuth: Azimuth, gyro: &Gyro, vertical: &mut Vertical) -> Self {
         vertical.begin_course();
         Self {
-            frame: wrapped(azimuth.angle - course(vertical)),
-            variance: azimuth.sigma * azimuth.sigma,
+            frame: wrapped(azimuth.angle.0 - course(vertical)),
+            variance: azimuth.sigma.0 * azimuth.sigma.0,
             scale: gyro.scale_sigma,
-            ramp: gyro.noise.rate_ramp,
+            ramp: gyro.noise.rate_ramp.0,
         }
     }
 
     /// Present azimuth of body x.
     pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
-        let angle = wrapped(self.frame + course(vertical));
-        Azimuth { angle, sigma: libm::sqrt(self.variance(vertical)) }
+        let angle = Radians(wrapped(self.frame + course(vertical)));
+        Azimuth { angle, sigma: Radians(libm::sqrt(self.variance(vertical))) }
     }
 
     /// Variance of the present azimuth, rad².
@@ -79,14 +79,14 @@ impl Heading {
         vertical: &mut Vertical,
     ) -> Realigned {
         let kept = self.azimuth(vertical);
-        let off = difference(azimuth.angle, kept.angle);
-        let (old, new) = (kept.sigma * kept.sigma, azimuth.sigma * azimuth.sigma);
+        let off = difference(azimuth.angle.0, kept.angle.0);
+        let (old, new) = (kept.sigma.0 * kept.sigma.0, azimuth.sigma.0 * azimuth.sigma.0);
         let sigmas = off.abs() / libm::sqrt(old + new);
         if sigmas > BOUND || sigmas.is_nan() {
             return Realigned::Disagrees { sigmas };
         }
-        let angle = kept.angle + off * old / (old + new);
-        let sigma = libm::sqrt(old * new / (old + new));
+        let angle = Radians(kept.angle.0 + off * old / (old + new));
+        let sigma = Radians(libm::sqrt(old * new / (old + new)));
         *self = Self::begin(Azimuth { angle, sigma }, gyro, vertical);
         Realigned::Fused { sigmas }
     }
@@ -98,13 +98,13 @@ impl Heading {
 pub(super) fn frame_rate(
     latitude: Latitude,
     north: Option<f64>,
-    speed: Option<[f64; 2]>,
+    speed: Option<[MetresPerSecond; 2]>,
 ) -> [f32; 3] {
-    let down = -latitude.vertical_rate();
+    let down = -latitude.vertical_rate().0;
     let Some(frame) = north else { return [0.0, 0.0, down as f32] };
-    let [to_north, to_east] = speed.unwrap_or_default();
-    let [along, across] = latitude.radii();
-    let about_north = latitude.horizontal_rate() + to_east / across;
+    let [to_north, to_east] = speed.unwrap_or_default().map(|part| part.0);
+    let [along, across] = latitude.radii().map(|radius| radius.0);
+    let about_north = latitude.horizontal_rate().0 + to_east / across;
     let about_east = -to_north / along;
     let about_down = down - to_east / across * libm::tan(latitude.rad());
     let (sine, cosine) = libm::sincos(frame);

@@ -8,12 +8,12 @@ use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical};
 use crate::signal::InertialSample;
-use crate::units::Instant;
+use crate::units::{Instant, MetresPerSecond, Radians, RadiansPerSecond, Seconds};
 
 use crate::alignment::Azimuth;
 
-/// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
-const NOWHERE: f64 = 0.5;
+/// Standard deviation at which an azimuth carries no information, 1σ: it is withdrawn.
+const NOWHERE: Radians = Radians(0.5);
 
 /// Propagates pitch, roll and azimuth.
 #[derive(Clone, Debug)]
@@ -26,8 +26,8 @@ pub struct Keeper {
     heading: Option<Heading>,
     /// Time at which the azimuth was handed over.
     handed: Instant,
-    /// Speed north and east, m/s, where it is known.
-    speed: Option<[f64; 2]>,
+    /// Speed north and east, where it is known.
+    speed: Option<[MetresPerSecond; 2]>,
     /// Reliability of the level.
     trust: Trust,
     /// Time since which the reliability has been the same.
@@ -112,8 +112,8 @@ impl Keeper {
         realigned
     }
 
-    /// Sets the speed of the vehicle north and east, m/s; none where it is not known.
-    pub fn move_at(&mut self, speed: Option<[f64; 2]>) {
+    /// Sets the speed of the vehicle north and east; none where it is not known.
+    pub fn move_at(&mut self, speed: Option<[MetresPerSecond; 2]>) {
         self.speed = speed;
         self.turn_frame();
     }
@@ -135,22 +135,23 @@ impl Keeper {
         let vertical = &self.vertical;
         let azimuth = self.heading.as_ref().map(|heading| heading.azimuth(vertical));
         let [course, pitch, roll] = attitude::angles(vertical.attitude().parts());
-        let course = azimuth.map_or(course, |azimuth| azimuth.angle);
+        let course = azimuth.map_or(course, |azimuth| azimuth.angle.0);
         let time = vertical.time();
+        let since = Seconds(time.seconds() - self.since.seconds());
         let seconds = azimuth.map_or(0.0, |_| time.seconds() - self.handed.seconds());
         Report {
             time,
-            pitch,
-            roll,
-            level_sigma: vertical.sigma().into(),
+            pitch: Radians(pitch),
+            roll: Radians(roll),
+            level_sigma: Radians(vertical.sigma().into()),
             azimuth,
             attitude: attitude::quaternion([course, pitch, roll]),
-            state: State { trust: self.trust, seconds: time.seconds() - self.since.seconds() },
+            state: State { trust: self.trust, seconds: since },
             is_at_rest: vertical.is_at_rest(),
-            biases: vertical.bias.map(f64::from),
-            bias_sigmas: vertical.bias_sigmas().map(f64::from),
+            biases: vertical.bias.map(|bias| RadiansPerSecond(bias.into())),
+            bias_sigmas: vertical.bias_sigmas().map(|sigma| RadiansPerSecond(sigma.into())),
             is_bias_beyond_stated: vertical.is_bias_beyond_stated,
-            seconds,
+            seconds: Seconds(seconds),
         }
     }
 
@@ -165,7 +166,7 @@ impl Keeper {
             pitch: report.pitch,
             roll: report.roll,
             rates: self.vertical.rest_rates()?,
-            rest: f64::from(self.vertical.course.stood),
+            rest: Seconds(self.vertical.course.stood.into()),
         })
     }
 
@@ -175,7 +176,7 @@ impl Keeper {
     /// # Errors
     /// Reason for which the saved azimuth is rejected.
     pub fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
-        let rest = (self.vertical.rest_rates(), f64::from(self.vertical.course.stood));
+        let rest = (self.vertical.rest_rates(), Seconds(self.vertical.course.stood.into()));
         restart::check(remembered, &self.report(), rest, &self.setting)?;
         self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });
         Ok(())

@@ -8,11 +8,11 @@
 use super::report::Report;
 use super::setting::Setting;
 use crate::checksum::{numbers, record, record_bytes};
-use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};
+use crate::units::{DEGREE, Degrees, Radians, RadiansPerSecond, Seconds};
 use crate::words::Rounded;
 
-/// Shortest rest for the comparison, s.
-pub const REST_SECONDS: f64 = 10.0;
+/// Shortest rest for the comparison.
+pub const REST_SECONDS: Seconds = Seconds(10.0);
 /// Greatest change of pitch and roll, rad: the effect of temperature and tyres on a standing
 /// vehicle, 0.05°.
 const TILT: f64 = 0.05 * DEGREE;
@@ -27,18 +27,18 @@ const VERSION: u32 = 1;
 /// State that is saved against a loss of supply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remembered {
-    /// Azimuth of body x, rad.
-    pub azimuth: f64,
-    /// Standard deviation of the azimuth, 1σ, rad.
-    pub sigma: f64,
-    /// Pitch, rad, nose up positive.
-    pub pitch: f64,
-    /// Roll, rad, right side down positive.
-    pub roll: f64,
-    /// Mean rates at rest about forward, right, down, rad/s, including the Earth rate.
-    pub rates: [f64; 3],
-    /// Averaging time of these rates, s.
-    pub rest: f64,
+    /// Azimuth of body x.
+    pub azimuth: Radians,
+    /// Standard deviation of the azimuth, 1σ.
+    pub sigma: Radians,
+    /// Pitch, nose up positive.
+    pub pitch: Radians,
+    /// Roll, right side down positive.
+    pub roll: Radians,
+    /// Mean rates at rest about forward, right, down, including the Earth rate.
+    pub rates: [RadiansPerSecond; 3],
+    /// Averaging time of these rates.
+    pub rest: Seconds,
 }
 
 /// Reason for which a saved azimuth is rejected.
@@ -46,13 +46,13 @@ pub struct Remembered {
 pub enum RecallRefusal {
     /// The body is not at rest, or not for long enough.
     NotAtRest {
-        /// Time at rest, s.
-        seconds: f64,
+        /// Time at rest.
+        seconds: Seconds,
     },
     /// Pitch or roll has changed.
     Tilted {
-        /// Greatest change of pitch or roll, °.
-        degrees: f64,
+        /// Greatest change of pitch or roll.
+        degrees: Degrees,
     },
     /// The rates at rest have changed.
     Turned {
@@ -61,48 +61,48 @@ pub enum RecallRefusal {
     },
     /// The gyros cannot determine whether the body was turned.
     TurnUnobservable {
-        /// Standard deviation with which they could, 1σ, °.
-        sigma: f64,
+        /// Standard deviation with which they could, 1σ.
+        sigma: Degrees,
     },
 }
 
 crate::words! { RecallRefusal:
-    Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds);
-    Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees);
+    Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds.0);
+    Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees.0);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
     Self::TurnUnobservable { sigma } =>
         "a turn about the vertical shows to {}° only: the gyros' biases differ from start to start",
-        Rounded::<2>(sigma);
+        Rounded::<2>(sigma.0);
 }
 
-/// Checks that a body is still in its saved attitude, by its mean rates over the present rest, rad/s
-/// (none where it moves), and the length of that rest, s.
+/// Checks that a body is still in its saved attitude, by its mean rates over the present rest (none
+/// where it moves), and the length of that rest.
 pub(super) fn check(
     before: &Remembered,
     now: &Report,
-    (rates, rest): (Option<[f64; 3]>, f64),
+    (rates, rest): (Option<[RadiansPerSecond; 3]>, Seconds),
     setting: &Setting,
 ) -> Result<(), RecallRefusal> {
     let Some(rates) = rates.filter(|_| now.is_at_rest && rest >= REST_SECONDS) else {
         return Err(RecallRefusal::NotAtRest { seconds: rest });
     };
-    let tilt = (now.pitch - before.pitch).abs().max((now.roll - before.roll).abs());
+    let tilt = (now.pitch.0 - before.pitch.0).abs().max((now.roll.0 - before.roll.0).abs());
     if tilt > TILT || tilt.is_nan() {
-        return Err(RecallRefusal::Tilted { degrees: tilt * DEGREES });
+        return Err(RecallRefusal::Tilted { degrees: Radians(tilt).into() });
     }
     let sigmas: [f64; 3] = core::array::from_fn(|axis| {
         let gyro = &setting.gyros[axis];
-        let noise = gyro.noise.white_variance(rest) + gyro.noise.white_variance(before.rest);
-        libm::sqrt(2.0 * gyro.bias_sigma * gyro.bias_sigma + noise)
+        let noise = gyro.noise.white_variance(rest.0) + gyro.noise.white_variance(before.rest.0);
+        libm::sqrt(2.0 * gyro.bias_sigma.0 * gyro.bias_sigma.0 + noise)
     });
-    let away = (0..3).map(|axis| (rates[axis] - before.rates[axis]).abs() / sigmas[axis]);
+    let away = (0..3).map(|axis| (rates[axis].0 - before.rates[axis].0).abs() / sigmas[axis]);
     let away = away.fold(0.0, f64::max);
     if away > BOUND || away.is_nan() {
         return Err(RecallRefusal::Turned { sigmas: away });
     }
     let sigma = rotation_sigma(before, setting, &sigmas);
     if sigma > DETERMINED || sigma.is_nan() {
-        return Err(RecallRefusal::TurnUnobservable { sigma: sigma * DEGREES });
+        return Err(RecallRefusal::TurnUnobservable { sigma: Radians(sigma).into() });
     }
     Ok(())
 }
@@ -110,8 +110,8 @@ pub(super) fn check(
 /// Standard deviation, 1σ, rad, with which the gyros forward and right can determine a rotation
 /// about the vertical: it moves the horizontal Earth rate from one to the other.
 fn rotation_sigma(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
-    let (sine, cosine) = libm::sincos(before.azimuth);
-    let rate = setting.latitude.horizontal_rate();
+    let (sine, cosine) = libm::sincos(before.azimuth.0);
+    let rate = setting.latitude.horizontal_rate().0;
     let weight = |moved: f64, sigma: f64| (moved / sigma) * (moved / sigma);
     let whole = weight(rate * sine, sigmas[0]) + weight(rate * cosine, sigmas[1]);
     1.0 / libm::sqrt(whole)
@@ -125,7 +125,8 @@ impl Remembered {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::BYTES] {
         let Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest } = *self;
-        record(VERSION, &[azimuth, sigma, pitch, roll, x, y, z, rest].map(f64::to_bits))
+        let values = [azimuth.0, sigma.0, pitch.0, roll.0, x.0, y.0, z.0, rest.0];
+        record(VERSION, &values.map(f64::to_bits))
     }
 
     /// Reads the stored form; `None` where it is damaged, of another version, or not finite.
@@ -133,7 +134,9 @@ impl Remembered {
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let values = numbers(VERSION, bytes)?.map(f64::from_bits);
         let [azimuth, sigma, pitch, roll, x, y, z, rest] = values;
+        let [azimuth, sigma, pitch, roll] = [azimuth, sigma, pitch, roll].map(Radians);
+        let (rates, rest) = ([x, y, z].map(RadiansPerSecond), Seconds(rest));
         let are_finite = values.iter().all(|value| value.is_finite());
-        are_finite.then_some(Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest })
+        are_finite.then_some(Self { azimuth, sigma, pitch, roll, rates, rest })
     }
 }

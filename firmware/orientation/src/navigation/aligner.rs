@@ -4,7 +4,7 @@ use super::Order;
 use crate::alignment::progress::Progress;
 use crate::alignment::{Azimuth, Listener, Method, Refusal, Request, method};
 use crate::signal::{SwayNoise, Timed};
-use crate::units::Instant;
+use crate::units::{Instant, Metres};
 
 /// Longest time until the mechanism's angles are valid, µs: six searches of a stage for its index
 /// over the whole travel, with the rests between them, 15 minutes.
@@ -16,8 +16,8 @@ pub enum Input {
     /// The mechanism's angles are valid; noise that the compensated sway of the base leaves in the
     /// samples.
     Homed(SwayNoise),
-    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east, m.
-    Displaced([f64; 2]),
+    /// Answer to [`Request::Locate`]: displacement of the vehicle, north and east.
+    Displaced([Metres; 2]),
     /// An order.
     Ordered(Order),
 }

@@ -8,7 +8,9 @@ use crate::alignment::{Azimuth, Refusal, Request};
 use crate::attitude::restart::{RecallRefusal, Remembered};
 use crate::attitude::{Gyro, Keeper, Realigned, Report, State, Trust};
 use crate::signal::InertialSample;
-use crate::units::{DEGREE, DEGREE_PER_HOUR, Instant};
+use crate::units::{
+    DEGREE, DEGREE_PER_HOUR, Instant, MetresPerSecond, Radians, RadiansPerSecond, Seconds,
+};
 
 /// Period of the checks of the keeper's state, µs.
 const LOOK: u64 = 100_000;
@@ -27,8 +29,8 @@ const RESTLESS: u64 = 5_000_000;
 /// produces in one run of two hundred; they then indicate a motion that does not exist, until rates
 /// that stay constant for as long disprove it.
 const LEARNING: u64 = 20_000_000;
-/// Duration of an acceleration below which it is not reported, s.
-const REPORTED_SECONDS: f64 = 3.0;
+/// Duration of an acceleration below which it is not reported.
+const REPORTED_SECONDS: Seconds = Seconds(3.0);
 /// Least time between two saved headings of the same stop, µs.
 const SAVING: u64 = 60_000_000;
 /// Change of azimuth or σ that is worth saving, rad.
@@ -39,10 +41,10 @@ const CHANGE: f64 = 0.01 * DEGREE;
 pub struct Attitude {
     /// Azimuth of body x; [`None`] if it is unknown, or if no inertial samples arrive.
     pub azimuth: Option<Azimuth>,
-    /// Pitch, nose up positive, rad.
-    pub pitch: f64,
-    /// Roll, right side down positive, rad.
-    pub roll: f64,
+    /// Pitch, nose up positive.
+    pub pitch: Radians,
+    /// Roll, right side down positive.
+    pub roll: Radians,
     /// The keeper's state; [`None`] if no inertial samples arrive.
     pub state: Option<State>,
     /// Whether the azimuth is that saved before the loss of supply.
@@ -69,9 +71,9 @@ pub enum Input {
     Motion(Motion),
     /// There is no increment of a later time yet: a found azimuth belongs to the latest one.
     Settled,
-    /// Aiding from outside: velocity over ground north and east, m/s, and an azimuth of body x at this
+    /// Aiding from outside: velocity over ground north and east, and an azimuth of body x at this
     /// moment, where they are known.
-    Aided(Option<[f64; 2]>, Option<Azimuth>),
+    Aided(Option<[MetresPerSecond; 2]>, Option<Azimuth>),
     /// Time has passed in which no increment came.
     Passed(Instant),
 }
@@ -105,8 +107,8 @@ pub struct Navigator<'k> {
     policy: Policy,
     /// The heading from before the restart, until it has been accepted or rejected.
     remembered: Option<Remembered>,
-    /// Azimuth and σ that this run has saved, rad, and the time.
-    saved: Option<([f64; 2], Instant)>,
+    /// Azimuth that this run has saved, and the time.
+    saved: Option<(Azimuth, Instant)>,
     /// Time of the latest event, and of the latest inertial sample.
     now: Instant,
     moved: Option<Instant>,
@@ -174,7 +176,7 @@ impl<'k> Navigator<'k> {
     #[must_use]
     pub fn is_over(&self) -> bool {
         let held = |since: Instant| self.now.0.saturating_sub(since.0) as f64 * 1e-6;
-        self.since.is_some_and(|since| held(since) >= self.policy.hold_seconds)
+        self.since.is_some_and(|since| held(since) >= self.policy.hold_seconds.0)
     }
 
     /// Whether aiding is to be given before an event of this time: once a second.
@@ -191,7 +193,10 @@ impl<'k> Navigator<'k> {
             Input::Motion(Motion::Moved(sample)) => self.push(sample, outlet),
             Input::Motion(Motion::Exchanged(down)) => self.exchange(*down, outlet),
             Input::Settled => self.take_found(Instant(u64::MAX), outlet),
-            Input::Aided(velocity, azimuth) => self.aid(*velocity, *azimuth, outlet),
+            Input::Aided(velocity, azimuth) => {
+                self.keeper.move_at(*velocity);
+                self.aid(*azimuth, outlet);
+            }
             Input::Passed(now) => self.tick(*now, outlet),
         }
     }
@@ -210,16 +215,16 @@ impl<'k> Navigator<'k> {
         self.keeper.exchange_down(match down {
             VerticalGyro::Coarse => beside,
             VerticalGyro::Calibrated => {
-                Gyro { bias_sigma: COMPARED_SIGMA.min(beside.bias_sigma), ..beside }
+                let sigma = RadiansPerSecond(COMPARED_SIGMA.min(beside.bias_sigma.0));
+                Gyro { bias_sigma: sigma, ..beside }
             }
             VerticalGyro::Precise => precise,
         });
         outlet(Output::Progress(Progress::DownGyro(down)));
     }
 
-    /// Takes aiding from outside.
-    fn aid(&mut self, velocity: Option<[f64; 2]>, azimuth: Option<Azimuth>, outlet: Outlet) {
-        self.keeper.move_at(velocity);
+    /// Takes an azimuth from outside.
+    fn aid(&mut self, azimuth: Option<Azimuth>, outlet: Outlet) {
         if let Some(azimuth) = azimuth {
             self.align(azimuth, outlet);
             self.spare(outlet);
@@ -381,17 +386,17 @@ impl<'k> Navigator<'k> {
         else {
             return;
         };
-        let now = [azimuth.angle, azimuth.sigma];
-        if self.is_new(now) {
-            self.saved = Some((now, self.now));
+        if self.is_new(azimuth) {
+            self.saved = Some((azimuth, self.now));
             outlet(Output::Save(remembered));
         }
     }
 
     /// Whether azimuth or σ have changed enough, and the heading was saved long enough ago.
-    fn is_new(&self, now: [f64; 2]) -> bool {
+    fn is_new(&self, now: Azimuth) -> bool {
         let Some((then, since)) = self.saved else { return true };
-        let has_changed = (0..2).any(|index| (now[index] - then[index]).abs() > CHANGE);
+        let is_other = |now: Radians, then: Radians| (now.0 - then.0).abs() > CHANGE;
+        let has_changed = is_other(now.angle, then.angle) || is_other(now.sigma, then.sigma);
         has_changed && self.now.0.saturating_sub(since.0) >= SAVING
     }
 
@@ -420,15 +425,15 @@ impl<'k> Navigator<'k> {
         }
     }
 
-    /// Orders a new alignment where the body has been at rest for so many seconds, once at each
+    /// Orders a new alignment where the body has been at rest for so long, once at each
     /// stop.
-    fn begin_at_stop(&mut self, seconds: f64, outlet: Outlet) {
+    fn begin_at_stop(&mut self, seconds: Seconds, outlet: Outlet) {
         let rested = |since: Instant| self.now.0.saturating_sub(since.0) as f64 * 1e-6;
         let stood = self.rests.map_or(0.0, rested);
-        if !self.is_realigned && stood >= seconds {
+        if !self.is_realigned && stood >= seconds.0 {
             self.is_realigned = true;
             outlet(Output::Progress(Progress::Realigning));
-            outlet(Output::Request(Request::Point(0.0)));
+            outlet(Output::Request(Request::Point(Radians(0.0))));
             outlet(Output::Order(Order::Restart));
         }
     }

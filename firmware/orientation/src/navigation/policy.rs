@@ -1,14 +1,15 @@
 //! Policy of the navigator: how long an azimuth is held, and when it is renewed.
 
 use crate::attitude::Gyro;
+use crate::units::Seconds;
 
 /// The policy that renews a held azimuth, whose σ grows with time (heading hold).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Realignment {
     /// The azimuth is not renewed by the instrument; only one from outside renews it.
     Never,
-    /// A new alignment begins at every stop that lasts for this time, s.
-    AtStops(f64),
+    /// A new alignment begins at every stop that lasts for this time.
+    AtStops(Seconds),
     /// A new alignment begins at the stop that ended the one before, as from stop to stop in a
     /// vehicle.
     BetweenStops,
@@ -17,9 +18,9 @@ pub enum Realignment {
 /// Operation after, and beside, the alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Policy {
-    /// Duration for which the azimuth is held after the first alignment, s; infinite for ever, zero
+    /// Duration for which the azimuth is held after the first alignment; infinite for ever, zero
     /// for not at all.
-    pub hold_seconds: f64,
+    pub hold_seconds: Seconds,
     /// The policy at stops.
     pub realignment: Realignment,
     /// Whether the method itself distinguishes rest from motion, as inertial-frame alignment from
@@ -39,6 +40,6 @@ impl Policy {
     /// Whether an azimuth is held at all.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.hold_seconds > 0.0
+        self.hold_seconds.0 > 0.0
     }
 }

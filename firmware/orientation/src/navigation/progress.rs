@@ -3,7 +3,6 @@
 use crate::alignment::{Azimuth, Refusal};
 use crate::attitude::restart::RecallRefusal;
 use crate::attitude::{Realigned, State};
-use crate::units::DEGREES_PER_RADIAN as DEGREES;
 use crate::words::Rounded;
 
 /// The gyro that measures the rotation about the body's down axis.
@@ -46,13 +45,13 @@ pub enum Progress {
 crate::words! { Progress:
     Self::HandedOver(Azimuth { angle, sigma }, Realigned::Taken) =>
         "azimuth {}° ± {}° (1σ) handed over: it is kept",
-        Rounded::<4>(angle * DEGREES), Rounded::<4>(sigma * DEGREES);
+        Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees());
     Self::HandedOver(Azimuth { angle, sigma }, Realigned::Fused { sigmas }) =>
         "realigned: azimuth {}° ± {}° (1σ) agrees with what was kept, by {} σ",
-        Rounded::<4>(angle * DEGREES), Rounded::<4>(sigma * DEGREES), Rounded::<1>(sigmas);
+        Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees()), Rounded::<1>(sigmas);
     Self::HandedOver(Azimuth { angle, sigma }, Realigned::Disagrees { sigmas }) =>
         "azimuth {}° ± {}° (1σ) disagrees with what was kept, by {} σ: neither is believed",
-        Rounded::<4>(angle * DEGREES), Rounded::<4>(sigma * DEGREES), Rounded::<1>(sigmas);
+        Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees()), Rounded::<1>(sigmas);
     Self::Refused(reason) => "no azimuth: {}", reason;
     Self::Keeping(state) => "keeping: {}", state;
     Self::NoMotion => "keeping: no motion is measured any more";
@@ -68,6 +67,6 @@ crate::words! { Progress:
     Self::Realigning => "the vehicle stands: aligning anew";
     Self::HeadingRecalled(Azimuth { angle, sigma }) =>
         "the vehicle stands as it stood before the restart: azimuth {}° ± {}° (1σ) recalled",
-        Rounded::<4>(angle * DEGREES), Rounded::<4>(sigma * DEGREES);
+        Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees());
     Self::RecallRefused(reason) => "the heading of before the restart is not believed: {}", reason;
 }

@@ -1,6 +1,9 @@
 //! Noise model of a gyro in the field's terms: Q, N, B, K, R (IEEE Std 952-1997).
 
-use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
+use crate::units::{
+    ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, Radians, RadiansPerRootSecond,
+    RadiansPerSecond, RateRamp, RateRandomWalk, TURN,
+};
 
 /// Noise coefficients of a gyro in SI units, for the Allan variance 3Q²/τ² + N²/τ + (2 ln 2/π)B² +
 /// K²τ/3 + R²τ²/2. A coefficient of zero is absent.
@@ -8,16 +11,16 @@ use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GyroNoise {
-    /// Quantisation Q, rad: 1σ of the angle's rounding.
-    pub quantisation: f64,
-    /// Angle random walk N, rad/√s.
-    pub angle_random_walk: f64,
-    /// Bias instability B, rad/s; one-sided spectral density B²/(π f).
-    pub bias_instability: f64,
+    /// Quantisation Q: 1σ of the angle's rounding.
+    pub quantisation: Radians,
+    /// Angle random walk N.
+    pub angle_random_walk: RadiansPerRootSecond,
+    /// Bias instability B; one-sided spectral density B²/(π f).
+    pub bias_instability: RadiansPerSecond,
     /// Rate random walk K, rad/s/√s.
-    pub rate_random_walk: f64,
+    pub rate_random_walk: RateRandomWalk,
     /// Rate ramp R, rad/s², as the 1σ of an unknown constant slope.
-    pub rate_ramp: f64,
+    pub rate_ramp: RateRamp,
 }
 
 /// What is stated of a gyro's noise before an alignment.
@@ -56,43 +59,48 @@ impl GyroNoise {
     /// Model from N in °/√h, B in °/h, K in °/h/√h and R in °/h²; the quantisation is zero.
     pub fn from_field_units(n: f64, b: f64, k: f64, r: f64) -> Self {
         Self {
-            angle_random_walk: n * DEGREE_PER_SQRT_HOUR,
-            bias_instability: b * DEGREE_PER_HOUR,
-            rate_random_walk: k * DEGREE_PER_HOUR / 60.0,
-            rate_ramp: r * DEGREE_PER_HOUR / 3600.0,
+            angle_random_walk: RadiansPerRootSecond(n * DEGREE_PER_SQRT_HOUR),
+            bias_instability: RadiansPerSecond::from_degrees_per_hour(b),
+            rate_random_walk: RateRandomWalk(k * DEGREE_PER_HOUR / 60.0),
+            rate_ramp: RateRamp(r * DEGREE_PER_HOUR / 3600.0),
             ..Self::default()
         }
     }
 
     /// The model with a quantisation of Q arc seconds.
     pub fn with_quantisation(self, q: f64) -> Self {
-        Self { quantisation: q * ARCSECOND, ..self }
+        Self { quantisation: Radians(q * ARCSECOND), ..self }
     }
 
     /// Model of the coefficients Q, N, B, K and R in SI units, in that order.
     pub fn of(coefficients: [f64; 5]) -> Self {
-        let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
-            coefficients;
-        Self { quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp }
+        let [q, n, b, k, r] = coefficients;
+        Self {
+            quantisation: Radians(q),
+            angle_random_walk: RadiansPerRootSecond(n),
+            bias_instability: RadiansPerSecond(b),
+            rate_random_walk: RateRandomWalk(k),
+            rate_ramp: RateRamp(r),
+        }
     }
 
     /// Coefficients Q, N, B, K and R in SI units, in that order.
     #[must_use]
     pub fn coefficients(&self) -> [f64; 5] {
         let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
-        [q, n, b, self.rate_random_walk, self.rate_ramp]
+        [q.0, n.0, b.0, self.rate_random_walk.0, self.rate_ramp.0]
     }
 
     /// Variance of a mean over `seconds` due to white noise, N²/T, (rad/s)².
     #[must_use]
     pub fn white_variance(&self, seconds: f64) -> f64 {
-        self.angle_random_walk * self.angle_random_walk / seconds
+        self.angle_random_walk.0 * self.angle_random_walk.0 / seconds
     }
 
     /// Variance of a mean over `seconds` due to rounding of the angle at either end, 2Q²/T²,
     /// (rad/s)².
     pub(crate) fn rounding_variance(&self, seconds: f64) -> f64 {
-        let rounding = self.quantisation / seconds;
+        let rounding = self.quantisation.0 / seconds;
         2.0 * rounding * rounding
     }
 
@@ -104,8 +112,8 @@ impl GyroNoise {
 
     /// Two-sided spectral density at a frequency in Hz, (rad/s)²/Hz: N² + B²/(2πf) + K²/(2πf)².
     pub(crate) fn density_at(&self, frequency: f64) -> f64 {
-        let (n, b) = (self.angle_random_walk, self.bias_instability);
-        let k = self.rate_random_walk / (TURN * frequency);
+        let (n, b) = (self.angle_random_walk.0, self.bias_instability.0);
+        let k = self.rate_random_walk.0 / (TURN * frequency);
         n * n + b * b / (TURN * frequency) + k * k
     }
 
@@ -113,13 +121,13 @@ impl GyroNoise {
     /// (rad/s)²/Hz. The random walk counts twice there, because its slope within a period is not
     /// removed.
     pub(crate) fn density_of_period(&self, frequency: f64) -> f64 {
-        let k = self.rate_random_walk / (TURN * frequency);
+        let k = self.rate_random_walk.0 / (TURN * frequency);
         self.density_at(frequency) + k * k
     }
 
     /// Whether successive dwells share noise other than a ramp: B or K is present.
     pub(crate) fn is_coloured(&self) -> bool {
-        self.bias_instability > 0.0 || self.rate_random_walk > 0.0
+        self.bias_instability.0 > 0.0 || self.rate_random_walk.0 > 0.0
     }
 
     /// The model without drift: N alone remains.

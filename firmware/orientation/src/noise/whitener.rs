@@ -91,7 +91,7 @@ impl<T: Scalar> Step<T> {
 /// [`Step`] in their order.
 #[inline(never)]
 fn sway_step(sway: &SwayNoise, seconds: f64) -> [f64; 5] {
-    let e1 = -libm::expm1(-seconds / sway.correlation);
+    let e1 = -libm::expm1(-seconds / sway.correlation.0);
     let (rate, added) = (1.0 / seconds, sway.angle_variance * doubled(e1));
     let cross = added * rate;
     [1.0 - e1, -e1 * rate, added, cross, cross * rate]
@@ -259,7 +259,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
             covariance: [[zero; STATES]; STATES],
             state: [[zero; COLUMNS]; STATES],
         };
-        let flicker = noise.bias_instability * noise.bias_instability / core::f64::consts::PI;
+        let flicker = noise.bias_instability.0 * noise.bias_instability.0 / core::f64::consts::PI;
         let (variance, mut correlation) = (flicker * LOG_SPACING, shortest / 3.0);
         let fast = 2.0 * variance * correlation / (SPACING - 1.0);
         let mut processes = [Process::default(); RATES];
@@ -270,7 +270,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         }
         processes[FLICKER_STATES] = Process {
             correlation: f64::INFINITY,
-            drive: noise.rate_random_walk * noise.rate_random_walk,
+            drive: noise.rate_random_walk.0 * noise.rate_random_walk.0,
         };
         let model = Model { processes, fast, sway: SwayNoise::NONE };
         let coloured = noise.is_coloured();

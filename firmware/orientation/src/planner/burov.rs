@@ -16,13 +16,14 @@
 //! `t_GC` 300 s give n = 11 and Δω = 3.6505e-3 °/h.
 
 use crate::noise::GyroNoise;
+use crate::units::{RadiansPerSecond, Seconds};
 
 /// Fewest positions that compensate a bias.
 const FEWEST: u32 = 2;
 /// Most positions that are considered: more than any stage reaches in a day.
 const MOST: u32 = 100_000;
-/// Longest total time that is considered, s: a day.
-pub const LONGEST: f64 = 86_400.0;
+/// Longest total time that is considered: a day.
+pub const LONGEST: Seconds = Seconds(86_400.0);
 /// Number of bisections of an interval of time: from a day to below a nanosecond.
 const HALVINGS: usize = 48;
 /// Number of ternary-search steps with the same final width.
@@ -33,28 +34,33 @@ const THIRDS: usize = 82;
 pub struct Autocompensation {
     /// Number of positions n.
     pub positions: u32,
-    /// Time in each position, s: the total less the rotations, over n.
-    pub dwell: f64,
-    /// Total time `t_GC`, s.
-    pub seconds: f64,
-    /// Rate error Δω(n), rad/s, 1σ, without bias instability.
-    pub rate_error: f64,
+    /// Time in each position: the total less the rotations, over n.
+    pub dwell: Seconds,
+    /// Total time `t_GC`.
+    pub seconds: Seconds,
+    /// Rate error Δω(n), 1σ, without bias instability.
+    pub rate_error: RadiansPerSecond,
 }
 
-/// Rate error Δω(n), rad/s, 1σ, for `positions` in `seconds` of total time with `rotation` seconds
-/// for each rotation; `None` for fewer than two positions, or where the rotations leave no time.
+/// Rate error Δω(n), 1σ, for `positions` in `seconds` of total time with the time `rotation` for
+/// each rotation; `None` for fewer than two positions, or where the rotations leave no time.
 #[must_use]
-pub fn rate_error(noise: &GyroNoise, positions: u32, seconds: f64, rotation: f64) -> Option<f64> {
-    let n = f64::from(positions);
+pub fn rate_error(
+    noise: &GyroNoise,
+    positions: u32,
+    seconds: Seconds,
+    rotation: Seconds,
+) -> Option<RadiansPerSecond> {
+    let (n, seconds, rotation) = (f64::from(positions), seconds.0, rotation.0);
     let whole = seconds + rotation;
     let still = seconds - (n - 1.0) * rotation;
-    let GyroNoise { quantisation: q, angle_random_walk: white, rate_random_walk: k, .. } = *noise;
-    let ramp = noise.rate_ramp * whole / n;
+    let [q, white, _, k, r] = noise.coefficients();
+    let ramp = r * whole / n;
     let square = 0.5 * ramp * ramp
         + k * k * whole / (3.0 * n)
         + white * white / still
         + 3.0 * q * q / (still * still);
-    (positions >= FEWEST && still > 0.0).then(|| libm::sqrt(square))
+    (positions >= FEWEST && still > 0.0).then(|| RadiansPerSecond(libm::sqrt(square)))
 }
 
 /// Number of positions with the least Δω in `seconds` of total time; `None` where not even one
@@ -63,8 +69,8 @@ pub fn rate_error(noise: &GyroNoise, positions: u32, seconds: f64, rotation: f64
 /// Each term of Δω² is convex in n, so their sum is convex, and the sign of its change is bisected.
 /// Without noise that grows with the dwell, two positions are best.
 #[must_use]
-pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompensation> {
-    let of = |n| rate_error(noise, n, seconds, rotation).unwrap_or(f64::INFINITY);
+pub fn best(noise: &GyroNoise, seconds: Seconds, rotation: Seconds) -> Option<Autocompensation> {
+    let of = |n| rate_error(noise, n, seconds, rotation).map_or(f64::INFINITY, |error| error.0);
     let (mut low, mut high) = (FEWEST, MOST);
     while low < high {
         let middle = u32::midpoint(low, high);
@@ -72,34 +78,39 @@ pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompen
     }
     let rate_error = rate_error(noise, low, seconds, rotation)?;
     let n = f64::from(low);
-    let dwell = (seconds - (n - 1.0) * rotation) / n;
-    Some(Autocompensation { positions: low, dwell, seconds, rate_error })
+    let dwell = (seconds.0 - (n - 1.0) * rotation.0) / n;
+    Some(Autocompensation { positions: low, dwell: Seconds(dwell), seconds, rate_error })
 }
 
-/// Shortest total time in which Δω comes down to `wanted` rad/s, with its best number of positions.
+/// Shortest total time in which Δω comes down to `wanted`, with its best number of positions.
 ///
 /// # Errors
-/// The least Δω, rad/s, where no time up to a day reaches `wanted`.
+/// The least Δω, where no time up to a day reaches `wanted`.
 ///
 /// More time is not always better: between one number of positions and the next a random walk adds
 /// to the error. For each number Δω² is convex in the time, so the first sufficient time is found
 /// for each, and the shortest of all is taken.
-pub fn least_time(noise: &GyroNoise, wanted: f64, rotation: f64) -> Result<Autocompensation, f64> {
-    let (mut longest, mut least, mut found) = (LONGEST, f64::INFINITY, None);
+pub fn least_time(
+    noise: &GyroNoise,
+    wanted: RadiansPerSecond,
+    rotation: Seconds,
+) -> Result<Autocompensation, RadiansPerSecond> {
+    let (mut longest, mut least, mut found) = (LONGEST.0, f64::INFINITY, None);
     for positions in FEWEST..=MOST {
-        let turning = f64::from(positions - 1) * rotation;
+        let turning = f64::from(positions - 1) * rotation.0;
         if turning >= longest {
             break;
         }
-        let of = |seconds| rate_error(noise, positions, seconds, rotation).unwrap_or(f64::INFINITY);
+        let error = |seconds| rate_error(noise, positions, Seconds(seconds), rotation);
+        let of = |seconds| error(seconds).map_or(f64::INFINITY, |error| error.0);
         let lowest = lowest(of, turning, longest);
         least = least.min(of(lowest));
-        if of(lowest) <= wanted {
-            longest = first(|seconds| of(seconds) <= wanted, turning, lowest);
-            found = best(noise, longest, rotation);
+        if of(lowest) <= wanted.0 {
+            longest = first(|seconds| of(seconds) <= wanted.0, turning, lowest);
+            found = best(noise, Seconds(longest), rotation);
         }
     }
-    found.ok_or(least)
+    found.ok_or(RadiansPerSecond(least))
 }
 
 /// Argument of the minimum of a convex function between two times, s, by ternary search.
@@ -122,9 +133,10 @@ fn first(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
     high
 }
 
-/// Contribution of bias instability to a rate error, B√(2 ln 2/π), rad/s; no rotation schedule
+/// Contribution of bias instability to a rate error, B√(2 ln 2/π); no rotation schedule
 /// reduces it.
 #[must_use]
-pub fn flicker_floor(noise: &GyroNoise) -> f64 {
-    noise.bias_instability * libm::sqrt(2.0 * core::f64::consts::LN_2 / core::f64::consts::PI)
+pub fn flicker_floor(noise: &GyroNoise) -> RadiansPerSecond {
+    let factor = libm::sqrt(2.0 * core::f64::consts::LN_2 / core::f64::consts::PI);
+    RadiansPerSecond(noise.bias_instability.0 * factor)
 }

@@ -11,7 +11,7 @@ pub mod prediction;
 
 use crate::earth::Latitude;
 use crate::noise::GyroNoise;
-use crate::units::TURN;
+use crate::units::{Radians, RadiansPerSecond, Seconds, TURN};
 use order::{Order, PARTS};
 use prediction::{Visit, rate_sigma};
 
@@ -22,10 +22,10 @@ pub const POSITIONS: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
-    /// Constant part of every rotation, s, ≥ 0: acceleration, deceleration and settling.
-    pub rest: f64,
-    /// Rate between the ramps, rad/s, > 0; infinite where the time does not depend on the angle.
-    pub speed: f64,
+    /// Constant part of every rotation, ≥ 0: acceleration, deceleration and settling.
+    pub rest: Seconds,
+    /// Rate between the ramps, > 0; infinite where the time does not depend on the angle.
+    pub speed: RadiansPerSecond,
     /// Whether the stage takes the shorter way round: with slip rings, or with two frames.
     pub wraps: bool,
 }
@@ -33,8 +33,8 @@ pub struct Rotation {
 impl Rotation {
     /// Rotation time of a stage on which every rotation takes `seconds`, whatever the angle.
     #[must_use]
-    pub fn fixed(seconds: f64) -> Self {
-        Self { rest: seconds, speed: f64::INFINITY, wraps: false }
+    pub fn fixed(seconds: Seconds) -> Self {
+        Self { rest: seconds, speed: RadiansPerSecond(f64::INFINITY), wraps: false }
     }
 
     /// Time from one position to another, s, for positions in twenty-fourths of a turn, each of
@@ -42,21 +42,20 @@ impl Rotation {
     fn between(&self, from: u8, to: u8, per_part: f64) -> f64 {
         let parts = to.abs_diff(from);
         let way = if self.wraps { parts.min(PARTS - parts) } else { parts };
-        if parts == 0 { 0.0 } else { self.rest + f64::from(way) * per_part }
+        if parts == 0 { 0.0 } else { self.rest.0 + f64::from(way) * per_part }
     }
 
     /// Time for a twenty-fourth of a turn at full speed, s.
     fn part_seconds(&self) -> f64 {
-        TURN / f64::from(PARTS) / self.speed
+        TURN / f64::from(PARTS) / self.speed.0
     }
 
-    /// Time for a rotation by `angle` rad, at most a turn in magnitude, s; zero for an angle of
-    /// zero.
+    /// Time for a rotation by `angle`, at most a turn in magnitude; zero for an angle of zero.
     #[must_use]
-    pub fn seconds(&self, angle: f64) -> f64 {
-        let angle = angle.abs();
+    pub fn seconds(&self, angle: Radians) -> Seconds {
+        let angle = angle.0.abs();
         let way = if self.wraps { angle.min(TURN - angle) } else { angle };
-        if angle == 0.0 { 0.0 } else { self.rest + way / self.speed }
+        Seconds(if angle == 0.0 { 0.0 } else { self.rest.0 + way / self.speed.0 })
     }
 }
 
@@ -67,8 +66,8 @@ pub struct Conditions {
     pub noise: GyroNoise,
     /// Rotation time of the stage.
     pub rotation: Rotation,
-    /// Shortest dwell, s, > 0, which the filter's settling requires.
-    pub shortest: f64,
+    /// Shortest dwell, > 0, which the filter's settling requires.
+    pub shortest: Seconds,
     /// Fewest positions of a plan, usually [`FEWEST`].
     pub fewest: usize,
     /// Orders of positions that the stage can turn through.
@@ -92,13 +91,12 @@ pub struct Plan {
     pub order: Order,
     /// Number of passes through the order.
     pub passes: usize,
-    /// Time in each position, s.
-    pub dwell: f64,
-    /// Total time including the rotations, s.
-    pub seconds: f64,
-    /// Standard deviation that noise leaves to each horizontal component of the Earth rate, 1σ,
-    /// rad/s.
-    pub rate_sigma: f64,
+    /// Time in each position.
+    pub dwell: Seconds,
+    /// Total time including the rotations.
+    pub seconds: Seconds,
+    /// Standard deviation that noise leaves to each horizontal component of the Earth rate, 1σ.
+    pub rate_sigma: RadiansPerSecond,
 }
 
 /// Reason for which there is no plan.
@@ -106,9 +104,8 @@ pub struct Plan {
 pub enum PlanError {
     /// The time does not hold the fewest positions with the shortest dwell.
     TooShort,
-    /// The accuracy is out of reach; the value is the least 1σ of a rate component within the time,
-    /// rad/s.
-    OutOfReach(f64),
+    /// The accuracy is out of reach; the value is the least 1σ of a rate component within the time.
+    OutOfReach(RadiansPerSecond),
     /// Neither N nor Q is known: without white noise any dwell is long enough.
     NoNoise,
 }
@@ -138,34 +135,40 @@ impl Plan {
         self.passes * self.order.length()
     }
 
-    /// Stage angle of the position with this index, rad, [0, 2π).
+    /// Stage angle of the position with this index, [0, 2π).
     #[must_use]
-    pub fn angle(&self, index: usize) -> f64 {
+    pub fn angle(&self, index: usize) -> Radians {
         self.order.angle(index, self.passes)
     }
 
-    /// Standard deviation of a full azimuth at a latitude due to noise, 1σ, rad.
+    /// Standard deviation of a full azimuth at a latitude due to noise, 1σ.
     #[must_use]
-    pub fn sigma(&self, latitude: Latitude) -> f64 {
-        self.rate_sigma / latitude.horizontal_rate()
+    pub fn sigma(&self, latitude: Latitude) -> Radians {
+        Radians(self.rate_sigma.0 / latitude.horizontal_rate().0)
     }
 
-    /// Plan of `passes` of `order` in a total time, s; `None` where they do not fit.
+    /// Plan of `passes` of `order` in a total time; `None` where they do not fit.
     #[must_use]
     #[inline(never)]
-    pub fn of(conditions: &Conditions, order: Order, passes: usize, seconds: f64) -> Option<Self> {
+    pub fn of(
+        conditions: &Conditions,
+        order: Order,
+        passes: usize,
+        seconds: Seconds,
+    ) -> Option<Self> {
         let positions = passes * order.length();
         if !(conditions.fewest..=POSITIONS).contains(&positions) {
             return None;
         }
         let turning = turning(&conditions.rotation, order, passes);
-        let dwell = (seconds - turning) / positions as f64;
+        let dwell = Seconds((seconds.0 - turning) / positions as f64);
         if dwell < conditions.shortest {
             return None;
         }
-        let plan = Self { order, passes, dwell, seconds, rate_sigma: 0.0 };
+        let plan = Self { order, passes, dwell, seconds, rate_sigma: RadiansPerSecond(0.0) };
         let visits = plan.visits(&conditions.rotation);
-        rate_sigma(&conditions.noise, dwell, visits).map(|rate_sigma| Self { rate_sigma, ..plan })
+        let rate_sigma = rate_sigma(&conditions.noise, dwell.0, visits).map(RadiansPerSecond);
+        rate_sigma.map(|rate_sigma| Self { rate_sigma, ..plan })
     }
 
     /// Dwells of the plan with their times; the first begins at zero.
@@ -177,8 +180,8 @@ impl Plan {
             let part = self.order.part(index, self.passes);
             start += rotation.between(before, part, per_part);
             before = part;
-            let visit = Visit::planned(part, start, self.dwell);
-            start += self.dwell;
+            let visit = Visit::planned(part, start, self.dwell.0);
+            start += self.dwell.0;
             visit
         })
     }
@@ -203,7 +206,7 @@ fn better(one: Option<Plan>, other: Option<Plan>) -> Option<Plan> {
 
 /// Best number of passes of one order in a total time. σ² falls with the passes as drift cancels,
 /// and rises with the rotations, so the first rise ends the search.
-fn best_of(conditions: &Conditions, order: Order, seconds: f64) -> Option<Plan> {
+fn best_of(conditions: &Conditions, order: Order, seconds: Seconds) -> Option<Plan> {
     let mut best: Option<Plan> = None;
     for passes in PASSES {
         match (Plan::of(conditions, order, passes, seconds), best) {
@@ -217,7 +220,7 @@ fn best_of(conditions: &Conditions, order: Order, seconds: f64) -> Option<Plan> 
 }
 
 /// Best number of passes in a total time by local search from `plan`'s, one pass at a time.
-fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
+fn climbed(conditions: &Conditions, plan: &Plan, seconds: Seconds) -> Option<Plan> {
     let of = |passes| Plan::of(conditions, plan.order, passes, seconds);
     let mut best = of(plan.passes);
     for step in [-1_isize, 1] {
@@ -241,26 +244,30 @@ fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
     best
 }
 
-/// Schedule of the least σ in a total time, s.
+/// Schedule of the least σ in a total time.
 ///
 /// # Errors
 /// [`PlanError::TooShort`], [`PlanError::NoNoise`].
-pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError> {
+pub fn for_time(conditions: &Conditions, seconds: Seconds) -> Result<Plan, PlanError> {
     conditions.check()?;
     let plans = conditions.orders.iter().map(|order| best_of(conditions, *order, seconds));
     let best = plans.reduce(better).flatten().ok_or(PlanError::TooShort)?;
     Ok(climbed(conditions, &best, seconds).unwrap_or(best))
 }
 
-/// Shortest schedule, at most `longest` seconds, whose 1σ of a rate component is `wanted` rad/s (a
+/// Shortest schedule, at most `longest`, whose 1σ of a rate component is `wanted` (a
 /// wanted azimuth times `Ω_h`). It takes at most 1 % longer than the least time of its order.
 ///
 /// # Errors
 /// [`PlanError::OutOfReach`] where `longest` is not enough, and the errors of [`for_time`].
-pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<Plan, PlanError> {
+pub fn for_sigma(
+    conditions: &Conditions,
+    wanted: RadiansPerSecond,
+    longest: Seconds,
+) -> Result<Plan, PlanError> {
     conditions.check()?;
     let usual = conditions.orders.first().copied();
-    let begun = usual.and_then(|order| best_of(conditions, order, longest.min(USUAL)));
+    let begun = usual.and_then(|order| best_of(conditions, order, Seconds(longest.0.min(USUAL))));
     let begun = begun.map_or_else(|| for_time(conditions, longest), Ok)?;
     let enough = lengthened(conditions, begun, wanted, longest)?;
     let found = shortened(conditions, enough, wanted);
@@ -274,7 +281,7 @@ pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<P
     let other =
         orders.map(|plan| climbed(conditions, &plan, found.seconds)).reduce(better).flatten();
     Ok(match other {
-        Some(other) if other.rate_sigma < WORTH_IT * found.rate_sigma => {
+        Some(other) if other.rate_sigma.0 < WORTH_IT * found.rate_sigma.0 => {
             shortened(conditions, other, wanted)
         }
         _ => found,
@@ -282,23 +289,24 @@ pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<P
 }
 
 /// Time at which white noise alone would bring the plan to `wanted`, and 0.5 % more, s.
-fn aimed(plan: &Plan, wanted: f64) -> f64 {
-    let ratio = plan.rate_sigma / wanted;
-    plan.seconds * ratio * ratio * (1.0 + 0.5 * CLOSE)
+fn aimed(plan: &Plan, wanted: RadiansPerSecond) -> f64 {
+    let ratio = plan.rate_sigma.0 / wanted.0;
+    plan.seconds.0 * ratio * ratio * (1.0 + 0.5 * CLOSE)
 }
 
 /// Plan that reaches `wanted`, by increasing its time up to `longest`.
 fn lengthened(
     conditions: &Conditions,
     mut plan: Plan,
-    wanted: f64,
-    longest: f64,
+    wanted: RadiansPerSecond,
+    longest: Seconds,
 ) -> Result<Plan, PlanError> {
     while plan.rate_sigma > wanted {
         if plan.seconds >= longest {
             return Err(PlanError::OutOfReach(plan.rate_sigma));
         }
-        let seconds = aimed(&plan, wanted).max(STRIDE * plan.seconds).min(longest);
+        let seconds = aimed(&plan, wanted).max(STRIDE * plan.seconds.0).min(longest.0);
+        let seconds = Seconds(seconds);
         let next = climbed(conditions, &plan, seconds);
         plan =
             if seconds < longest { next } else { better(next, for_time(conditions, longest).ok()) }
@@ -308,16 +316,16 @@ fn lengthened(
 }
 
 /// Shortest plan of the same order that still reaches `wanted`, as `high` does.
-fn shortened(conditions: &Conditions, mut high: Plan, wanted: f64) -> Plan {
+fn shortened(conditions: &Conditions, mut high: Plan, wanted: RadiansPerSecond) -> Plan {
     let mut low = 0.0;
     for _ in 0..STEPS {
-        let span = high.seconds - low;
-        if span <= CLOSE * high.seconds {
+        let span = high.seconds.0 - low;
+        if span <= CLOSE * high.seconds.0 {
             break;
         }
-        let most = (1.0 - 0.9 * CLOSE) * high.seconds;
+        let most = (1.0 - 0.9 * CLOSE) * high.seconds.0;
         let middle = aimed(&high, wanted).max(low + 0.1 * span).min(most);
-        match climbed(conditions, &high, middle) {
+        match climbed(conditions, &high, Seconds(middle)) {
             Some(plan) if plan.rate_sigma <= wanted => high = plan,
             _ => low = middle,
         }

@@ -1,6 +1,6 @@
 //! Orders in which positions are visited so that drift cancels (Burov).
 
-use crate::units::TURN;
+use crate::units::{Radians, TURN};
 
 /// Order of positions; a *pass* is its smallest repeatable part.
 ///
@@ -77,10 +77,10 @@ impl Order {
         pass[index % pass.len()]
     }
 
-    /// Stage angle of the position with this index in a schedule of `passes`, rad, [0, 2π).
+    /// Stage angle of the position with this index in a schedule of `passes`, [0, 2π).
     #[must_use]
-    pub fn angle(self, index: usize, passes: usize) -> f64 {
-        f64::from(self.part(index, passes)) * (TURN / f64::from(PARTS))
+    pub fn angle(self, index: usize, passes: usize) -> Radians {
+        Radians(f64::from(self.part(index, passes)) * (TURN / f64::from(PARTS)))
     }
 
     /// Name of the order, as it is printed.

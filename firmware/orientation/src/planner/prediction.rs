@@ -11,7 +11,7 @@ use crate::math::{COLUMNS, Column, Regression, Table};
 use crate::noise::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::Dwell;
-use crate::units::DEGREE_PER_HOUR;
+use crate::units::{DEGREE_PER_HOUR, RadiansPerSecond, RateRandomWalk};
 
 /// Degrees per hour in a rad/s.
 const PER_HOUR: f64 = 1.0 / DEGREE_PER_HOUR;
@@ -43,7 +43,7 @@ impl From<&Dwell> for Visit {
     fn from(dwell: &Dwell) -> Self {
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
         let unit = [cosine as f32, sine as f32];
-        Self { unit, start: dwell.start(), seconds: dwell.seconds }
+        Self { unit, start: dwell.start().0, seconds: dwell.seconds.0 }
     }
 }
 
@@ -67,7 +67,7 @@ pub fn rate_sigma(
         let [north, east, constant, hours] = row;
         regression.push(&[north, east, constant, hours, 0.0, 0.0, 0.0], 0.0);
     }
-    let ramp = noise.rate_ramp * (3600.0 * PER_HOUR);
+    let ramp = noise.rate_ramp.0 * (3600.0 * PER_HOUR);
     let time = if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent };
     let free = Column::Free;
     let absent = Column::Absent;
@@ -98,8 +98,8 @@ impl Own {
 /// Noise model with rates in °/h instead of rad/s, without the white part.
 fn in_degrees_per_hour(noise: &GyroNoise) -> GyroNoise {
     GyroNoise {
-        bias_instability: noise.bias_instability * PER_HOUR,
-        rate_random_walk: noise.rate_random_walk * PER_HOUR,
+        bias_instability: RadiansPerSecond(noise.bias_instability.0 * PER_HOUR),
+        rate_random_walk: RateRandomWalk(noise.rate_random_walk.0 * PER_HOUR),
         ..GyroNoise::default()
     }
 }

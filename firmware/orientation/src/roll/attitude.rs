@@ -4,7 +4,7 @@
 use super::phase_accumulator::sine_and_cosine;
 use super::spin::Spin;
 use crate::signal::SpinSample;
-use crate::units::{Angle, AngleIncrement, wrapped};
+use crate::units::{Angle, AngleIncrement, Radians, wrapped};
 
 /// Number of samples over which the transverse rotation is summed before course and pitch are
 /// updated.
@@ -15,10 +15,10 @@ const STEEPEST: f64 = 1.553;
 /// Course and pitch of a spinning body; the roll is [`Spin::roll`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Attitude {
-    /// Course, rad, clockwise from north.
-    pub course: f64,
-    /// Pitch, rad, nose up positive.
-    pub pitch: f64,
+    /// Course, clockwise from north.
+    pub course: Radians,
+    /// Pitch, nose up positive.
+    pub pitch: Radians,
     /// Rotation upwards and to the right since the last update, in steps of an increment.
     up: f32,
     right: f32,
@@ -29,7 +29,7 @@ pub struct Attitude {
 impl Attitude {
     /// Begins with course, clockwise from north, and pitch, nose up, both in rad.
     #[must_use]
-    pub fn begin(course: f64, pitch: f64) -> Self {
+    pub fn begin(course: Radians, pitch: Radians) -> Self {
         Self { course, pitch, ..Self::default() }
     }
 
@@ -57,10 +57,10 @@ impl Attitude {
         let [up, right] =
             [self.up, self.right].map(|steps| f64::from(steps) * AngleIncrement::STEP);
         (self.up, self.right, self.count) = (0.0, 0.0, 0);
-        let middle = self.pitch + 0.5 * up;
-        self.pitch += up;
+        let middle = self.pitch.0 + 0.5 * up;
+        self.pitch.0 += up;
         if middle.abs() < STEEPEST {
-            self.course = wrapped(self.course + right / libm::cos(middle));
+            self.course = Radians(wrapped(self.course.0 + right / libm::cos(middle)));
         }
     }
 }

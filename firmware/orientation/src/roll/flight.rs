@@ -7,7 +7,7 @@ use super::spin::Spin;
 use super::state::{Condition, State};
 use crate::alignment::{Input, Listener, Method, Request, Verdict};
 use crate::signal::SpinSample;
-use crate::units::Instant;
+use crate::units::{Instant, Radians, Seconds};
 
 /// Samples between two reports of the roll: they cost arithmetic in software floating point.
 const TRACKED_SAMPLES: u32 = 1024;
@@ -17,14 +17,14 @@ const TRACKED_SAMPLES: u32 = 1024;
 pub struct Flight {
     /// Properties of the gyro, and the method.
     setting: Setting,
-    /// Course and pitch at the begin, rad.
-    launch: [f64; 2],
+    /// Course and pitch at the begin.
+    launch: [Radians; 2],
     /// Estimator of the roll by phase lock.
     pub spin: Spin,
     /// Attitude by integration of the gyros, with the roll of the estimator.
     pub attitude: Attitude,
-    /// Duration of the tracking, s; [`None`] for ever.
-    seconds: Option<f64>,
+    /// Duration of the tracking; [`None`] for ever.
+    seconds: Option<Seconds>,
     /// Time of the first sample.
     begun: Option<Instant>,
     /// Time of the latest sample.
@@ -38,10 +38,10 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A flight that begins with the given course and pitch, rad, and is tracked for `seconds`, or
+    /// A flight that begins with the given course and pitch, and is tracked for `seconds`, or
     /// for ever.
     #[must_use]
-    pub fn new(setting: &Setting, [course, pitch]: [f64; 2], seconds: Option<f64>) -> Self {
+    pub fn new(setting: &Setting, [course, pitch]: [Radians; 2], seconds: Option<Seconds>) -> Self {
         Self {
             setting: *setting,
             launch: [course, pitch],
@@ -68,7 +68,7 @@ impl Flight {
             self.report(listener);
         }
         let elapsed = self.now.seconds() - begun.seconds();
-        if self.seconds.is_some_and(|seconds| elapsed >= seconds) {
+        if self.seconds.is_some_and(|seconds| elapsed >= seconds.0) {
             return self.end(None, listener);
         }
         Request::Continue
@@ -91,14 +91,14 @@ impl Flight {
     fn report(&self, listener: Listener) {
         let condition = self.spin.state().condition;
         let roll = self.spin.roll().rad();
-        listener(Progress::Tracked(roll, self.spin.sigma(), condition).into());
+        listener(Progress::Tracked(Radians(roll), self.spin.sigma(), condition).into());
     }
 
     /// Ends the tracking, with the reason for which a sensor was given up.
     fn end(&mut self, reason: Option<Progress>, listener: Listener) -> Request {
         self.is_over = true;
         self.report(listener);
-        let flown = Progress::Flown(self.spin.roll().rad(), self.spin.sigma());
+        let flown = Progress::Flown(Radians(self.spin.roll().rad()), self.spin.sigma());
         listener(reason.unwrap_or(flown).into());
         Request::Done
     }

@@ -11,7 +11,7 @@ use super::phase_accumulator::PhaseAccumulator;
 use super::setting::Setting;
 use super::state::{Condition, State};
 use crate::signal::SpinSample;
-use crate::units::{AngleIncrement, Instant, TURN};
+use crate::units::{AngleIncrement, Instant, Seconds, TURN};
 
 /// One turn in steps of the angle.
 const TURN_STEPS: u64 = 1 << 40;
@@ -151,9 +151,9 @@ impl Lock {
     pub(super) fn new(setting: &Setting) -> Self {
         let scale = setting.scale_sigma * setting.scale_sigma;
         Self {
-            walk: setting.angle_random_walk * setting.angle_random_walk,
-            period: setting.sample_seconds,
-            bias: setting.bias_sigma,
+            walk: setting.angle_random_walk.0 * setting.angle_random_walk.0,
+            period: setting.sample_seconds.0,
+            bias: setting.bias_sigma.0,
             first: scale,
             angle: TURN * TURN,
             scale,
@@ -466,6 +466,6 @@ impl Lock {
         );
         let searches = is_of_roll && !self.is_found;
         let condition = if searches { Condition::Searching } else { self.condition };
-        State { condition, seconds }
+        State { condition, seconds: Seconds(seconds) }
     }
 }

@@ -53,7 +53,7 @@ pub(super) struct Plausibility {
 impl Plausibility {
     /// Check before the first sample.
     pub(super) fn new(setting: &Setting) -> Self {
-        let noise = setting.angle_random_walk * libm::sqrt(setting.sample_seconds);
+        let noise = setting.angle_random_walk.0 * libm::sqrt(setting.sample_seconds.0);
         Self {
             jumped: MOST_JUMPS,
             least: (JUMP.max(JUMP_SIGMAS * noise) / AngleIncrement::STEP) as u32,

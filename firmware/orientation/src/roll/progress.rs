@@ -2,7 +2,7 @@
 
 use super::state::{Condition, State};
 use crate::alignment::Refusal;
-use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN, wrapped};
+use crate::units::{DEGREES_PER_RADIAN as DEGREES, Radians, Seconds, TURN, wrapped};
 use crate::words::Rounded;
 
 /// Progress of the tracking of a roll.
@@ -12,14 +12,14 @@ pub enum Progress {
     Begun,
     /// The source of the roll estimate from now on.
     Changed(State),
-    /// The modulation of the lift is detected again, after this time, s.
-    LiftBack(f64),
-    /// The roll at present, rad, since the first sample, its 1σ, rad, and its source; for the status,
+    /// The modulation of the lift is detected again, after this time.
+    LiftBack(Seconds),
+    /// The roll at present, since the first sample, its 1σ, and its source; for the status,
     /// not for the log.
-    Tracked(f64, Option<f64>, Condition),
-    /// The flight is over: the roll since the first sample, rad, positive in the sense of positive
-    /// roll, and its 1σ, rad, if the roll is known.
-    Flown(f64, Option<f64>),
+    Tracked(Radians, Option<Radians>, Condition),
+    /// The flight is over: the roll since the first sample, positive in the sense of positive
+    /// roll, and its 1σ, if the roll is known.
+    Flown(Radians, Option<Radians>),
     /// The tracking has ended, because a sensor was given up.
     Ended(Refusal),
 }
@@ -27,13 +27,13 @@ pub enum Progress {
 crate::words! { Progress:
     Self::Begun => "begin: following the roll of a spinning body";
     Self::Changed(state) => "roll: {}", state;
-    Self::LiftBack(seconds) => "roll: locked, the lift is back after {} s", Rounded::<2>(seconds);
-    Self::Tracked(roll, ..) => "roll {}°", Rounded::<3>(wrapped(roll) * DEGREES);
+    Self::LiftBack(seconds) => "roll: locked, the lift is back after {} s", Rounded::<2>(seconds.0);
+    Self::Tracked(roll, ..) => "roll {}°", Rounded::<3>(wrapped(roll.0) * DEGREES);
     Self::Flown(roll, Some(sigma)) =>
         "flown: {} turns and {}° ± {}° (1σ)",
-        turns(roll), Rounded::<4>(wrapped(roll) * DEGREES), Rounded::<4>(sigma * DEGREES);
+        turns(roll.0), Rounded::<4>(wrapped(roll.0) * DEGREES), Rounded::<4>(sigma.degrees());
     Self::Flown(roll, None) =>
-        "flown: {} turns and {}°, not known", turns(roll), Rounded::<1>(wrapped(roll) * DEGREES);
+        "flown: {} turns and {}°, not known", turns(roll.0), Rounded::<1>(wrapped(roll.0) * DEGREES);
     Self::Ended(reason) => "no roll: {}", reason;
 }
 

@@ -1,5 +1,7 @@
 //! Configuration of the roll estimation: the gyro of the spinning body, and the method.
 
+use crate::units::{RadiansPerRootSecond, RadiansPerSecond, Seconds};
+
 /// Method by which the roll is corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,14 +21,14 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
-    /// Sample period, s.
-    pub sample_seconds: f64,
-    /// Angle random walk N of the x-gyro, rad/√s.
-    pub angle_random_walk: f64,
+    /// Sample period.
+    pub sample_seconds: Seconds,
+    /// Angle random walk N of the x-gyro.
+    pub angle_random_walk: RadiansPerRootSecond,
     /// Standard deviation of the x-gyro's scale factor, 1σ, relative.
     pub scale_sigma: f64,
-    /// Standard deviation of the x-gyro's bias, 1σ, rad/s.
-    pub bias_sigma: f64,
+    /// Standard deviation of the x-gyro's bias, 1σ.
+    pub bias_sigma: RadiansPerSecond,
     /// Method by which the roll is corrected.
     pub method: Method,
 }
@@ -35,12 +37,12 @@ impl Setting {
     /// Configuration of a phase-locked gyro of 0.06 °/√s, with its scale known to 1 % and its bias
     /// to 0.06 °/s.
     #[must_use]
-    pub fn new(sample_seconds: f64) -> Self {
+    pub fn new(sample_seconds: Seconds) -> Self {
         Self {
             sample_seconds,
-            angle_random_walk: 1e-3,
+            angle_random_walk: RadiansPerRootSecond(1e-3),
             scale_sigma: 0.01,
-            bias_sigma: 1e-3,
+            bias_sigma: RadiansPerSecond(1e-3),
             method: Method::PhaseLocked,
         }
     }

@@ -7,7 +7,7 @@ use super::plausibility::Plausibility;
 use super::setting::{Method, Setting};
 use super::state::{Condition, State};
 use crate::signal::SpinSample;
-use crate::units::{AngleIncrement, Instant};
+use crate::units::{AngleIncrement, Instant, MetresPerSecondSquared, Radians, Seconds};
 
 /// Greatest delay of a sample, in sample periods.
 const LATE: f32 = 0.5;
@@ -51,7 +51,7 @@ impl Spin {
         Self {
             phase_accumulator: PhaseAccumulator::new(),
             corrector,
-            period: (setting.sample_seconds * 1e6) as f32,
+            period: (setting.sample_seconds.0 * 1e6) as f32,
             latest: None,
             plausibility: Plausibility::new(setting),
         }
@@ -122,11 +122,11 @@ impl Spin {
         self.phase_accumulator.roll()
     }
 
-    /// Standard deviation of the roll, 1σ, rad; `None` where it is unknown, and for extrema, which
+    /// Standard deviation of the roll, 1σ; `None` where it is unknown, and for extrema, which
     /// give none.
     #[must_use]
-    pub fn sigma(&self) -> Option<f64> {
-        self.lock()?.sigma(&self.phase_accumulator)
+    pub fn sigma(&self) -> Option<Radians> {
+        self.lock()?.sigma(&self.phase_accumulator).map(Radians)
     }
 
     /// Scale error of the gyro, shown over true less one, and its 1σ; `None` for extrema.
@@ -135,10 +135,10 @@ impl Spin {
         self.lock().map(Lock::scale)
     }
 
-    /// Lift of the latest turns, m/s², negative where it points down; `None` where it is unknown.
+    /// Lift of the latest turns, negative where it points down; `None` where it is unknown.
     #[must_use]
-    pub fn lift(&self) -> Option<f64> {
-        self.lock()?.lift()
+    pub fn lift(&self) -> Option<MetresPerSecondSquared> {
+        self.lock()?.lift().map(MetresPerSecondSquared)
     }
 
     /// Source of the present roll, or fault that prevents it, with its duration.
@@ -148,11 +148,11 @@ impl Spin {
             (Corrector::Extrema(extrema), _) => {
                 let found = Condition::Locked;
                 let condition = if extrema.has_corrected { found } else { Condition::Searching };
-                State { condition, seconds: 0.0 }
+                State { condition, seconds: Seconds(0.0) }
             }
             (Corrector::Lock(_), Some(samples)) => {
                 let seconds = f64::from(samples) * f64::from(self.period) * 1e-6;
-                State { condition: Condition::GyroStuck, seconds }
+                State { condition: Condition::GyroStuck, seconds: Seconds(seconds) }
             }
             (Corrector::Lock(lock), None) => lock.state(self.latest.unwrap_or_default()),
         }

@@ -1,5 +1,6 @@
 //! Source of the present roll, or fault that prevents it, with the sentences of the log.
 
+use crate::units::Seconds;
 use crate::words::Rounded;
 
 /// Accelerometers of the spinning body.
@@ -52,20 +53,20 @@ pub enum Condition {
 pub struct State {
     /// Source or fault.
     pub condition: Condition,
-    /// Duration of a condition other than [`Condition::Searching`] and [`Condition::Locked`], s.
-    pub seconds: f64,
+    /// Duration of a condition other than [`Condition::Searching`] and [`Condition::Locked`].
+    pub seconds: Seconds,
 }
 
 crate::words! { State:
     Self { condition: Condition::Searching, .. } => "searching: no lift was felt yet";
     Self { condition: Condition::Locked, .. } => "locked";
-    Self { condition: Condition::Holding, seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds);
-    Self { condition: Condition::NotSpinning, seconds } => "not spinning for {} s", Rounded::<2>(seconds);
-    Self { condition: Condition::ForceLost, seconds } => "without forces for {} s", Rounded::<2>(seconds);
-    Self { condition: Condition::RotationLost, seconds } => "rotation lost for {} s", Rounded::<2>(seconds);
-    Self { condition: Condition::AccelerometerStuck(which), seconds } => "{} one value for {} s: stuck or dead, check supply and wires", which, Rounded::<2>(seconds);
-    Self { condition: Condition::GyroStuck, seconds } => "the gyro about x shows one rate for {} s: stuck or dead, check supply and wires", Rounded::<2>(seconds);
-    Self { condition: Condition::Mirrored, seconds } => "the forces go round against the gyro for {} s: swapped or turned round, check axes and signs", Rounded::<2>(seconds);
-    Self { condition: Condition::Elliptic, seconds } => "the forces draw an ellipse for {} s: check scales and axes of the accelerometers", Rounded::<2>(seconds);
-    Self { condition: Condition::Contradicted, seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds);
+    Self { condition: Condition::Holding, seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds.0);
+    Self { condition: Condition::NotSpinning, seconds } => "not spinning for {} s", Rounded::<2>(seconds.0);
+    Self { condition: Condition::ForceLost, seconds } => "without forces for {} s", Rounded::<2>(seconds.0);
+    Self { condition: Condition::RotationLost, seconds } => "rotation lost for {} s", Rounded::<2>(seconds.0);
+    Self { condition: Condition::AccelerometerStuck(which), seconds } => "{} one value for {} s: stuck or dead, check supply and wires", which, Rounded::<2>(seconds.0);
+    Self { condition: Condition::GyroStuck, seconds } => "the gyro about x shows one rate for {} s: stuck or dead, check supply and wires", Rounded::<2>(seconds.0);
+    Self { condition: Condition::Mirrored, seconds } => "the forces go round against the gyro for {} s: swapped or turned round, check axes and signs", Rounded::<2>(seconds.0);
+    Self { condition: Condition::Elliptic, seconds } => "the forces draw an ellipse for {} s: check scales and axes of the accelerometers", Rounded::<2>(seconds.0);
+    Self { condition: Condition::Contradicted, seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds.0);
 }

@@ -10,7 +10,9 @@
 use super::Sample;
 use super::blocks::{BlockStatistics, Blocks};
 use crate::filter::{Coefficients, Filter};
-use crate::units::{Angle, AngularRate, Instant, Optional};
+use crate::units::{
+    Angle, AngularRate, Instant, MetresPerSecondSquared, Optional, RadiansPerSecond, Seconds,
+};
 
 /// Result of one dwell (a standstill of the stage), whether averaged here or read from a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,15 +22,15 @@ pub struct Dwell {
     /// Mean elevation of the sensitive axis above the base plane, rad, up positive; zero where it lies
     /// in that plane. In single precision, which takes no room: 0.3° is kept to 10⁻⁴″.
     pub elevation: f32,
-    /// Middle of the averaged time, s. (The taper's own middle lies half its lag earlier, in every
+    /// Middle of the averaged time. (The taper's own middle lies half its lag earlier, in every
     /// dwell alike, so this offset does not affect the azimuth.)
-    pub middle: f64,
-    /// Length of the averaged time, s.
-    pub seconds: f64,
+    pub middle: Seconds,
+    /// Length of the averaged time.
+    pub seconds: Seconds,
     /// Number of samples averaged; zero where it is unknown.
     pub samples: u32,
-    /// Mean rate about the sensitive axis, rad/s.
-    pub rate: f64,
+    /// Mean rate about the sensitive axis.
+    pub rate: RadiansPerSecond,
     /// Variance of the mean for white noise over that of a plain average of all samples, ≥ 1.
     pub taper: f64,
     /// Variance of the mean as configured by its source, (rad/s)²; none where it follows from the
@@ -36,8 +38,8 @@ pub struct Dwell {
     pub stated_variance: Optional,
     /// Block statistics; none with too few samples for four blocks.
     pub statistics: Option<BlockStatistics>,
-    /// Mean specific force on the accelerometer's axes, m/s²; none where it was not measured.
-    pub force: Option<[f64; 3]>,
+    /// Mean specific force on the accelerometer's axes; none where it was not measured.
+    pub force: Option<[MetresPerSecondSquared; 3]>,
     /// Mean temperature, °C; none where it was not measured.
     pub temperature: Optional,
     /// Fault found in the samples; none where they are sound.
@@ -45,16 +47,16 @@ pub struct Dwell {
 }
 
 impl Dwell {
-    /// Beginning of the averaged time, s.
+    /// Beginning of the averaged time.
     #[must_use]
-    pub fn start(&self) -> f64 {
-        self.middle - 0.5 * self.seconds
+    pub fn start(&self) -> Seconds {
+        Seconds(self.middle.0 - 0.5 * self.seconds.0)
     }
 
-    /// End of the averaged time, s.
+    /// End of the averaged time.
     #[must_use]
-    pub fn end(&self) -> f64 {
-        self.middle + 0.5 * self.seconds
+    pub fn end(&self) -> Seconds {
+        Seconds(self.middle.0 + 0.5 * self.seconds.0)
     }
 }
 
@@ -257,18 +259,18 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.blocks.count()
     }
 
-    /// Mean step of the time stamps, s; `None` with fewer than two samples or with samples missing.
+    /// Mean step of the time stamps; `None` with fewer than two samples or with samples missing.
     #[must_use]
-    pub fn step(&self) -> Option<f64> {
+    pub fn step(&self) -> Option<Seconds> {
         let steps = f64::from(self.count().checked_sub(1).filter(|steps| *steps > 0)?);
         let step = (self.last.seconds() - self.first.seconds()) / steps;
-        (self.longest_gap as f64 * 1e-6 <= REGULAR * step).then_some(step)
+        (self.longest_gap as f64 * 1e-6 <= REGULAR * step).then_some(Seconds(step))
     }
 
-    /// Mean specific force so far, m/s²; `None` while no sample brought one.
+    /// Mean specific force so far; `None` while no sample brought one.
     #[must_use]
-    pub fn force(&self) -> Option<[f64; 3]> {
-        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [x, y, z])
+    pub fn force(&self) -> Option<[MetresPerSecondSquared; 3]> {
+        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [x, y, z].map(MetresPerSecondSquared))
     }
 
     /// Mean elevation so far, rad; zero while no sample brought one.
@@ -282,7 +284,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     pub fn finish(
         &self,
         coefficients: &Coefficients<SECTIONS>,
-        sample_seconds: f64,
+        sample_seconds: Seconds,
     ) -> Option<Dwell> {
         let samples = self.count();
         if samples < shortest(coefficients) {
@@ -294,13 +296,13 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
             elevation: self.elevation(),
-            middle: 0.5 * (self.first.seconds() + self.last.seconds()),
-            seconds: count * sample_seconds,
+            middle: Seconds(0.5 * (self.first.seconds() + self.last.seconds())),
+            seconds: Seconds(count * sample_seconds.0),
             samples: self.count(),
-            rate: (f64::from(self.origin.0) + self.deviation() / weight) * 1e-9,
+            rate: RadiansPerSecond((f64::from(self.origin.0) + self.deviation() / weight) * 1e-9),
             taper: power * count / (weight * weight),
             stated_variance: Optional::NONE,
-            statistics: self.blocks.statistics(sample_seconds),
+            statistics: self.blocks.statistics(sample_seconds.0),
             force: self.force(),
             temperature: self.temperature.get(1e-3).map(|[temperature]| temperature).into(),
             fault: self.fault(sample_seconds),
@@ -313,12 +315,12 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     }
 
     /// First fault found: saturation, then a stuck reading, then missing samples.
-    fn fault(&self, sample_seconds: f64) -> Option<SampleFault> {
+    fn fault(&self, sample_seconds: Seconds) -> Option<SampleFault> {
         if self.saturated {
             Some(SampleFault::Saturated)
         } else if self.changes == 0 {
             Some(SampleFault::Stuck)
-        } else if self.longest_gap as f64 * 1e-6 > LONGEST_GAP * sample_seconds {
+        } else if self.longest_gap as f64 * 1e-6 > LONGEST_GAP * sample_seconds.0 {
             Some(SampleFault::Missing)
         } else {
             None

@@ -7,6 +7,9 @@
 //! time.
 
 use crate::earth::EARTH_RATE;
+use crate::units::{
+    ForceNoise, MetresPerSecondSquared, RadiansPerRootSecond, RadiansPerSecond, Seconds,
+};
 
 /// Limit of a criterion at rest, in standard deviations.
 const BOUND: f64 = 4.0;
@@ -20,35 +23,36 @@ const SWINGING: f64 = 0.02;
 /// Limits of the two stop criteria.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Limit EPSGM of Kryt1, rad/s.
-    pub rate: f64,
-    /// Limit EPS of Kryt2, m/s².
-    pub force: f64,
+    /// Limit EPSGM of Kryt1.
+    pub rate: RadiansPerSecond,
+    /// Limit EPS of Kryt2.
+    pub force: MetresPerSecondSquared,
 }
 
 /// Stated noise and biases of the sensors of a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensors {
-    /// Angle random walk N of each gyro, rad/√s.
-    pub angle_random_walk: f64,
-    /// 1σ of the gyros' biases, bias instability included, rad/s.
-    pub bias_sigma: f64,
+    /// Angle random walk N of each gyro.
+    pub angle_random_walk: RadiansPerRootSecond,
+    /// 1σ of the gyros' biases, bias instability included.
+    pub bias_sigma: RadiansPerSecond,
     /// Noise of the accelerometers, one-sided, m/s²/√Hz.
-    pub force_noise: f64,
-    /// 1σ of the accelerometers' biases, m/s².
-    pub force_bias_sigma: f64,
+    pub force_noise: ForceNoise,
+    /// 1σ of the accelerometers' biases.
+    pub force_bias_sigma: MetresPerSecondSquared,
 }
 
 impl Sensors {
-    /// Limits for averages over this many seconds (> 0).
+    /// Limits for averages over this time, > 0.
     #[must_use]
-    pub fn limits(&self, seconds: f64) -> Limits {
-        let rate = libm::hypot(self.angle_random_walk / libm::sqrt(seconds), self.bias_sigma);
+    pub fn limits(&self, seconds: Seconds) -> Limits {
+        let seconds = seconds.0;
+        let rate = libm::hypot(self.angle_random_walk.0 / libm::sqrt(seconds), self.bias_sigma.0);
         let force =
-            libm::hypot(self.force_noise / libm::sqrt(2.0 * seconds), self.force_bias_sigma);
+            libm::hypot(self.force_noise.0 / libm::sqrt(2.0 * seconds), self.force_bias_sigma.0);
         Limits {
-            rate: BOUND * rate + SHAKING / seconds,
-            force: BOUND * force + GRAVITY_TOLERANCE + SWINGING / seconds,
+            rate: RadiansPerSecond(BOUND * rate + SHAKING / seconds),
+            force: MetresPerSecondSquared(BOUND * force + GRAVITY_TOLERANCE + SWINGING / seconds),
         }
     }
 }
@@ -57,17 +61,18 @@ impl Sensors {
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Criteria {
-    /// Kryt1 = Ω − |ω|, rad/s.
-    pub rate: f64,
-    /// Kryt2 = g − |f|, m/s².
-    pub force: f64,
+    /// Kryt1 = Ω − |ω|.
+    pub rate: RadiansPerSecond,
+    /// Kryt2 = g − |f|.
+    pub force: MetresPerSecondSquared,
 }
 
 impl Criteria {
     /// Criteria from the magnitudes of the mean rate, rad/s, and of the mean specific force, m/s²,
     /// for the local gravity, m/s².
     pub fn of(rate: f64, force: f64, gravity: f64) -> Self {
-        Self { rate: EARTH_RATE - rate, force: gravity - force }
+        let (rate, force) = (EARTH_RATE - rate, gravity - force);
+        Self { rate: RadiansPerSecond(rate), force: MetresPerSecondSquared(force) }
     }
 
     /// Criteria for a single gyro that is turned between averages, from the deviation of its mean
@@ -75,12 +80,12 @@ impl Criteria {
     /// rate, so only the excess over that counts.
     pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
         let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
-        Self { rate: -beyond, force: gravity - force }
+        Self { rate: RadiansPerSecond(-beyond), force: MetresPerSecondSquared(gravity - force) }
     }
 
     /// Whether the vehicle stands by both criteria.
     #[must_use]
     pub fn is_rest(&self, limits: &Limits) -> bool {
-        self.rate.abs() <= limits.rate && self.force.abs() <= limits.force
+        self.rate.0.abs() <= limits.rate.0 && self.force.0.abs() <= limits.force.0
     }
 }

@@ -13,7 +13,7 @@ use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::plant::{CHIPS, SpinBoard, SpinPlant, SpinPlantConfiguration};
 use hal_mock::spin::profile::Profile;
 use orientation::roll::{Flight, Method, Setting};
-use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
+use orientation::units::{DEGREE_PER_SQRT_HOUR, Radians, RadiansPerRootSecond, Seconds, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};
 use super::{SimulatedConverter, Wires, scenario};
@@ -78,18 +78,18 @@ impl SpinScenario {
     #[must_use]
     pub fn setting(&self) -> Setting {
         Setting {
-            sample_seconds: 1.0 / SAMPLE_RATE,
-            angle_random_walk: self.gyro_n_deg_sqrt_h * DEGREE_PER_SQRT_HOUR,
+            sample_seconds: Seconds(1.0 / SAMPLE_RATE),
+            angle_random_walk: RadiansPerRootSecond(self.gyro_n_deg_sqrt_h * DEGREE_PER_SQRT_HOUR),
             scale_sigma: self.scale_sigma,
             method: Method::PhaseLocked,
-            ..Setting::new(1.0 / SAMPLE_RATE)
+            ..Setting::new(Seconds(1.0 / SAMPLE_RATE))
         }
     }
 
     /// The flight as the board follows it: level, northwards.
     #[must_use]
     pub fn flight(&self) -> Flight {
-        Flight::new(&self.setting(), [0.0; 2], Some(self.seconds))
+        Flight::new(&self.setting(), [Radians(0.0); 2], Some(Seconds(self.seconds)))
     }
 
     /// What the board is given about its devices; none where a scale factor is none.

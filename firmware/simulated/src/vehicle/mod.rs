@@ -19,7 +19,9 @@ use orientation::alignment::stops::session::Procedure;
 use orientation::attitude as keep;
 use orientation::earth::Latitude;
 use orientation::navigation::{Policy, Realignment};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{
+    ForceNoise, GSensitivity, Metres, MetresPerSecondSquared, RadiansPerSecond, Seconds,
+};
 
 use super::fault::{Fault, Injection, PortWrapper};
 use super::hold::{Hold, STOP_SECONDS};
@@ -30,7 +32,7 @@ use firmware::configuration;
 use firmware::ports::VehicleSensors;
 
 /// 1σ of the accelerometers, m/s²: in a vehicle their biases are tilt, so they are calibrated, to 0.1 mg.
-const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+const FORCE_BIAS_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e-4 * 9.80665);
 /// How long the board levels at the stops of a brief run, and how long it drives, s.
 const BRIEF_STOP_SECONDS: f64 = 15.0;
 const BRIEF_DRIVE_SECONDS: f64 = 45.0;
@@ -148,8 +150,8 @@ impl VehicleScenario {
     pub fn setting(&self) -> Option<Setting> {
         let site = Site {
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
-            g_sensitivity: [0.0; 2],
-            g_sensitivity_sigma: 0.0,
+            g_sensitivity: [GSensitivity(0.0); 2],
+            g_sensitivity_sigma: GSensitivity(0.0),
             ..self.base.site()?
         };
         let displacement_sigma = match self.place {
@@ -158,9 +160,11 @@ impl VehicleScenario {
         };
         let setting = Setting::new(site);
         Some(Setting {
-            bias_sigma: Some(self.base.gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
-            force_noise: self.force_noise(),
-            displacement_sigma,
+            bias_sigma: Some(RadiansPerSecond::from_degrees_per_hour(
+                self.base.gyro.bias_sigma_deg_h,
+            )),
+            force_noise: ForceNoise(self.force_noise()),
+            displacement_sigma: Metres(displacement_sigma),
             ..setting
         })
     }
@@ -168,9 +172,9 @@ impl VehicleScenario {
     /// How the board goes about it.
     pub fn procedure(&self) -> Procedure {
         Procedure {
-            stop_seconds: self.stop_s,
-            longest_seconds: self.seconds() - END_SECONDS,
-            ..Procedure::new(self.stops, 1.0 / self.base.sample_rate_hz)
+            stop_seconds: Seconds(self.stop_s),
+            longest_seconds: Seconds(self.seconds() - END_SECONDS),
+            ..Procedure::new(self.stops, Seconds(1.0 / self.base.sample_rate_hz))
         }
     }
 
@@ -187,7 +191,7 @@ impl VehicleScenario {
     pub fn keeper(&self) -> Option<keep::Setting> {
         let latitude = Latitude::from_degrees(self.base.latitude_deg)?;
         let period = 1.0 / self.base.sample_rate_hz;
-        Some(keep::Setting::precise(latitude, period, self.base.precise()))
+        Some(keep::Setting::precise(latitude, Seconds(period), self.base.precise()))
     }
 
     /// How the instrument goes on after its alignment.
@@ -272,7 +276,7 @@ impl VehicleScenario {
             gyro_full_scale_rad_s: scenario::FULL_SCALE,
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: scenario::FORCE_NOISE,
-                bias_sigma_m_s2: FORCE_BIAS_SIGMA,
+                bias_sigma_m_s2: FORCE_BIAS_SIGMA.0,
                 full_scale_m_s2: Some(FORCE_FULL_SCALE),
                 ..AccelerometerConfiguration::default()
             },

@@ -6,6 +6,7 @@ use embassy_time::Instant;
 use hal_mock::noise::Generator;
 use hal_mock::vehicle::plant::VehicleBoard;
 use orientation::alignment::Azimuth;
+use orientation::units::Metres;
 
 use super::VehicleScenario;
 use crate::hold::HandoverAiding;
@@ -50,10 +51,10 @@ impl Aiding for VehicleAiding<'_, '_> {
         self.handover.azimuth()
     }
 
-    fn displacement(&self) -> Option<[f64; 2]> {
+    fn displacement(&self) -> Option<[Metres; 2]> {
         let Place::Known { sigma_m } = self.place else { return None };
         let truth = self.board.borrow().plant.truth_at(Instant::now());
         let mut errors = self.errors.borrow_mut();
-        Some(truth.displacement_m.map(|part| part + sigma_m * errors.gaussian()))
+        Some(truth.displacement_m.map(|part| Metres(part + sigma_m * errors.gaussian())))
     }
 }

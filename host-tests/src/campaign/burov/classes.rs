@@ -8,7 +8,7 @@ use orientation::alignment::{Azimuth, Refusal, Solution};
 use orientation::attitude::{Gyro as Known, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
 use orientation::signal::InertialSample;
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{Radians, RadiansPerSecond, Seconds};
 use serde::Serialize;
 
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude};
@@ -20,7 +20,8 @@ use crate::methods::stops::samples::Converter;
 use crate::output::degrees;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
-const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
+const STAGE: Rotation =
+    Rotation { rest: Seconds(0.7), speed: RadiansPerSecond(0.35), wraps: false };
 /// What comes before the first dwell and after the last, s: homing, levelling, the answer.
 const OVERHEAD: f64 = 25.0;
 /// Rest before an azimuth is stored, s, in which the gyro's bias is learnt.
@@ -168,12 +169,12 @@ impl Class {
 
     /// The best schedule for the time that is left.
     fn plan(&self) -> Option<Plan> {
-        for_time(&self.grade.conditions(STAGE), 60.0 * self.minutes - OVERHEAD).ok()
+        for_time(&self.grade.conditions(STAGE), Seconds(60.0 * self.minutes - OVERHEAD)).ok()
     }
 
     /// 1σ of the azimuth that it finds, as planned, °.
     pub(crate) fn planned_sigma_deg(&self) -> Option<f64> {
-        self.plan().map(|plan| degrees(plan.sigma(latitude())))
+        self.plan().map(|plan| degrees(plan.sigma(latitude()).0))
     }
 
     /// North by that schedule.
@@ -183,7 +184,7 @@ impl Class {
         };
         let trial = Trial { grade: self.grade, plan, rotation: STAGE };
         let answers = over(runs, tick, |seed| trial.answer(seed));
-        let way = format!("{} positions of {:.1} s", plan.positions(), plan.dwell);
+        let way = format!("{} positions of {:.1} s", plan.positions(), plan.dwell.0);
         (way, Precision::of(&answers))
     }
 
@@ -202,7 +203,7 @@ impl Class {
         for _ in 0..(REST * RATE_HZ) as u32 {
             keeper.push(&base.sample(0.0));
         }
-        keeper.hand_over(Azimuth { angle: azimuth, sigma });
+        keeper.hand_over(Azimuth { angle: Radians(azimuth), sigma: Radians(sigma) });
         let samples = ((60.0 * self.minutes - REST) * RATE_HZ) as u32;
         // The vehicle turns by a turn and a half in all: an azimuth of 180° at the end.
         let turning = 3.0 * std::f64::consts::PI / (f64::from(samples) / RATE_HZ);
@@ -211,16 +212,16 @@ impl Class {
         }
         let stored = f64::from(samples) / RATE_HZ;
         let limit = stored_sigma(&self.grade.noise(), sigma, REST, stored);
-        let lost = Azimuth { angle: f64::NAN, sigma: f64::NAN };
+        let lost = Azimuth { angle: Radians(f64::NAN), sigma: Radians(f64::NAN) };
         let azimuth = keeper.report().azimuth.unwrap_or(lost);
-        Answer::of(Ok(Solution { azimuth, limit }), 180.0)
+        Answer::of(Ok(Solution { azimuth, limit: Radians(limit) }), 180.0)
     }
 
     /// What the keeper is given: the class's gyro about the axis down, coarse ones beside it.
     fn setting(&self) -> Setting {
-        Setting::coarse(latitude(), 1.0 / RATE_HZ).with_down(Known {
+        Setting::coarse(latitude(), Seconds(1.0 / RATE_HZ)).with_down(Known {
             noise: self.grade.noise(),
-            bias_sigma: BIAS_DEG_H * DEGREE_PER_HOUR,
+            bias_sigma: RadiansPerSecond::from_degrees_per_hour(BIAS_DEG_H),
             scale_sigma: 0.0,
         })
     }
@@ -248,10 +249,10 @@ impl Base {
         let middle = self.azimuth + 0.5 * turning * seconds;
         self.azimuth += turning * seconds;
         let level = latitude().horizontal_rate();
-        let steady = self.gyro.steady(turning - latitude().vertical_rate(), [0.0; 2]);
+        let steady = self.gyro.steady(turning - latitude().vertical_rate().0, [0.0; 2]);
         let down = self.gyro.sample(steady, elapsed, 25.0);
-        let rates = [level * middle.cos(), -level * middle.sin(), down];
-        let force = [0.0, 0.0, -latitude().gravity()];
+        let rates = [level.0 * middle.cos(), -level.0 * middle.sin(), down];
+        let force = [0.0, 0.0, -latitude().gravity().0];
         self.path.sample(elapsed + seconds, rates.map(|rate| rate * seconds), force)
     }
 }

@@ -2,7 +2,7 @@
 
 use orientation::noise::model::GyroNoise;
 use orientation::planner::burov;
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde::Serialize;
 
 use super::{Grade, three_sigma_secant};
@@ -50,8 +50,8 @@ pub struct Device {
 #[must_use]
 pub fn curve(positions: std::ops::RangeInclusive<u32>) -> Vec<(u32, f64)> {
     let noise = EXAMPLE.noise();
-    let of = |n| burov::rate_error(&noise, n, SECONDS, ROTATION);
-    positions.filter_map(|n| Some((n, of(n)? / DEGREE_PER_HOUR))).collect()
+    let of = |n| burov::rate_error(&noise, n, Seconds(SECONDS), Seconds(ROTATION));
+    positions.filter_map(|n| Some((n, of(n)?.degrees_per_hour()))).collect()
 }
 
 /// The example and the devices of Table 2.
@@ -63,14 +63,14 @@ pub fn devices() -> Vec<Device> {
 
 fn device(name: &'static str, gyro: Grade) -> Option<Device> {
     let noise = gyro.noise();
-    let best = burov::best(&noise, SECONDS, ROTATION)?;
-    let total = best.rate_error.hypot(burov::flicker_floor(&noise));
+    let best = burov::best(&noise, Seconds(SECONDS), Seconds(ROTATION))?;
+    let total = best.rate_error.0.hypot(burov::flicker_floor(&noise).0);
     let one_axis = three_sigma_secant(total);
     Some(Device {
         name,
         gyro,
         positions: best.positions,
-        rate_error_deg_h: best.rate_error / DEGREE_PER_HOUR,
+        rate_error_deg_h: best.rate_error.degrees_per_hour(),
         with_flicker_deg_h: total / DEGREE_PER_HOUR,
         three_sigma_secant_deg: one_axis,
         full_three_sigma_secant_deg: std::f64::consts::SQRT_2 * one_axis,
@@ -81,5 +81,5 @@ fn device(name: &'static str, gyro: Grade) -> Option<Device> {
 /// The ramp's part of the Allan deviation over an hour, R τ/√2, rad/s: what the paper states for a
 /// gyro that is never turned.
 fn uncompensated(noise: &GyroNoise) -> f64 {
-    noise.rate_ramp * HOUR * 3600.0 * std::f64::consts::FRAC_1_SQRT_2
+    noise.rate_ramp.0 * HOUR * 3600.0 * std::f64::consts::FRAC_1_SQRT_2
 }

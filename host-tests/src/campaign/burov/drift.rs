@@ -2,6 +2,7 @@
 
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Plan, Rotation, for_time};
+use orientation::units::Seconds;
 use serde::Serialize;
 
 use super::{Grade, Trial, latitude};
@@ -52,11 +53,11 @@ pub struct Comparison {
 /// Compares the schedules for a gyro over `runs` runs each; none where there is no plan.
 #[must_use]
 pub fn compare(gyro: Grade, runs: usize, tick: Tick<'_>) -> Option<Comparison> {
-    let rotation = Rotation::fixed(ROTATION);
+    let rotation = Rotation::fixed(Seconds(ROTATION));
     let conditions = gyro.conditions(rotation);
     let four = Conditions { fewest: 4, ..conditions };
-    let planned = for_time(&conditions, SECONDS).ok()?;
-    let one_pass = Plan::of(&four, Order::Quadrature, 1, SECONDS)?;
+    let planned = for_time(&conditions, Seconds(SECONDS)).ok()?;
+    let one_pass = Plan::of(&four, Order::Quadrature, 1, Seconds(SECONDS))?;
     let row = |plan| row(&Trial { grade: gyro, plan, rotation }, runs, tick);
     let [planned, one_pass] = [planned, one_pass].map(row);
     let gain = one_pass.precision.rms_deg / planned.precision.rms_deg;
@@ -70,8 +71,8 @@ fn row(trial: &Trial, runs: usize, tick: Tick<'_>) -> Row {
         gyro: trial.grade,
         order: plan.order.name(),
         positions: plan.positions(),
-        dwell_s: plan.dwell,
-        predicted_deg: degrees(plan.sigma(latitude())),
+        dwell_s: plan.dwell.0,
+        predicted_deg: degrees(plan.sigma(latitude()).0),
         precision: Precision::of(&answers),
     }
 }

@@ -18,7 +18,7 @@ use orientation::alignment::{Method, Refusal};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::{Conditions, Plan, Rotation};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, MetresPerSecondSquared, Seconds};
 use serde::Serialize;
 
 use super::statistics::Answer;
@@ -109,17 +109,17 @@ impl Trial {
     /// One alignment through samples, filter and session.
     fn answer(&self, seed: u64) -> Result<Answer, Refusal> {
         let azimuth_deg = super::azimuth_deg(seed);
-        let procedure = Procedure::new(Schedule::Planned(self.plan), 1.0 / RATE_HZ);
+        let procedure = Procedure::new(Schedule::Planned(self.plan), Seconds(1.0 / RATE_HZ));
         let mut session = Session::new(self.setting(), procedure)
             .map_err(|_| Refusal::Stepwise(stepwise::Refusal::TooFewPositions { positions: 0 }))?;
-        let longest = 2.0 * self.plan.seconds + 60.0;
+        let longest = 2.0 * self.plan.seconds.0 + 60.0;
         simulate::run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
         Answer::of(session.verdict().unwrap_or(Err(Refusal::TimeExhausted)), azimuth_deg)
     }
 
     fn setting(&self) -> Setting {
         let site = super::site(LATITUDE_DEG, self.grade.values());
-        Setting::new(Site { accelerometer_bias_sigma: FORCE_BIAS, ..site })
+        Setting::new(Site { accelerometer_bias_sigma: MetresPerSecondSquared(FORCE_BIAS), ..site })
     }
 
     fn world(&self, azimuth_deg: f64) -> InstrumentsConfiguration {

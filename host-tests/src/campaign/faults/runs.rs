@@ -5,6 +5,7 @@ use firmware::health::Health;
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
+use orientation::units::Radians;
 use simulated::coarse::CoarseClass;
 use simulated::fault::{Fault, Platform};
 use simulated::mount::FramesScenario;
@@ -75,7 +76,7 @@ impl Ended {
 /// The error of an azimuth in σ, or why there is none.
 fn in_sigmas(verdict: Result<Azimuth, Refusal>, truth_deg: f64) -> Result<f64, String> {
     let azimuth = verdict.map_err(|reason| reason.to_string())?;
-    Ok(azimuth_error(degrees(azimuth.angle), truth_deg) / degrees(azimuth.sigma))
+    Ok(azimuth_error(azimuth.angle.degrees(), truth_deg) / azimuth.sigma.degrees())
 }
 
 /// Runs a platform with a fault.
@@ -139,7 +140,7 @@ fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
     let flown = Trial::of(&scenario).fault(Some(fault)).run()?;
     let spin = &flown.run.replay.spin;
-    let verdict = match (flown.run.ended(), spin.sigma().map(degrees)) {
+    let verdict = match (flown.run.ended(), spin.sigma().map(Radians::degrees)) {
         (Some(reason), _) => Err(reason.to_string()),
         (None, Some(sigma)) if sigma <= ROLL_SIGMA_DEG => {
             let [roll, truth] = [spin.roll().rad(), flown.truth.roll_rad].map(degrees);

@@ -15,9 +15,9 @@ pub fn adjacent_variance(noise: &GyroNoise, a: f64, b: f64) -> f64 {
     let entropy = -a * (a / whole).ln() - b * (b / whole).ln();
     noise.own_variance(a)
         + noise.own_variance(b)
-        + k * k * whole / 3.0
-        + 0.25 * r * r * whole * whole
-        + bias * bias / std::f64::consts::PI * whole / (a * b) * entropy
+        + k.0 * k.0 * whole / 3.0
+        + 0.25 * r.0 * r.0 * whole * whole
+        + bias.0 * bias.0 / std::f64::consts::PI * whole / (a * b) * entropy
 }
 
 /// 1σ of an azimuth, rad, that had `start`, rad, when it was handed over after a rest of `rest` seconds, after

@@ -10,7 +10,7 @@ use hal_mock::vehicle::{Leg, Stop, Vehicle, VehicleSample};
 use orientation::alignment::Azimuth;
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds};
 
 use crate::campaign::burov::{Grade, LATITUDE_DEG, latitude};
 use crate::campaign::chance::Chance;
@@ -149,7 +149,7 @@ impl Sheet {
     fn stated(&self) -> Gyro {
         Gyro {
             noise: self.grade.noise(),
-            bias_sigma: self.bias_deg_h * DEGREE_PER_HOUR,
+            bias_sigma: RadiansPerSecond::from_degrees_per_hour(self.bias_deg_h),
             scale_sigma: self.scale_sigma,
         }
     }
@@ -167,8 +167,8 @@ impl Fitting {
     /// What the keeper is given at first: on a two-frame mount the third of the pair's kind shows the down axis.
     fn setting(&self, latitude: Latitude) -> Setting {
         let [level, ..] = self.gyros().map(|sheet| sheet.stated());
-        let setting = Setting::precise(latitude, 1.0 / RATE_HZ, level);
-        Setting { force_bias_sigma: self.force_bias_m_s2, ..setting }
+        let setting = Setting::precise(latitude, Seconds(1.0 / RATE_HZ), level);
+        Setting { force_bias_sigma: MetresPerSecondSquared(self.force_bias_m_s2), ..setting }
     }
 
     /// For how long the precise gyro rests as it will store, s.
@@ -253,7 +253,7 @@ impl Board {
         }
         if let Some(gyro) = &mut self.coarse {
             // At rest nearly nothing but the Earth turns it.
-            let steady = gyro.steady(-latitude().vertical_rate(), [0.0; 2]);
+            let steady = gyro.steady(-latitude().vertical_rate().0, [0.0; 2]);
             turned_rad[2] = gyro.sample(steady, time_s, 25.0) / RATE_HZ;
         }
         self.keeper.push(&self.path.sample(time_s, turned_rad, force_m_s2));
@@ -262,17 +262,17 @@ impl Board {
     fn hand_over(&mut self, sigma_deg: f64, seed: u64, azimuth: f64) {
         let sigma = sigma_deg.to_radians();
         let error = sigma * Chance::new(seed, HANDED).normal();
-        self.keeper.hand_over(Azimuth { angle: azimuth + error, sigma });
+        self.keeper.hand_over(Azimuth { angle: Radians(azimuth + error), sigma: Radians(sigma) });
     }
 
     fn mark(&self, vehicle: &Vehicle) -> Mark {
         let report = self.keeper.report();
         let truth = vehicle.truth().attitude;
         let azimuth = report.azimuth.map(|azimuth| {
-            let error = azimuth_error(degrees(azimuth.angle), degrees(truth.azimuth_rad));
-            [error, degrees(azimuth.sigma)]
+            let error = azimuth_error(azimuth.angle.degrees(), degrees(truth.azimuth_rad));
+            [error, azimuth.sigma.degrees()]
         });
-        let level = [report.pitch - truth.pitch_rad, report.roll - truth.roll_rad].map(degrees);
-        Mark { azimuth, level, level_sigma: degrees(report.level_sigma) }
+        let level = [report.pitch.0 - truth.pitch_rad, report.roll.0 - truth.roll_rad].map(degrees);
+        Mark { azimuth, level, level_sigma: report.level_sigma.degrees() }
     }
 }

@@ -14,7 +14,7 @@ use orientation::alignment::rotating::solution::Fit;
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::site::Site;
 use orientation::alignment::{Method, Refusal};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{GSensitivity, RadiansPerSecond, Seconds};
 
 use self::world::{LATITUDE_DEG, World};
 use super::site;
@@ -40,10 +40,10 @@ pub struct Solved {
 /// Turns a world's platform as a session wants it: at these speeds in turns a second, so many seconds each
 /// way in all, shared between the speeds as the session does.
 fn solve(world: &World, sensor: Sensor, speeds_hz: &[f64], seconds: f64, seed: u64) -> Solved {
-    let speeds: Vec<f64> = speeds_hz.iter().map(|speed| TAU * speed).collect();
+    let speeds: Vec<_> = speeds_hz.iter().map(|speed| RadiansPerSecond(TAU * speed)).collect();
     let slowest = speeds_hz.iter().copied().fold(f64::INFINITY, f64::min);
     let squares: f64 = speeds_hz.iter().map(|speed| speed * speed).sum();
-    let mut procedure = Procedure::new(&speeds, 1.0 / world::RATE_HZ);
+    let mut procedure = Procedure::new(&speeds, Seconds(1.0 / world::RATE_HZ));
     procedure.turns = (seconds * slowest * slowest / squares * slowest + WHOLE) as u32;
     let Ok(mut session) = Session::new(setting(world, sensor), procedure) else {
         return Solved::NONE;
@@ -72,7 +72,7 @@ impl Solved {
 fn setting(world: &World, sensor: Sensor) -> Setting {
     let walk = world.n_deg_sqrt_h.max(LEAST_WALK);
     let site = Site {
-        g_sensitivity: world.g_sensitivity_deg_h_g.map(|part| part * DEGREE_PER_HOUR),
+        g_sensitivity: world.g_sensitivity_deg_h_g.map(GSensitivity::from_degrees_per_hour),
         ..site(LATITUDE_DEG, [walk, 0.0, 0.0, 0.0])
     };
     Setting::new(site, sensor)

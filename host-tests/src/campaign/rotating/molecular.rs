@@ -154,14 +154,14 @@ fn run(coupling_deg: f64, ratio: f64, seed: u64) -> Run {
     let noisy = both(&World { n_deg_sqrt_h: WALK, ..world.clone() });
     let error = |solved: Solved| {
         let fit = solved.fit;
-        let azimuth = fit.map_or(f64::NAN, |fit| fit.azimuth.to_degrees());
+        let azimuth = fit.map_or(f64::NAN, |fit| fit.azimuth.degrees());
         azimuth_error(azimuth, world.azimuth_deg)
     };
     Run {
         one_speed: error(solve(world, Sensor::MOLECULAR, &[first], SECONDS, seed)),
         predicted: draw.predicted_deg(),
         two_speeds: error(both(world)),
-        plain_limit: noisy.fit.map_or(f64::NAN, |fit| fit.plain_limit.to_degrees()),
+        plain_limit: noisy.fit.map_or(f64::NAN, |fit| fit.plain_limit.degrees()),
         answer: noisy.answer,
     }
 }

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use orientation::alignment::rotating::Sensor;
+use orientation::units::{Radians, RadiansPerSecond, Seconds};
 use serde::Serialize;
 
 use super::world::{Integrating, World};
@@ -22,8 +23,11 @@ pub const WALKS: [f64; 2] = [0.000_2, 0.02];
 const RATIO: f64 = 0.004;
 
 /// What the solver is given about such a gyro: no more than what size the part may have that cancels, rad/s.
-const SENSOR: Sensor =
-    Sensor { is_flat: true, molecular_sigma: RATIO * TAU * TURN_HZ, settle_seconds: 1.0 };
+const SENSOR: Sensor = Sensor {
+    is_flat: true,
+    molecular_sigma: RadiansPerSecond(RATIO * TAU * TURN_HZ),
+    settle_seconds: Seconds(1.0),
+};
 
 /// The stages in their order.
 pub const STAGES: [&str; 4] = ["raw", "without unevenness", "both senses", "everything"];
@@ -100,7 +104,7 @@ fn run(n_deg_sqrt_h: f64, seed: u64) -> Run {
     let solved = solve(&world, SENSOR, &[TURN_HZ], SECONDS, seed);
     // The misalignment's sine is negative: what is quickest acts as slowest. Its phasor is conjugate.
     let acts_deg = azimuth_error(180.0 - world.quickest_deg, world.azimuth_deg);
-    let error = |stage: f64| azimuth_error(stage.to_degrees(), world.azimuth_deg);
+    let error = |stage: Radians| azimuth_error(stage.degrees(), world.azimuth_deg);
     let errors_deg = solved.fit.map(|fit| {
         let stages = fit.stages;
         [stages.raw, stages.misalignment, stages.senses, stages.full].map(error)

@@ -177,7 +177,7 @@ impl World {
             instruments.turn(gear.stage(motor.after(1.0 / RATE_HZ)));
             let reading = instruments.sample(time_s, &Effect::default());
             match session.feed(Input::Sample(&stage_path(&reading))) {
-                Request::Turn(rate_rad_s) => motor.send(rate_rad_s),
+                Request::Turn(rate_rad_s) => motor.send(rate_rad_s.0),
                 Request::Done => return,
                 _ => {}
             }

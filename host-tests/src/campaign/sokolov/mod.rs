@@ -23,7 +23,7 @@ use orientation::alignment::{Input, Refusal, Solution};
 use orientation::math::reference_table::{ONE, STEP, TURN, Table as Etalon};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, Radians, RadiansPerSecond, Seconds};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -110,11 +110,13 @@ fn samples(turn: Turn, azimuth_deg: f64, seed: u64) -> Vec<Sample> {
 
 /// The procedure that follows this turn.
 fn procedure(turn: Turn) -> Procedure {
-    let position = |i| Position { angle: f64::from(i) * turn.step(), seconds: 1.0 };
+    let position =
+        |i| Position { angle: Radians(f64::from(i) * turn.step()), seconds: Seconds(1.0) };
     let positions: Vec<Position> = (0..POSITIONS as u32).map(position).collect();
-    let schedule = Schedule::listed(&positions).unwrap_or_else(|| Schedule::circle(0, 1.0));
-    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-    Procedure { travel: everywhere, retries: 0, ..Procedure::new(schedule, 1.0 / RATE_HZ) }
+    let schedule =
+        Schedule::listed(&positions).unwrap_or_else(|| Schedule::circle(0, Seconds(1.0)));
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY].map(Radians);
+    Procedure { travel: everywhere, retries: 0, ..Procedure::new(schedule, Seconds(1.0 / RATE_HZ)) }
 }
 
 /// The dwells of one realisation, through the session's fixed-point filter.
@@ -130,14 +132,15 @@ fn in_floating_point(turn: Turn, samples: &[Sample], dwells: &[Dwell]) -> Vec<Dw
     let filter = Filter::low_pass(6, procedure(turn).cutoff(), RATE_HZ);
     let rates: Vec<f64> = samples.iter().map(|sample| sample.rate.rad_per_s()).collect();
     let means = rates.chunks(DWELL_SAMPLES).map(|chunk| filter.dwell_mean(chunk));
+    let means = means.map(RadiansPerSecond);
     dwells.iter().zip(means).map(|(dwell, rate)| Dwell { rate, ..*dwell }).collect()
 }
 
 /// Solves by a criterion: the answer against the truth, and its bound where the Earth rate is free, °.
 fn solve(dwells: &[Dwell], by: Criterion, azimuth_deg: f64) -> Result<(Answer, f64), Refusal> {
     let Conclusion { verdict, fit, .. } = Conclusion::of(&setting(), dwells, by);
-    let [limit, limit_free] = fit.map_or([f64::NAN; 2], |fit| [fit.limit, fit.limit_free]);
-    let solution = verdict.map(|azimuth| Solution { azimuth, limit });
+    let [limit, limit_free] = fit.map_or([f64::NAN; 2], |fit| [fit.limit.0, fit.limit_free.0]);
+    let solution = verdict.map(|azimuth| Solution { azimuth, limit: Radians(limit) });
     Ok((Answer::of(solution, azimuth_deg)?, degrees(limit_free)))
 }
 
@@ -259,7 +262,8 @@ fn row(all: &[Vec<Dwell>], name: &'static str, criterion: Criterion) -> Row {
 /// The step at which a rule would have stopped; `POSITIONS` where it never does.
 fn stopped_at(dwells: &[Dwell], rule: StopRule) -> usize {
     let sigma = ANGLE_RANDOM_WALK * 60.0 * DEGREE_PER_HOUR * std::f64::consts::SQRT_2;
-    let stops = |pair: &[Dwell]| rule.stops(pair[1].rate - pair[0].rate, sigma);
+    let difference = |pair: &[Dwell]| RadiansPerSecond(pair[1].rate.0 - pair[0].rate.0);
+    let stops = |pair: &[Dwell]| rule.stops(difference(pair), RadiansPerSecond(sigma));
     dwells.windows(2).position(stops).map_or(POSITIONS, |index| index + 2)
 }
 
@@ -288,12 +292,13 @@ fn paper_alpha(all: &[Vec<Dwell>]) -> Vec<AlphaRow> {
 
 fn alpha_row(all: &[Vec<Dwell>], alpha_deg_h: f64) -> AlphaRow {
     let rate = setting().site.latitude.horizontal_rate();
-    let limit = Limit::WithinAbsolute((alpha_deg_h * DEGREE_PER_HOUR / rate * ONE) as u64);
+    let limit = Limit::WithinAbsolute((alpha_deg_h * DEGREE_PER_HOUR / rate.0 * ONE) as u64);
     let step = (Turn::Arc.step() / STEP).round() as i32;
     let accepted: Vec<Accepted> = all
         .par_iter()
         .filter_map(|dwells| {
-            let series = Series::new(dwells.iter().map(|dwell| dwell.rate / rate), step).ok()?;
+            let series =
+                Series::new(dwells.iter().map(|dwell| dwell.rate.0 / rate.0), step).ok()?;
             Some(etalon::accepted(Etalon::built_in(), &series, limit).accepted)
         })
         .collect();

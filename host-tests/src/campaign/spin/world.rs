@@ -7,7 +7,7 @@ use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinSample as Shown, SpinWorld};
 use orientation::roll::Setting;
 use orientation::signal::SpinSample;
-use orientation::units::DEGREE_PER_SQRT_HOUR;
+use orientation::units::{DEGREE_PER_SQRT_HOUR, RadiansPerRootSecond, Seconds};
 
 use crate::campaign::chance::Chance;
 use crate::methods::spin::METHODS;
@@ -114,10 +114,10 @@ impl Recorded {
     pub(super) fn tracked(&self) -> [(Track, Errors); 3] {
         METHODS.map(|method| {
             let setting = Setting {
-                angle_random_walk: self.noise.angle_random_walk,
+                angle_random_walk: RadiansPerRootSecond(self.noise.angle_random_walk),
                 scale_sigma: SCALE_SIGMA,
                 method,
-                ..Setting::new(1.0 / RATE_HZ)
+                ..Setting::new(Seconds(1.0 / RATE_HZ))
             };
             let track = Track::of(&setting, &self.samples);
             let errors = Errors::between(&track, &self.rolls_rad);

@@ -5,6 +5,7 @@ use hal_mock::vehicle::scenario::Scenario;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stops::plain;
 use orientation::alignment::stops::stop_detector::Rests;
+use orientation::units::Seconds;
 use serde::Serialize;
 
 use super::world::{Day, Known, live};
@@ -118,7 +119,7 @@ impl Case {
         // As long as two stops and one drive, whatever the number of stops.
         let drive_s = (DRIVE_S - (stops - 2.0) * STOP_S) / drives;
         let scenario = Scenario::stops(seed, self.stops, STOP_S, drive_s);
-        let stated = scenario.configuration().stops().collect();
+        let stated = scenario.configuration().stops().map(|stop| stop.map(Seconds)).collect();
         let rests = if self.is_stated { Rests::Stated(stated) } else { Rests::Found };
         let known = Known { rests, knows_displacement: self.knows_displacement };
         Run::of(&live(&scenario, seed, known))
@@ -135,7 +136,7 @@ impl Run {
             biases: found.filter(|found| found.are_biases_observed).map(|found| {
                 std::array::from_fn(|axis| {
                     let sigma = found.bias_sigmas[axis];
-                    [(found.biases[axis] - day.biases[axis]) / sigma, degrees_per_hour(sigma)]
+                    [(found.biases[axis].0 - day.biases[axis]) / sigma.0, degrees_per_hour(sigma.0)]
                 })
             }),
             answer: day.answer(),
@@ -145,8 +146,9 @@ impl Run {
 
 /// Error and σ of the paper's method at the start, and by how much its other forms differ from the closed one, °.
 fn plainly(plain: &plain::Plain, start: f64) -> [f64; 4] {
+    let closed = plain.azimuth.0;
     let [error, brent, euler] =
-        [(plain.azimuth, start), (plain.angle.at, plain.azimuth), (plain.euler.at, plain.azimuth)]
+        [(closed, start), (plain.angle.at, closed), (plain.euler.at, closed)]
             .map(|(azimuth, from)| azimuth_error(degrees(azimuth), degrees(from)));
-    [error, degrees(plain.sigma), brent, euler]
+    [error, plain.sigma.degrees(), brent, euler]
 }

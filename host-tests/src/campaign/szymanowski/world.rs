@@ -8,7 +8,9 @@ use orientation::alignment::stops::session::Procedure;
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::alignment::stops::{Session, Setting};
 use orientation::alignment::{Input, Method, Refusal, Solution};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{
+    ForceNoise, Metres, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
+};
 
 use crate::campaign::site;
 use crate::campaign::statistics::Answer;
@@ -42,8 +44,9 @@ impl Day {
     /// # Errors
     /// Why there is none.
     pub fn answer(&self) -> Result<Answer, Refusal> {
-        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit);
-        let solution = self.conclusion.verdict.map(|azimuth| Solution { azimuth, limit });
+        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit.0);
+        let solution =
+            self.conclusion.verdict.map(|azimuth| Solution { azimuth, limit: Radians(limit) });
         Answer::of(solution, degrees(self.end))
     }
 }
@@ -63,7 +66,7 @@ pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
     day.vehicle.rate_hz = RATE_HZ;
     let configuration = day.configuration();
     let mut vehicle = Vehicle::new(&configuration, seed);
-    let procedure = Procedure::recorded(known.rests, 1.0 / RATE_HZ);
+    let procedure = Procedure::recorded(known.rests, Seconds(1.0 / RATE_HZ));
     let mut session = Session::new(setting(&day), procedure).ok();
     let stops: Vec<[f64; 2]> = configuration.stops().collect();
     let first_s = stops.first().map_or(0.0, |stop| stop[1]);
@@ -83,7 +86,7 @@ pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
         session.feed(Input::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
         if middles.next_if(|middle| *middle <= sample.time_s).is_some() && known.knows_displacement
         {
-            session.feed(Input::Displaced(&truth.displacement_m));
+            session.feed(Input::Displaced(&truth.displacement_m.map(Metres)));
         }
     }
     if let Some(session) = &mut session {
@@ -105,12 +108,12 @@ pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
 fn setting(day: &Scenario) -> Setting {
     let VehicleConfiguration { gyros: [gyro, ..], accelerometer, latitude_deg, .. } = day.vehicle;
     let site = Site {
-        accelerometer_bias_sigma: accelerometer.bias_sigma_m_s2,
+        accelerometer_bias_sigma: MetresPerSecondSquared(accelerometer.bias_sigma_m_s2),
         ..site(latitude_deg, [gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0])
     };
     Setting {
-        bias_sigma: Some(gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
-        force_noise: accelerometer.noise_m_s2_sqrt_hz,
+        bias_sigma: Some(RadiansPerSecond::from_degrees_per_hour(gyro.bias_sigma_deg_h)),
+        force_noise: ForceNoise(accelerometer.noise_m_s2_sqrt_hz),
         ..Setting::new(site)
     }
 }

@@ -77,8 +77,8 @@ pub fn write<C: Recorded>(
 
 /// Writes what a board was given of place and instrument, as far as keys of their own say it.
 fn header(to: &mut impl Write, kind: Kind, base: &Scenario, site: &Site) -> io::Result<()> {
-    let [along, across] = site.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
-    let kappa_sigma = site.g_sensitivity_sigma / DEGREE_PER_HOUR;
+    let [along, across] = site.g_sensitivity.map(|part| part.0 / DEGREE_PER_HOUR);
+    let kappa_sigma = site.g_sensitivity_sigma.0 / DEGREE_PER_HOUR;
     writeln!(to, "# kind: {kind}")?;
     writeln!(to, "# latitude_deg: {}", base.latitude_deg)?;
     writeln!(to, "# rate_hz: {}", base.sample_rate_hz)?;
@@ -88,7 +88,7 @@ fn header(to: &mut impl Write, kind: Kind, base: &Scenario, site: &Site) -> io::
     writeln!(to, "# gyro_scale_sigma: {}", site.scale_sigma)?;
     writeln!(to, "# g_sensitivity_deg_h_g: {along:.9},{across:.9}")?;
     writeln!(to, "# g_sensitivity_sigma_deg_h_g: {kappa_sigma:.9}")?;
-    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", site.accelerometer_bias_sigma)
+    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", site.accelerometer_bias_sigma.0)
 }
 
 /// Writes a row, with all digits of its numbers; what is not a number leaves its field empty.

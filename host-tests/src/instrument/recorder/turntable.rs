@@ -21,7 +21,7 @@ impl Recorded for TurntableScenario {
         header(&mut head, Kind::Rotating, &self.base, &setting.site)?;
         let sensor = if self.molecular.is_some() { "met" } else { "gyro" };
         writeln!(head, "# sensor: {sensor}")?;
-        let zero_sigma = setting.encoder_zero_sigma.to_degrees();
+        let zero_sigma = setting.encoder_zero_sigma.degrees();
         writeln!(head, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
         Given::new(setting, procedure, ended).write(to, &head)?;
         writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;

@@ -36,7 +36,7 @@ impl Recorded for VehicleScenario {
         of.iter().try_for_each(|sample| {
             force = sample.force.map_or(force, forces);
             let ([x, y, z], [ahead, right, down]) = (
-                sample.turned.map(|turned| mean_rate(turned, period_s, GREATEST_BODY_RATE)),
+                sample.turned.map(|turned| mean_rate(turned, period_s.0, GREATEST_BODY_RATE)),
                 force,
             );
             let is_new = f64::from(sample.force.is_some());
@@ -51,10 +51,10 @@ fn stops(to: &mut impl Write, run: &VehicleRun) -> io::Result<()> {
     if stops.is_empty() {
         return Ok(());
     }
-    let stood: Vec<_> = stops.iter().map(|stop| format!("{}-{}", stop.from, stop.to)).collect();
+    let stood: Vec<_> = stops.iter().map(|stop| format!("{}-{}", stop.from.0, stop.to.0)).collect();
     writeln!(to, "# stops_s: {}", stood.join(";"))?;
     let places = stops.iter().map(|stop| stop.displacement);
-    let places = places.map(|place| place.map(|[north, east]| format!("{north},{east}")));
+    let places = places.map(|place| place.map(|[north, east]| format!("{},{}", north.0, east.0)));
     let Some(places) = places.collect::<Option<Vec<_>>>() else { return Ok(()) };
     writeln!(to, "# displacements_north_east_m: {}", places.join(";"))
 }

@@ -13,7 +13,10 @@ use orientation::alignment::setup::SetupError;
 use orientation::alignment::site::Site;
 use orientation::alignment::{Input, Method};
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
+use orientation::units::{
+    Angle, AngularRate, Instant, Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds,
+    SpecificForce,
+};
 
 use self::part::Part;
 use crate::assumptions;
@@ -78,7 +81,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
     let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);
     let rate = header.rate_hz.unwrap_or_else(of_times);
-    let rate_step = rounded(&mut site, sensor.is_flat, rows, rate);
+    let rate_step = RadiansPerSecond(rounded(&mut site, sensor.is_flat, rows, rate));
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
     let setting = Setting::new(site, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
@@ -124,11 +127,11 @@ fn rounded(site: &mut Site, is_flat: bool, rows: &[RotatingRow], rate_hz: f64) -
     }
     let walk = site.noise.model().angle_random_walk;
     let is_stated = site.noise.is_white_known() && is_flat;
-    let sigma = if is_stated { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
+    let sigma = if is_stated { walk.0 * rate_hz.sqrt() } else { of_neighbours(rows) };
     let smoothed = (-0.5 * (TAU * sigma / step).powi(2)).exp();
     let scattered = 1.0 - FIRST_HARMONIC * smoothed * smoothed;
     site.noise.model_mut().angle_random_walk =
-        walk.hypot(step * (scattered / (12.0 * rate_hz)).sqrt());
+        RadiansPerRootSecond(walk.0.hypot(step * (scattered / (12.0 * rate_hz)).sqrt()));
     step * smoothed
 }
 
@@ -141,10 +144,11 @@ fn of_neighbours(rows: &[RotatingRow]) -> f64 {
 /// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.
 const ZERO_SIGMA_DEG: f64 = 0.15;
 
-/// 1σ of the encoder's zero, rad; no key states its harmonics.
-fn encoder_zero(header: &Header, assumed: &mut Vec<String>) -> f64 {
+/// 1σ of the encoder's zero; no key states its harmonics.
+fn encoder_zero(header: &Header, assumed: &mut Vec<String>) -> Radians {
     let words = || "encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned();
-    or_assumed(header.encoder_zero_sigma_deg, ZERO_SIGMA_DEG, assumed, words).to_radians()
+    let sigma = or_assumed(header.encoder_zero_sigma_deg, ZERO_SIGMA_DEG, assumed, words);
+    Radians::from_degrees(sigma)
 }
 
 /// The kind of sensor that the header names.
@@ -165,7 +169,7 @@ pub fn follow(
     rows: &[RotatingRow],
     sample_seconds: f64,
 ) -> Result<Session, SetupError> {
-    let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
+    let mut session = Session::new(setting, Procedure::recorded(Seconds(sample_seconds)))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), FEW_CUT);
     for row in rows {

@@ -12,7 +12,9 @@ pub mod track;
 use orientation::roll::Progress;
 use orientation::roll::{Method, Setting};
 use orientation::signal::SpinSample;
-use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use orientation::units::{
+    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, RadiansPerRootSecond, RadiansPerSecond, Seconds,
+};
 
 use self::limit::{Noise, Turns};
 use self::track::Track;
@@ -110,7 +112,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
 /// Replays a run with what its board was given.
 fn again(given: &Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Replay {
     let Given { setting, ended, .. } = *given;
-    let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds).collect();
+    let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds.0).collect();
     let ended = ended.map(|reason| Progress::Ended(reason).to_string());
     let assumed = vec![GIVEN.to_owned()];
     Replay { ended, ..follow(&samples, setting, required_sigma, assumed) }
@@ -145,13 +147,13 @@ pub fn follow(
     assumed: Vec<String>,
 ) -> Replay {
     let turns = Turns::of(samples);
-    let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk };
+    let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk.0 };
     let has_lift = !turns.lifts.is_empty();
     let bounds = has_lift
         .then(|| limit::bounds(samples, noise, setting.scale_sigma, |index| turns.lift(index)));
     Replay {
         tracks: METHODS.map(|method| Track::of(&Setting { method, ..setting }, samples)),
-        period_s: setting.sample_seconds,
+        period_s: setting.sample_seconds.0,
         noise,
         bounds,
         required_sigma,
@@ -163,7 +165,7 @@ pub fn follow(
 
 /// What is known of the gyro; what is not stated is taken from the rows or assumed.
 fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<String>) {
-    let (mut assumed, usual) = (Vec::new(), Setting::new(period_s));
+    let (mut assumed, usual) = (Vec::new(), Setting::new(Seconds(period_s)));
     let angle_random_walk = header.gyro_n_deg_sqrt_h.map_or_else(
         || {
             let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
@@ -182,8 +184,10 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
     assumed.push(
         "no gyro error that follows the roll, and a scale that is steady for some turns".to_owned(),
     );
-    let bias = || format!("gyro bias to {:.0} °/h (1σ)", usual.bias_sigma / DEGREE_PER_HOUR);
+    let bias = || format!("gyro bias to {:.0} °/h (1σ)", usual.bias_sigma.degrees_per_hour());
     let stated = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
-    let bias_sigma = or_assumed(stated, usual.bias_sigma, &mut assumed, bias);
+    let angle_random_walk = RadiansPerRootSecond(angle_random_walk);
+    let bias_sigma = or_assumed(stated, usual.bias_sigma.0, &mut assumed, bias);
+    let bias_sigma = RadiansPerSecond(bias_sigma);
     (Setting { angle_random_walk, scale_sigma, bias_sigma, ..usual }, assumed)
 }

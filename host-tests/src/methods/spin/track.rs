@@ -29,9 +29,9 @@ impl Point {
         Self {
             time_s: sample.time.seconds(),
             roll_rad: spin.roll().rad(),
-            sigma_rad: spin.sigma(),
+            sigma_rad: spin.sigma().map(|sigma| sigma.0),
             scale: spin.scale(),
-            lift: spin.lift(),
+            lift: spin.lift().map(|lift| lift.0),
             state: spin.state(),
         }
     }

@@ -106,7 +106,7 @@ pub fn assumption(session: &Session) -> Option<String> {
 pub fn check_stage(session: &Session) -> Result<(), Late> {
     let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
     let Some(conclusion) = found else { return Ok(()) };
-    let mut lengths: Vec<f64> = session.dwells().iter().map(|d| d.end() - d.start()).collect();
+    let mut lengths: Vec<f64> = session.dwells().iter().map(|d| d.end().0 - d.start().0).collect();
     let ends = [(End::First, lengths.first()), (End::Last, lengths.last())];
     let ends = ends.map(|(end, length)| (end, length.copied().unwrap_or_default()));
     let usual = median(&mut lengths);

@@ -18,7 +18,10 @@ use orientation::alignment::{Input, Method};
 use orientation::planner::order::Order;
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
+use orientation::units::{
+    Angle, AngularRate, Instant, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
+    SpecificForce, TURN, Temperature,
+};
 
 use super::asked::Asked;
 use super::error::ReplayError;
@@ -163,10 +166,10 @@ fn stage(
     }
     let still = still(rows);
     let positions = standstills(rows, sample_seconds, still)?;
-    let ends = [&positions[0], &positions[positions.len() - 1]].map(|position| position.seconds);
+    let ends = [&positions[0], &positions[positions.len() - 1]].map(|position| position.seconds.0);
     late::check_gyro(rows, sample_seconds, ends)?;
     let following = following(&positions, sample_seconds, criterion)?;
-    let procedure = Procedure { still, ..following };
+    let procedure = Procedure { still: Radians(still), ..following };
     let mut session = Session::new(setting, procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), 0.0);
@@ -186,10 +189,10 @@ fn following(
     Ok(Procedure {
         criterion,
         retries: 0,
-        travel: [f64::NEG_INFINITY, f64::INFINITY],
-        longest_seconds: f64::INFINITY,
-        longest_rotation: f64::INFINITY,
-        ..Procedure::new(schedule, sample_seconds)
+        travel: [Radians(f64::NEG_INFINITY), Radians(f64::INFINITY)],
+        longest_seconds: Seconds(f64::INFINITY),
+        longest_rotation: Seconds(f64::INFINITY),
+        ..Procedure::new(schedule, Seconds(sample_seconds))
     })
 }
 
@@ -241,7 +244,7 @@ fn still(rows: &[StageRow]) -> f64 {
     let mut changes: Vec<f64> =
         rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs()).collect();
     let usual = median(&mut changes);
-    (STILL_MEDIANS * usual).clamp(STILL, STILL_NOISY)
+    (STILL_MEDIANS * usual).clamp(STILL.0, STILL_NOISY)
 }
 
 /// The angle from one reading to the next, rad; a wrap of the encoder is none.
@@ -283,7 +286,8 @@ fn standstills(
     if runs.is_empty() {
         return Err(ReplayError::NoDwell);
     }
-    let position = |(angle, count)| Position { angle, seconds: f64::from(count) * sample_seconds };
+    let length = |count| Seconds(f64::from(count) * sample_seconds);
+    let position = |(angle, count)| Position { angle: Radians(angle), seconds: length(count) };
     Ok(runs.into_iter().map(position).collect())
 }
 
@@ -293,10 +297,11 @@ fn dwells(
     criterion: Criterion,
     mut progress: impl FnMut(&Session),
 ) -> Result<Session, ReplayError> {
-    let position = |row: &DwellRow| Position { angle: row.stage_rad, seconds: row.seconds };
+    let position =
+        |row: &DwellRow| Position { angle: Radians(row.stage_rad), seconds: Seconds(row.seconds) };
     let positions: Vec<Position> = rows.iter().map(position).collect();
     // No sample passes the filter; any rate at which the shortest dwell lets it settle will do.
-    let shortest = positions.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min);
+    let shortest = positions.iter().map(|p| p.seconds.0).fold(f64::INFINITY, f64::min);
     let procedure = following(&positions, shortest / 100.0, criterion)?;
     let mut session = Session::new(setting, procedure)?;
     let mut end = 0.0;
@@ -314,12 +319,12 @@ fn dwells(
 fn averaged(row: &DwellRow, middle: f64) -> Dwell {
     Dwell {
         stage: Angle::from_rad(row.stage_rad),
-        middle,
-        seconds: row.seconds,
-        rate: row.rate_rad_s,
+        middle: Seconds(middle),
+        seconds: Seconds(row.seconds),
+        rate: RadiansPerSecond(row.rate_rad_s),
         taper: 1.0,
         stated_variance: Some(row.sigma_rad_s * row.sigma_rad_s).into(),
-        force: row.force_m_s2,
+        force: row.force_m_s2.map(|force| force.map(MetresPerSecondSquared)),
         ..Dwell::default()
     }
 }

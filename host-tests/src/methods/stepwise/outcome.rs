@@ -46,11 +46,11 @@ impl DwellDetails {
             let kept = why.is_none().then_some(residual);
             Self {
                 stage_deg: degrees(dwell.stage.rad()),
-                from_s: dwell.start().max(0.0),
-                seconds: dwell.seconds,
-                rate_deg_h: degrees_per_hour(dwell.rate),
-                sigma_deg_h: degrees_per_hour(white_sigma(dwell, conclusion.angle_random_walk)),
-                residual_deg_h: kept.map(|residual| degrees_per_hour(residual.rate)),
+                from_s: dwell.start().0.max(0.0),
+                seconds: dwell.seconds.0,
+                rate_deg_h: degrees_per_hour(dwell.rate.0),
+                sigma_deg_h: degrees_per_hour(white_sigma(dwell, conclusion.angle_random_walk.0)),
+                residual_deg_h: kept.map(|residual| degrees_per_hour(residual.rate.0)),
                 studentised: kept.map(|residual| residual.studentised),
                 excluded: why.map(|why| why.to_string()),
             }
@@ -62,7 +62,7 @@ impl DwellDetails {
 /// 1σ of a dwell's mean rate from white noise, rad/s, for a random walk in rad/√s: as stated, or N²/T times what the
 /// taper costs.
 fn white_sigma(dwell: &Dwell, angle_random_walk: f64) -> f64 {
-    let white = || angle_random_walk * angle_random_walk * dwell.taper / dwell.seconds;
+    let white = || angle_random_walk * angle_random_walk * dwell.taper / dwell.seconds.0;
     dwell.stated_variance.get().unwrap_or_else(white).sqrt()
 }
 
@@ -73,7 +73,7 @@ impl Replay {
         let left_out = dwells.filter_map(|(index, (dwell, why))| {
             let reason = why.as_ref()?.to_string();
             let (number, stage) = (index + 1, degrees(dwell.stage.rad()));
-            let (from, to) = (dwell.start().max(0.0), dwell.end());
+            let (from, to) = (dwell.start().0.max(0.0), dwell.end().0);
             let place = Keys::default()
                 .with("dwell", number)
                 .with("stage_deg", stage)
@@ -128,7 +128,7 @@ impl Replay {
 
 /// N of the gyro, °/√h, that a fit was weighted by.
 fn walk_deg_sqrt_h(conclusion: &Conclusion) -> f64 {
-    degrees(conclusion.angle_random_walk) * 60.0
+    degrees(conclusion.angle_random_walk.0) * 60.0
 }
 
 /// Every dwell in the order of time.
@@ -165,10 +165,10 @@ impl Finished for Replay {
         let kept: Vec<&Dwell> =
             dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
         Outcome {
-            limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| degrees(fit.limit)),
-            pitch_deg: tilt.map(|tilt| degrees(tilt.pitch())),
-            roll_deg: tilt.map(|tilt| degrees(tilt.roll())),
-            seconds: kept.iter().map(|dwell| dwell.seconds).sum(),
+            limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| fit.limit.degrees()),
+            pitch_deg: tilt.map(|tilt| tilt.pitch().degrees()),
+            roll_deg: tilt.map(|tilt| tilt.roll().degrees()),
+            seconds: kept.iter().map(|dwell| dwell.seconds.0).sum(),
             fit: Some(FitDetails {
                 earth_rate_ratio: seen.map(|fit| fit.ratio),
                 earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),

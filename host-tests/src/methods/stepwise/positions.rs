@@ -50,8 +50,8 @@ pub fn autocompensation(session: &Session, conclusion: &Conclusion) -> Autocompe
     Autocompensation {
         angles_deg,
         visits,
-        plain_azimuth_deg: found.map(|(azimuth, shift)| degrees(wrapped(azimuth.angle + shift))),
-        plain_off_sigmas: found.map(|(azimuth, shift)| shift / azimuth.sigma),
+        plain_azimuth_deg: found.map(|(azimuth, shift)| degrees(wrapped(azimuth.angle.0 + shift))),
+        plain_off_sigmas: found.map(|(azimuth, shift)| shift / azimuth.sigma.0),
     }
 }
 
@@ -65,7 +65,7 @@ fn shift(session: &Session, conclusion: &Conclusion) -> Option<f64> {
     for ((dwell, residual), why) in dwells.zip(&conclusion.disturbances) {
         if why.is_none() {
             let (sine, cosine) = dwell.stage.rad().sin_cos();
-            regression.push(&[cosine, -sine, 1.0], residual.rate / rate);
+            regression.push(&[cosine, -sine, 1.0], residual.rate.0 / rate.0);
         }
     }
     let [north, east, ..] = regression.solve(&[Column::Free; 3])?.coefficients;

@@ -22,7 +22,10 @@ use orientation::alignment::{Input, Method as _};
 use orientation::earth::EARTH_RATE;
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
-use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN};
+use orientation::units::{
+    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN, ForceNoise, Metres,
+    RadiansPerRootSecond, RadiansPerSecond, Seconds,
+};
 
 use self::noise::White;
 use self::way::{Leg, Slip};
@@ -141,7 +144,7 @@ fn again(
     let session = Session::new(setting, procedure)?;
     let replay = Replay::begun(SIAP, session, 0.0, vec![GIVEN.to_owned()]);
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
-    Ok(replay.fed(samples::given(rows, period_s), end))
+    Ok(replay.fed(samples::given(rows, period_s.0), end))
 }
 
 /// Refuses displacements that the forces on the way contradict, and states where they cannot.
@@ -151,7 +154,7 @@ fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay,
     let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     let site = &replay.session.setting().site;
     let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
-    let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle);
+    let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle.0);
     if let Some(leg) = legs.iter().position(|leg| !leg.is_as_stated()) {
         let (Leg { stated_m, driven_m, .. }, slip) = (legs[leg], Slip::of(&legs));
         return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });
@@ -213,7 +216,7 @@ fn follow(
     let rate_error = header.rate_hz.map_or(0.0, |rate| rate * period_s - 1.0);
     site.scale_sigma = site.scale_sigma.hypot(rate_error);
     let setting = setting(header, site, rows, period_s, method, &mut assumed)?;
-    let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
+    let procedure = Procedure { displacements, ..Procedure::recorded(rests, Seconds(period_s)) };
     let replay = Replay::begun(method, Session::new(setting, procedure)?, zero_s, assumed);
     let replay = replay.fed(samples::samples(rows, period_s), Input::End);
     check_displacements(&replay.session)?;
@@ -274,7 +277,7 @@ fn rests(header: &Header, method: &str, zero_s: f64) -> Result<Rests, ReplayErro
         _ if method == STATIC => Ok(Rests::Whole),
         None => Ok(Rests::Found),
         Some(stated) => {
-            let counted = stated.iter().map(|stop| stop.map(|time| time - zero_s));
+            let counted = stated.iter().map(|stop| stop.map(|time| Seconds(time - zero_s)));
             let all = Few::<_, STOPS>::from_slice(&counted.collect::<Vec<_>>());
             all.map(Rests::Stated).map_err(|_| ReplayError::TooManyStops(stated.len(), STOPS))
         }
@@ -282,12 +285,13 @@ fn rests(header: &Header, method: &str, zero_s: f64) -> Result<Rests, ReplayErro
 }
 
 /// The user's displacements, or the header's; one for each stop where stops are stated.
-fn displacements(header: &Header, asked: &Asked) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
+fn displacements(header: &Header, asked: &Asked) -> Result<Few<[Metres; 2], STOPS>, ReplayError> {
     let list = asked.displacements_m(header).unwrap_or_default();
     let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
     match &header.stops_s {
         Some(stops) if !list.is_empty() && stops.len() != list.len() => Err(wrong(stops.len())),
-        _ => Few::from_slice(list).map_err(|_| wrong(STOPS)),
+        _ if list.len() > STOPS => Err(wrong(STOPS)),
+        _ => Ok(list.iter().map(|place| place.map(Metres)).collect()),
     }
 }
 
@@ -345,16 +349,18 @@ fn setting(
     let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
     let stood = if method == STATIC { Some(&whole[..]) } else { stood };
     let white = noise::at_rest(rows, stood, period_s);
-    site.noise.model_mut().angle_random_walk = walk(&site, white.as_ref(), assumed)?;
+    site.noise.model_mut().angle_random_walk =
+        RadiansPerRootSecond(walk(&site, white.as_ref(), assumed)?);
     let force_noise = white.unwrap_or_default().force;
     assumed
         .push(format!("accelerometer noise {force_noise:.2e} m/s²/√Hz as the recording shows it"));
     let kappa = grade::g_sensitivity(header);
-    let bias_sigma = header.gyro_bias_deg_h.map(|bias| (bias * DEGREE_PER_HOUR).hypot(kappa));
+    let bias = header.gyro_bias_deg_h.map(|bias| (bias * DEGREE_PER_HOUR).hypot(kappa));
+    let bias_sigma = bias.map(RadiansPerSecond);
     if bias_sigma.is_none() {
         assumed.push("gyro biases unknown".to_owned());
     }
-    Ok(Setting { bias_sigma, force_noise, ..Setting::new(site) })
+    Ok(Setting { bias_sigma, force_noise: ForceNoise(force_noise), ..Setting::new(site) })
 }
 
 /// The gyros' N, rad/√s: as stated, or as the recording shows it.
@@ -362,7 +368,7 @@ fn walk(site: &Site, white: Option<&White>, assumed: &mut Vec<String>) -> Result
     let stated = site.noise.model().angle_random_walk;
     let Some(White { angle_random_walk: shown, relative_sigma, .. }) = white.copied() else {
         return if site.noise.is_white_known() {
-            Ok(stated)
+            Ok(stated.0)
         } else {
             Err(ReplayError::NoiseUnknown)
         };
@@ -372,10 +378,10 @@ fn walk(site: &Site, white: Option<&White>, assumed: &mut Vec<String>) -> Result
         assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
         return Ok((shown * (1.0 + relative_sigma)).max(LEAST_WALK));
     }
-    if shown * (1.0 - MORE_SIGMAS * relative_sigma) <= MORE * stated {
-        return Ok(stated);
+    if shown * (1.0 - MORE_SIGMAS * relative_sigma) <= MORE * stated.0 {
+        return Ok(stated.0);
     }
-    let stated = stated / DEGREE_PER_SQRT_HOUR;
+    let stated = stated.0 / DEGREE_PER_SQRT_HOUR;
     assumed.push(format!(
         "gyro noise N {walk:.2e} °/√h as the recording shows it, which is more than the stated {stated:.2e}"
     ));

@@ -128,15 +128,15 @@ pub fn legs(
                 .map(|time_s| rows.partition_point(|row| row.time_s <= zero_s + time_s));
             &rows[from..to.max(from)]
         };
-        let way = between(begin.to - MARGIN_S, end.from + MARGIN_S);
-        let rest = between(end.from + MARGIN_S, end.to - MARGIN_S);
+        let way = between(begin.to.0 - MARGIN_S, end.from.0 + MARGIN_S);
+        let rest = between(end.from.0 + MARGIN_S, end.to.0 - MARGIN_S);
         let mut drive = Drive::from(begin, site, azimuth, period_s);
         for row in way {
             drive.push(row);
         }
         let (driven_m, off_m) = drive.ended(rest);
         azimuth = drive.azimuth();
-        legs.push(Leg { driven_m, off_m, stated_m: [to[0] - from[0], to[1] - from[1]] });
+        legs.push(Leg { driven_m, off_m, stated_m: [to[0].0 - from[0].0, to[1].0 - from[1].0] });
     }
     legs
 }
@@ -161,14 +161,14 @@ impl Drive {
     fn from(stop: &Stop, site: &Site, azimuth: f64, period_s: f64) -> Self {
         let force = stop.force.mean();
         let attitude = product(&about_down(azimuth), &levelled(&unit(&force)));
-        let earth = [site.latitude.horizontal_rate(), 0.0, -site.latitude.vertical_rate()];
+        let earth = [site.latitude.horizontal_rate().0, 0.0, -site.latitude.vertical_rate().0];
         let felt = turned(&transposed(&attitude), &earth);
         Self {
             attitude,
             bias: difference(&stop.turned.mean(), &felt),
             earth,
             gravity: length(&force),
-            force_bias: site.accelerometer_bias_sigma,
+            force_bias: site.accelerometer_bias_sigma.0,
             tangent: site.latitude.rad().tan(),
             period_s,
             velocity: [0.0; 3],

@@ -12,7 +12,9 @@ use std::path::Path;
 use orientation::attitude::{Gyro, Keeper, Report, Setting, Trust};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use orientation::units::{
+    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, MetresPerSecondSquared, RadiansPerSecond, Seconds,
+};
 use serde::Serialize;
 
 use crate::assumptions::or_assumed;
@@ -37,9 +39,9 @@ pub struct Moment {
     /// 1σ of pitch and of roll, rad.
     pub level_sigma: f64,
     /// Biases of the gyros, rad/s.
-    pub biases: [f64; 3],
-    /// 1σ of the biases, rad/s.
-    pub bias_sigmas: [f64; 3],
+    pub biases: [RadiansPerSecond; 3],
+    /// 1σ of the biases.
+    pub bias_sigmas: [RadiansPerSecond; 3],
 }
 
 /// A state, and for how long it was met, s.
@@ -106,11 +108,11 @@ fn setting(
     period_s: f64,
     assumed: &mut Vec<String>,
 ) -> Setting {
-    let coarse = Setting::coarse(latitude, period_s);
+    let coarse = Setting::coarse(latitude, Seconds(period_s));
     let gyros = coarse.gyros.map(|gyro| known(header, gyro));
     let [gyro, ..] = gyros;
-    let walk = gyro.noise.angle_random_walk / DEGREE_PER_SQRT_HOUR;
-    let (bias, percent) = (gyro.bias_sigma / DEGREE_PER_HOUR, 100.0 * gyro.scale_sigma);
+    let walk = gyro.noise.angle_random_walk.0 / DEGREE_PER_SQRT_HOUR;
+    let (bias, percent) = (gyro.bias_sigma.degrees_per_hour(), 100.0 * gyro.scale_sigma);
     let of_gyros = [
         (header.gyro_n_deg_sqrt_h, format!("gyro noise of a coarse unit: N {walk:.2} °/√h")),
         (header.gyro_bias_deg_h, format!("gyro biases of a coarse unit: {bias:.0} °/h")),
@@ -119,9 +121,9 @@ fn setting(
     let unknown = of_gyros.into_iter().filter(|(stated, _)| stated.is_none());
     assumed.extend(unknown.map(|(_, words)| words));
     let usual = coarse.force_bias_sigma;
-    let words = || format!("accelerometer biases of a coarse unit: {} m/s²", Short(usual));
-    let force_bias_sigma = or_assumed(header.accelerometer_bias_m_s2, usual, assumed, words);
-    Setting { gyros, force_bias_sigma, ..coarse }
+    let words = || format!("accelerometer biases of a coarse unit: {} m/s²", Short(usual.0));
+    let force_bias_sigma = or_assumed(header.accelerometer_bias_m_s2, usual.0, assumed, words);
+    Setting { gyros, force_bias_sigma: MetresPerSecondSquared(force_bias_sigma), ..coarse }
 }
 
 /// The gyro as the header knows it.
@@ -129,7 +131,7 @@ fn known(header: &Header, gyro: Gyro) -> Gyro {
     let bias = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
     Gyro {
         noise: known_noise(header, gyro.noise),
-        bias_sigma: bias.unwrap_or(gyro.bias_sigma),
+        bias_sigma: RadiansPerSecond(bias.unwrap_or(gyro.bias_sigma.0)),
         scale_sigma: header.gyro_scale_sigma.unwrap_or(gyro.scale_sigma),
     }
 }
@@ -168,7 +170,7 @@ impl Replay {
         self.moments.push(Moment {
             time_s,
             attitude: report.attitude,
-            level_sigma: report.level_sigma,
+            level_sigma: report.level_sigma.0,
             biases: report.biases,
             bias_sigmas: report.bias_sigmas,
         });
@@ -185,7 +187,7 @@ impl Replay {
 
 /// Why the last report is no result.
 fn refusal(last: &Report, required_sigma: f64) -> Option<String> {
-    let (sigma, most) = (degrees(last.level_sigma), degrees(required_sigma));
+    let (sigma, most) = (last.level_sigma.degrees(), degrees(required_sigma));
     match last.state.trust {
         Trust::Starting => Some("no level was found".to_owned()),
         Trust::RotationLost => Some(format!("at the end, {}", last.state)),

@@ -1,6 +1,7 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
 use orientation::attitude::quaternion::angles;
+use orientation::units::Radians;
 
 use crate::cause;
 use crate::methods::asked::Asked;
@@ -8,7 +9,7 @@ use crate::methods::vertical::errors::{Errors, Off};
 use crate::methods::vertical::{Moment, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome, of_biases};
-use crate::output::{degrees, degrees_per_hour, positive_zero};
+use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
@@ -16,7 +17,7 @@ impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (last, is_found) = (&self.last, self.refusal.is_none());
         let errors = Errors::of(&self.moments, &truth.attitude);
-        let biases = [last.biases, last.bias_sigmas].map(|each| each.map(degrees_per_hour));
+        let biases = [last.biases, last.bias_sigmas].map(in_degrees_per_hour);
         let details = Keys::default()
             .with("turned_deg", degrees(self.turned))
             .with("state", last.state.to_string())
@@ -31,9 +32,9 @@ impl Finished for Replay {
         let lines = [Some(self.lines(biases)), errors.as_ref().map(of_errors)];
         let parts = lines.into_iter().flatten().map(Part::from).chain([states.into()]).collect();
         Outcome {
-            sigma_deg: is_found.then(|| degrees(last.level_sigma)),
-            pitch_deg: is_found.then(|| degrees(last.pitch)),
-            roll_deg: is_found.then(|| degrees(last.roll)),
+            sigma_deg: is_found.then(|| last.level_sigma.degrees()),
+            pitch_deg: is_found.then(|| last.pitch.degrees()),
+            roll_deg: is_found.then(|| last.roll.degrees()),
             seconds: self.seconds,
             assumed: self.assumed.clone(),
             ..Outcome::new("vertical", details, parts)
@@ -66,9 +67,9 @@ impl Finished for Replay {
 impl Replay {
     fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
         let (last, is_found) = (&self.last, self.refusal.is_none());
-        let [pitch, roll, turned] =
-            [last.pitch, last.roll, self.turned].map(|angle| positive_zero(degrees(angle), 5e-5));
-        let sigma = degrees(last.level_sigma);
+        let [pitch, roll, turned] = [last.pitch, last.roll, Radians(self.turned)]
+            .map(|angle| positive_zero(angle.degrees(), 5e-5));
+        let sigma = last.level_sigma.degrees();
         let level = is_found.then(|| format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
         let beyond = "five of the 1σ stated or assumed, which are not believed any more";
         Lines::default()
@@ -127,8 +128,8 @@ fn level(moments: &[Moment]) -> Figure {
 fn biases(moments: &[Moment]) -> Figure {
     let axes = ["forward", "right", "down"].into_iter().enumerate();
     let series = axes.flat_map(|(axis, name)| {
-        let bias = move |moment: &Moment| degrees_per_hour(moment.biases[axis]);
-        let sigma = move |moment: &Moment| degrees_per_hour(moment.bias_sigmas[axis]);
+        let bias = move |moment: &Moment| degrees_per_hour(moment.biases[axis].0);
+        let sigma = move |moment: &Moment| degrees_per_hour(moment.bias_sigmas[axis].0);
         let limits =
             move |moment: &Moment| Point::within(moment.time_s, bias(moment), sigma(moment));
         [

@@ -62,11 +62,11 @@ fn optimum(planned: &Planned) -> Lines {
 fn asked(request: &Request) -> Lines {
     let noise = &request.noise;
     let [n, b, k, r, q] = [
-        noise.angle_random_walk / DEGREE_PER_SQRT_HOUR,
-        noise.bias_instability / DEGREE_PER_HOUR,
-        noise.rate_random_walk / DEGREE_PER_HOUR * 60.0,
-        noise.rate_ramp / DEGREE_PER_HOUR * 3600.0,
-        noise.quantisation / ARCSECOND,
+        noise.angle_random_walk.0 / DEGREE_PER_SQRT_HOUR,
+        noise.bias_instability.degrees_per_hour(),
+        noise.rate_random_walk.0 / DEGREE_PER_HOUR * 60.0,
+        noise.rate_ramp.0 / DEGREE_PER_HOUR * 3600.0,
+        noise.quantisation.0 / ARCSECOND,
     ]
     .map(rounded);
     let wanted = match request.wanted {

@@ -2,7 +2,7 @@
 
 use orientation::planner::order::Order;
 use orientation::planner::{Plan, burov, for_time};
-use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
+use orientation::units::Seconds;
 
 use crate::output::plan;
 use crate::planning::{Planned, Request};
@@ -28,11 +28,11 @@ pub fn report(request: &Request, planned: &Planned) -> Report {
 
 /// Δω over the number of positions.
 fn autocompensation(request: &Request, seconds: f64) -> Figure {
-    let best = burov::best(&request.noise, seconds, request.rotation);
+    let best = burov::best(&request.noise, Seconds(seconds), Seconds(request.rotation));
     let most = best.map_or(20, |best| 3 * best.positions).min(300);
-    let of = |n| burov::rate_error(&request.noise, n, seconds, request.rotation);
-    let curve = (2..=most).filter_map(|n| Some((f64::from(n), of(n)? / DEGREE_PER_HOUR)));
-    let best = best.map(|best| (f64::from(best.positions), best.rate_error / DEGREE_PER_HOUR));
+    let of = |n| burov::rate_error(&request.noise, n, Seconds(seconds), Seconds(request.rotation));
+    let curve = (2..=most).filter_map(|n| Some((f64::from(n), of(n)?.degrees_per_hour())));
+    let best = best.map(|best| (f64::from(best.positions), best.rate_error.degrees_per_hour()));
     let series =
         [Series::new("rate error", Style::Line, curve), Series::new("best", Style::Points, best)];
     let title = format!("Burov's eq. (1) in {seconds:.0} s");
@@ -42,9 +42,10 @@ fn autocompensation(request: &Request, seconds: f64) -> Figure {
 /// σ of every order over its number of positions.
 fn orders(request: &Request, seconds: f64) -> Figure {
     let conditions = request.conditions();
-    let degrees = |plan: &Plan| plan.sigma(request.latitude) * DEGREES_PER_RADIAN;
+    let degrees = |plan: &Plan| plan.sigma(request.latitude).degrees();
     let series = Order::COMPARED.map(|order| {
-        let plans = (1..=MOST_PASSES).filter_map(|n| Plan::of(&conditions, order, n, seconds));
+        let plans =
+            (1..=MOST_PASSES).filter_map(|n| Plan::of(&conditions, order, n, Seconds(seconds)));
         let points = plans.map(|plan| (plan.positions() as f64, degrees(&plan)));
         Series::new(order.name(), Style::LineAndPoints, points)
     });
@@ -57,8 +58,8 @@ fn times(request: &Request, seconds: f64) -> Figure {
     let [low, high] = REACH;
     let time = |i| seconds * low * (high / low).powf(f64::from(i) / f64::from(TIMES));
     let curve = (0..=TIMES).map(time).filter_map(|time| {
-        let plan = for_time(&request.conditions(), time).ok()?;
-        Some((time, plan.sigma(request.latitude) * DEGREES_PER_RADIAN))
+        let plan = for_time(&request.conditions(), Seconds(time)).ok()?;
+        Some((time, plan.sigma(request.latitude).degrees()))
     });
     let series = [Series::new("optimum", Style::LineAndPoints, curve)];
     let title = "The best schedule over the time it may take";

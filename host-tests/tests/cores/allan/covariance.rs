@@ -4,24 +4,32 @@
 use orientation::noise::allan::covariance::{Law, Window, degrees_of_freedom};
 use orientation::noise::allan::{Point, variance};
 use orientation::noise::model::GyroNoise;
+use orientation::units::{
+    Radians, RadiansPerRootSecond, RadiansPerSecond, RateRamp, RateRandomWalk, Seconds,
+};
 use std::f64::consts::TAU;
 
 /// A noise of one law: Q, N, B, K or R, of 1.
 fn pure(law: usize) -> GyroNoise {
     let [q, n, b, k, r] = std::array::from_fn(|index| f64::from(u8::from(index == law)));
     GyroNoise {
-        quantisation: q,
-        angle_random_walk: n,
-        bias_instability: b,
-        rate_random_walk: k,
-        rate_ramp: r,
+        quantisation: Radians(q),
+        angle_random_walk: RadiansPerRootSecond(n),
+        bias_instability: RadiansPerSecond(b),
+        rate_random_walk: RateRandomWalk(k),
+        rate_ramp: RateRamp(r),
     }
 }
 
 /// A point of a record of `samples` at 1 Hz.
 fn point(samples: u32, span: u32, stride: u32) -> Point {
     let terms = u64::from((samples - 2 * span) / stride + 1);
-    Point { seconds: f64::from(span), variance: 0.0, stride: f64::from(stride), terms }
+    Point {
+        seconds: Seconds(f64::from(span)),
+        variance: 0.0,
+        stride: Seconds(f64::from(stride)),
+        terms,
+    }
 }
 
 /// NIST SP 1065, table 5 (overlapping Allan variance), `phases` = samples + 1.
@@ -80,13 +88,13 @@ fn of_terms(noise: &GyroNoise, starts: [f64; 2], spans: [f64; 2]) -> f64 {
 
 /// The double sum over all pairs of terms.
 fn exhaustive(noise: &GyroNoise, [one, other]: [&Point; 2]) -> f64 {
-    let ramp = |point: &Point| noise.rate_ramp * point.seconds * 0.5_f64.sqrt();
+    let ramp = |point: &Point| noise.rate_ramp.0 * point.seconds.0 * 0.5_f64.sqrt();
     let means = ramp(one) * ramp(other);
     let mut sum = 0.0;
     for i in 0..one.terms {
         for j in 0..other.terms {
-            let starts = [i as f64 * one.stride, j as f64 * other.stride];
-            let c = of_terms(noise, starts, [one.seconds, other.seconds]);
+            let starts = [i as f64 * one.stride.0, j as f64 * other.stride.0];
+            let c = of_terms(noise, starts, [one.seconds.0, other.seconds.0]);
             sum += c * c + 2.0 * means * c;
         }
     }
@@ -116,7 +124,8 @@ fn greatest_error(noise: &GyroNoise) -> f64 {
 
 #[test]
 fn thinned_lags_give_the_double_sum_within_one_per_cent() {
-    let mixed = GyroNoise { rate_ramp: 2e-3, rate_random_walk: 0.03, ..pure(1) };
+    let mixed =
+        GyroNoise { rate_ramp: RateRamp(2e-3), rate_random_walk: RateRandomWalk(0.03), ..pure(1) };
     for noise in [pure(0), pure(1), pure(2), pure(3), mixed] {
         let error = greatest_error(&noise);
         println!("{noise:?}: {error:.5}");

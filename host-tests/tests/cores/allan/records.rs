@@ -3,7 +3,7 @@
 use flate2::read::GzDecoder;
 use orientation::noise::allan::{Allan, Point};
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Seconds};
 use std::fs::File;
 use std::io::Read;
 
@@ -25,7 +25,7 @@ fn recording() -> Allan {
 
 #[test]
 fn an_hour_of_an_independent_simulator_gives_its_coefficients() {
-    let fit = NoiseFit::of(&recording(), 0.1).expect("an hour of noise");
+    let fit = NoiseFit::of(&recording(), Seconds(0.1)).expect("an hour of noise");
     println!("{fit:?}; χ² {:.1} of {}", fit.chi_square, fit.degrees);
     let found = fit.in_field_units().map(|(_, estimate)| estimate);
     for (estimate, truth) in found.into_iter().skip(1).zip(TRUTH) {
@@ -44,7 +44,7 @@ fn fit(samples: impl IntoIterator<Item = i32>) -> Result<NoiseFit, FitError> {
     for rate in samples {
         allan.push(AngularRate(rate));
     }
-    NoiseFit::of(&allan, 0.1)
+    NoiseFit::of(&allan, Seconds(0.1))
 }
 
 /// Noise of about ± `size`, from a linear congruence.
@@ -77,7 +77,7 @@ fn a_period_that_is_none_is_refused() {
     let mut allan = Allan::new();
     noise(1000, 100).for_each(|rate| allan.push(AngularRate(rate)));
     for seconds in [0.0, -0.1, f64::NAN, f64::INFINITY] {
-        assert_eq!(NoiseFit::of(&allan, seconds), Err(FitError::Period));
+        assert_eq!(NoiseFit::of(&allan, Seconds(seconds)), Err(FitError::Period));
     }
 }
 
@@ -85,13 +85,17 @@ fn a_period_that_is_none_is_refused() {
 fn points_that_are_no_variances_are_refused() {
     for variance in [0.0, f64::NAN, f64::INFINITY, -1.0] {
         let point = |m: u32| Point {
-            seconds: f64::from(m),
+            seconds: Seconds(f64::from(m)),
             variance,
-            stride: 1.0,
+            stride: Seconds(1.0),
             terms: u64::from(1001 - 2 * m),
         };
         let points: Vec<_> = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32].map(point).to_vec();
-        assert_eq!(NoiseFit::of_points(&points, 1.0), Err(FitError::NotNoise), "{variance}");
+        assert_eq!(
+            NoiseFit::of_points(&points, Seconds(1.0)),
+            Err(FitError::NotNoise),
+            "{variance}"
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::gyros::{Mix, RATE_HZ, record};
 use orientation::noise::fit::{Estimate, NoiseFit};
+use orientation::units::Seconds;
 use rayon::prelude::*;
 
 /// Records of each gyro.
@@ -50,7 +51,7 @@ fn statistics(estimates: &[Estimate], truth: f64) -> Statistics {
 fn fits(mix: Mix) -> Vec<[Estimate; 5]> {
     let fit = |seed| {
         let allan = record(mix, HOUR, seed);
-        field_units(&NoiseFit::of(&allan, 1.0 / RATE_HZ).expect("an hour of noise"))
+        field_units(&NoiseFit::of(&allan, Seconds(1.0 / RATE_HZ)).expect("an hour of noise"))
     };
     (1..=RECORDS).into_par_iter().map(fit).collect()
 }
@@ -172,9 +173,9 @@ fn one_slow_noise_is_seldom_taken_for_another() {
 fn white_noise_lies_on_its_line_within_its_own_confidence() {
     use orientation::noise::allan::covariance::degrees_of_freedom;
     let noise = orientation::noise::model::GyroNoise::from_field_units(0.02, 0.0, 0.0, 0.0);
-    let points: Vec<_> = record([0.0, 0.02, 0.0, 0.0, 0.0], HOUR, 3).points(0.1).collect();
-    for point in points.iter().filter(|point| point.seconds < 400.0) {
-        let known = noise.white_variance(point.seconds);
+    let points: Vec<_> = record([0.0, 0.02, 0.0, 0.0, 0.0], HOUR, 3).points(Seconds(0.1)).collect();
+    for point in points.iter().filter(|point| point.seconds.0 < 400.0) {
+        let known = noise.white_variance(point.seconds.0);
         let sigma = (2.0 / degrees_of_freedom(point, &noise, 0.1)).sqrt();
         let deviation = (point.variance / known - 1.0) / sigma;
         assert!(deviation.abs() < 3.5, "{point:?}: {deviation:.1} σ");

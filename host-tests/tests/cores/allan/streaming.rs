@@ -1,7 +1,7 @@
 //! The streaming estimator against an exhaustive one in wide integers, and against closed forms.
 
 use orientation::noise::allan::{Allan, Point};
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Seconds};
 use proptest::prelude::*;
 
 /// The grid that the estimator promises: samples in τ, and samples from term to term.
@@ -24,9 +24,9 @@ fn expected(samples: &[i32], seconds: f64) -> Vec<Point> {
         let (sum, terms) = exhaustive(samples, span, stride);
         let scale = 2.0 * (span * span * terms) as f64;
         Point {
-            seconds: span as f64 * seconds,
+            seconds: Seconds(span as f64 * seconds),
             variance: sum as f64 * 1e-18 / scale,
-            stride: stride as f64 * seconds,
+            stride: Seconds(stride as f64 * seconds),
             terms: terms as u64,
         }
     };
@@ -51,7 +51,7 @@ fn samples() -> impl Strategy<Value = Vec<i32>> {
 proptest! {
     #[test]
     fn the_stream_equals_the_exhaustive_sum_bit_for_bit(samples in samples()) {
-        let points: Vec<_> = streamed(&samples).points(0.1).collect();
+        let points: Vec<_> = streamed(&samples).points(Seconds(0.1)).collect();
         prop_assert_eq!(points, expected(&samples, 0.1));
     }
 
@@ -59,7 +59,7 @@ proptest! {
     fn long_swings_between_the_extremes_stay_exact(half in 1_usize..400, count in 1000_usize..6000) {
         let swing = |index: usize| if (index / half).is_multiple_of(2) { i32::MIN } else { i32::MAX };
         let samples: Vec<_> = (0..count).map(swing).collect();
-        let points: Vec<_> = streamed(&samples).points(1.0).collect();
+        let points: Vec<_> = streamed(&samples).points(Seconds(1.0)).collect();
         prop_assert_eq!(points, expected(&samples, 1.0));
     }
 
@@ -71,7 +71,7 @@ proptest! {
         let changes = samples.windows(2).map(|pair| pair[0].abs_diff(pair[1]));
         let step = changes.filter(|&change| change > 0).min();
         prop_assert_eq!(allan.is_constant(), step.is_none());
-        prop_assert_eq!(allan.resolution(), f64::from(step.unwrap_or(0)) * 1e-9);
+        prop_assert_eq!(allan.resolution().0, f64::from(step.unwrap_or(0)) * 1e-9);
     }
 }
 
@@ -85,8 +85,8 @@ fn a_ramp_gives_half_of_its_square_times_tau_squared() {
     // 5 nrad/s a sample; R²τ²/2 at 10 Hz.
     let samples: Vec<_> = (0..20_000).map(|index| 5 * index - 40_000).collect();
     let slope = 5e-9 / 0.1;
-    for point in streamed(&samples).points(0.1) {
-        let known = 0.5 * (slope * point.seconds).powi(2);
+    for point in streamed(&samples).points(Seconds(0.1)) {
+        let known = 0.5 * (slope * point.seconds.0).powi(2);
         assert!((point.variance / known - 1.0).abs() < 1e-12, "{point:?}, not {known}");
     }
 }
@@ -97,7 +97,7 @@ fn the_nist_set_of_a_thousand_numbers_gives_its_published_deviations() {
     let next = |n: &u64| Some(n * 16_807 % 2_147_483_647);
     let set = std::iter::successors(Some(1_234_567_890_u64), next).take(1000);
     let rates: Vec<_> = set.map(|n| i32::try_from(n).expect("below 2³¹")).collect();
-    let points: Vec<_> = streamed(&rates).points(1.0).collect();
+    let points: Vec<_> = streamed(&rates).points(Seconds(1.0)).collect();
     let deviation = points[0].variance.sqrt() * 1e9 / 2_147_483_647.0;
     assert!((deviation - 2.922_319e-1).abs() < 1e-7, "{deviation}");
 }

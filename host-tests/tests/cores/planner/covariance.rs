@@ -36,7 +36,7 @@ fn quadratic(columns: &[[f64; 3]], information: &[Vec<f64>], p: usize, q: usize)
 fn shared(noise: &GyroNoise, visits: &[Visit], a: &Visit, b: &Visit) -> f64 {
     let begin = visits[0].start;
     let middle = |visit: &Visit| visit.start - begin + 0.5 * visit.seconds;
-    let walk = noise.rate_random_walk.powi(2);
+    let walk = noise.rate_random_walk.0.powi(2);
     let same = a.start == b.start;
     let walked = if same {
         walk * (a.start - begin + a.seconds / 3.0)
@@ -44,13 +44,13 @@ fn shared(noise: &GyroNoise, visits: &[Visit], a: &Visit, b: &Visit) -> f64 {
         walk * middle(a).min(middle(b))
     };
     let from = |visit: &Visit| visit.start - begin;
-    let ramp = noise.rate_ramp.powi(2) * from(a) * from(b);
-    let white = if same { noise.angle_random_walk.powi(2) / a.seconds } else { 0.0 };
+    let ramp = noise.rate_ramp.0.powi(2) * from(a) * from(b);
+    let white = if same { noise.angle_random_walk.0.powi(2) / a.seconds } else { 0.0 };
     white + walked + ramp + flicker(noise, a, b, same)
 }
 
 fn flicker(noise: &GyroNoise, a: &Visit, b: &Visit, same: bool) -> f64 {
-    let power = noise.bias_instability.powi(2) / PI;
+    let power = noise.bias_instability.0.powi(2) / PI;
     let (variance, length) = (power * 4.0_f64.ln(), a.seconds);
     let mut correlation = length / 3.0;
     let mut sum = if same { 2.0 * variance * correlation / 3.0 / length } else { 0.0 };

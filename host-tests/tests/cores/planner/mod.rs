@@ -10,7 +10,7 @@ use orientation::planner::burov::{self, Autocompensation};
 use orientation::planner::order::Order;
 use orientation::planner::prediction::{self, Visit};
 use orientation::planner::{Conditions, Plan, PlanError, Rotation, for_sigma, for_time};
-use orientation::units::DEGREE_PER_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
 use serde_json::Value;
 
@@ -25,7 +25,7 @@ fn noise_of([n, b, k, r]: [f64; 4]) -> GyroNoise {
 }
 
 fn conditions(noise: GyroNoise, rotation: Rotation) -> Conditions {
-    Conditions { noise, rotation, shortest: 0.5, fewest: 8, orders: &Order::COMPARED }
+    Conditions { noise, rotation, shortest: Seconds(0.5), fewest: 8, orders: &Order::COMPARED }
 }
 
 #[test]
@@ -43,9 +43,10 @@ fn burovs_formula_gives_the_reference_positions_and_errors() {
             of("R_deg_h2"),
         )
         .with_quantisation(of("Q_arcsec"));
-        let best = burov::best(&noise, of("t_gc_s"), of("t_rot_s")).expect("there is time");
+        let best = burov::best(&noise, Seconds(of("t_gc_s")), Seconds(of("t_rot_s")))
+            .expect("there is time");
         assert_eq!(f64::from(best.positions), of("n_opt"));
-        let error = best.rate_error / DEGREE_PER_HOUR;
+        let error = best.rate_error.degrees_per_hour();
         let expected = of("rate_error_deg_h");
         assert!((error / expected - 1.0).abs() < 1e-6, "{error} against {expected}");
     }
@@ -54,30 +55,31 @@ fn burovs_formula_gives_the_reference_positions_and_errors() {
 #[test]
 fn the_papers_device_reaches_0_0676_degrees_times_the_secant_of_the_latitude() {
     let Autocompensation { positions, rate_error, .. } =
-        burov::best(&device(), 300.0, 2.0).expect("there is time");
+        burov::best(&device(), Seconds(300.0), Seconds(2.0)).expect("there is time");
     assert_eq!(positions, 11);
-    assert!((rate_error / DEGREE_PER_HOUR - 3.6505e-3).abs() < 5e-8);
+    assert!((rate_error.degrees_per_hour() - 3.6505e-3).abs() < 5e-8);
     for (n, expected) in [(10, 3.65150e-3), (12, 3.65291e-3)] {
-        let error = burov::rate_error(&device(), n, 300.0, 2.0).expect("there is time");
-        assert!((error / DEGREE_PER_HOUR - expected).abs() < 5e-9, "{n}");
+        let error =
+            burov::rate_error(&device(), n, Seconds(300.0), Seconds(2.0)).expect("there is time");
+        assert!((error.degrees_per_hour() - expected).abs() < 5e-9, "{n}");
     }
     let flicker = burov::flicker_floor(&GyroNoise::from_field_units(0.0, 0.007, 0.0, 0.0));
-    assert!((flicker / DEGREE_PER_HOUR - 4.650e-3).abs() < 5e-7);
-    let total = rate_error.hypot(flicker);
+    assert!((flicker.degrees_per_hour() - 4.650e-3).abs() < 5e-7);
+    let total = rate_error.0.hypot(flicker.0);
     assert!((total / DEGREE_PER_HOUR - 5.912e-3).abs() < 5e-7);
     let equator = Latitude::from_degrees(0.0).expect("it is one").horizontal_rate();
-    assert!(((3.0 * total / equator).to_degrees() - 0.0676).abs() < 5e-5);
+    assert!(((3.0 * total / equator.0).to_degrees() - 0.0676).abs() < 5e-5);
 }
 
 #[test]
 fn rotations_that_leave_no_time_have_no_error_and_no_noise_no_plan() {
-    assert_eq!(burov::rate_error(&device(), 152, 300.0, 2.0), None);
-    assert_eq!(burov::rate_error(&device(), 1, 300.0, 2.0), None);
-    assert_eq!(burov::best(&device(), 1.5, 2.0), None);
-    let rotation = Rotation::fixed(2.0);
-    assert_eq!(for_time(&conditions(device(), rotation), 5.0), Err(PlanError::TooShort));
+    assert_eq!(burov::rate_error(&device(), 152, Seconds(300.0), Seconds(2.0)), None);
+    assert_eq!(burov::rate_error(&device(), 1, Seconds(300.0), Seconds(2.0)), None);
+    assert_eq!(burov::best(&device(), Seconds(1.5), Seconds(2.0)), None);
+    let rotation = Rotation::fixed(Seconds(2.0));
+    assert_eq!(for_time(&conditions(device(), rotation), Seconds(5.0)), Err(PlanError::TooShort));
     let silent = conditions(GyroNoise::default(), rotation);
-    assert_eq!(for_time(&silent, 300.0), Err(PlanError::NoNoise));
+    assert_eq!(for_time(&silent, Seconds(300.0)), Err(PlanError::NoNoise));
 }
 
 proptest! {
@@ -87,13 +89,13 @@ proptest! {
         seconds in 30.0..2000.0_f64,
     ) {
         let noise = GyroNoise::from_field_units(n, 0.0, k, r);
-        let wanted = burov::best(&noise, seconds, rotation).expect("there is time").rate_error;
-        let found = burov::least_time(&noise, wanted, rotation).expect("it is within reach");
+        let wanted = burov::best(&noise, Seconds(seconds), Seconds(rotation)).expect("there is time").rate_error;
+        let found = burov::least_time(&noise, wanted, Seconds(rotation)).expect("it is within reach");
         prop_assert!(found.rate_error <= wanted);
-        prop_assert!(found.seconds <= seconds * (1.0 + 1e-9));
+        prop_assert!(found.seconds.0 <= seconds * (1.0 + 1e-9));
         // No shorter time does.
         for part in [0.999, 0.99, 0.95, 0.9, 0.8, 0.6, 0.4] {
-            let shorter = burov::best(&noise, part * found.seconds, rotation);
+            let shorter = burov::best(&noise, Seconds(part * found.seconds.0), Seconds(rotation));
             prop_assert!(shorter.is_none_or(|best| best.rate_error > wanted));
         }
     }
@@ -104,9 +106,9 @@ proptest! {
         seconds in 10.0..400.0_f64,
     ) {
         let noise = GyroNoise::from_field_units(n, 0.0, k, r).with_quantisation(q);
-        let of = |n| burov::rate_error(&noise, n, seconds, 1.0).unwrap_or(f64::INFINITY);
+        let of = |n| burov::rate_error(&noise, n, Seconds(seconds), Seconds(1.0)).map_or(f64::INFINITY, |error| error.0);
         let least = (2..410).map(of).fold(f64::INFINITY, f64::min);
-        prop_assert_eq!(burov::best(&noise, seconds, 1.0).expect("there is time").rate_error, least);
+        prop_assert_eq!(burov::best(&noise, Seconds(seconds), Seconds(1.0)).expect("there is time").rate_error.0, least);
     }
 
     #[test]
@@ -116,9 +118,9 @@ proptest! {
     ) {
         let noise = GyroNoise::from_field_units(n, b * n, k * n, r * n);
         let order = Order::COMPARED[order];
-        let rotation = Rotation { rest: 0.5, speed: 0.35, wraps: false };
+        let rotation = Rotation { rest: Seconds(0.5), speed: RadiansPerSecond(0.35), wraps: false };
         let plan =
-            Plan { order, passes, dwell, seconds: 0.0, rate_sigma: 0.0 };
+            Plan { order, passes, dwell: Seconds(dwell), seconds: Seconds(0.0), rate_sigma: RadiansPerSecond(0.0) };
         let visits: Vec<Visit> = plan.visits(&rotation).collect();
         let found = prediction::rate_sigma(&noise, dwell, visits.iter().copied()).expect("it is determined");
         let expected = rate_sigma(&noise, &visits);
@@ -132,27 +134,30 @@ const GYROS: [[f64; 4]; 2] = [[0.001, 0.007, 0.0, 0.127], [0.06, 1.0, 0.5, 2.0]]
 #[test]
 fn the_planned_schedule_is_better_than_one_pass_of_four_positions() {
     for (gyro, gain) in GYROS.into_iter().zip([1.1, 1.5]) {
-        let conditions = conditions(noise_of(gyro), Rotation::fixed(2.0));
+        let conditions = conditions(noise_of(gyro), Rotation::fixed(Seconds(2.0)));
         let four = Conditions { fewest: 4, ..conditions };
-        let one = Plan::of(&four, Order::Quadrature, 1, 300.0).expect("it fits");
-        let planned = for_time(&conditions, 300.0).expect("there is time");
-        assert!(one.rate_sigma > gain * planned.rate_sigma, "{gyro:?}: {planned:?}");
-        assert!(planned.positions() <= 64 && planned.dwell > 1.0);
+        let one = Plan::of(&four, Order::Quadrature, 1, Seconds(300.0)).expect("it fits");
+        let planned = for_time(&conditions, Seconds(300.0)).expect("there is time");
+        assert!(one.rate_sigma.0 > gain * planned.rate_sigma.0, "{gyro:?}: {planned:?}");
+        assert!(planned.positions() <= 64 && planned.dwell.0 > 1.0);
     }
 }
 
 #[test]
 fn no_order_and_no_number_of_passes_beats_the_plan() {
     for gyro in GYROS.into_iter().chain([[0.02, 0.0, 0.0, 0.0], [0.02, 0.3, 2.0, 0.0]]) {
-        for rotation in [Rotation::fixed(2.0), Rotation { rest: 0.7, speed: 0.35, wraps: false }] {
+        for rotation in [
+            Rotation::fixed(Seconds(2.0)),
+            Rotation { rest: Seconds(0.7), speed: RadiansPerSecond(0.35), wraps: false },
+        ] {
             let conditions = conditions(noise_of(gyro), rotation);
-            let planned = for_time(&conditions, 300.0).expect("there is time");
+            let planned = for_time(&conditions, Seconds(300.0)).expect("there is time");
             for order in Order::COMPARED {
-                let tried =
-                    (1..=21).filter_map(|passes| Plan::of(&conditions, order, passes, 300.0));
-                let least = tried.map(|plan| plan.rate_sigma).fold(f64::INFINITY, f64::min);
+                let tried = (1..=21)
+                    .filter_map(|passes| Plan::of(&conditions, order, passes, Seconds(300.0)));
+                let least = tried.map(|plan| plan.rate_sigma.0).fold(f64::INFINITY, f64::min);
                 // The passes are tried in steps: half a per cent may be left.
-                assert!(least > 0.995 * planned.rate_sigma, "{gyro:?} {order:?}: {planned:?}");
+                assert!(least > 0.995 * planned.rate_sigma.0, "{gyro:?} {order:?}: {planned:?}");
             }
         }
     }
@@ -161,14 +166,17 @@ fn no_order_and_no_number_of_passes_beats_the_plan() {
 #[test]
 fn the_time_for_a_wanted_accuracy_is_the_least_or_said_to_be_out_of_reach() {
     for gyro in GYROS {
-        let conditions = conditions(noise_of(gyro), Rotation::fixed(2.0));
-        let wanted = 1.3 * for_time(&conditions, 300.0).expect("there is time").rate_sigma;
-        let found = for_sigma(&conditions, wanted, 3600.0).expect("it is within reach");
-        assert!(found.rate_sigma <= wanted && found.seconds < 300.0, "{found:?}");
-        let shorter = for_time(&conditions, 0.97 * found.seconds).expect("there is time");
-        assert!(shorter.rate_sigma > wanted, "{found:?} {shorter:?}");
-        let unreachable = for_sigma(&conditions, 0.1 * wanted, 300.0);
-        assert!(matches!(unreachable, Err(PlanError::OutOfReach(least)) if least > 0.1 * wanted));
+        let conditions = conditions(noise_of(gyro), Rotation::fixed(Seconds(2.0)));
+        let wanted =
+            1.3 * for_time(&conditions, Seconds(300.0)).expect("there is time").rate_sigma.0;
+        let found = for_sigma(&conditions, RadiansPerSecond(wanted), Seconds(3600.0))
+            .expect("it is within reach");
+        assert!(found.rate_sigma.0 <= wanted && found.seconds.0 < 300.0, "{found:?}");
+        let shorter =
+            for_time(&conditions, Seconds(0.97 * found.seconds.0)).expect("there is time");
+        assert!(shorter.rate_sigma.0 > wanted, "{found:?} {shorter:?}");
+        let unreachable = for_sigma(&conditions, RadiansPerSecond(0.1 * wanted), Seconds(300.0));
+        assert!(matches!(unreachable, Err(PlanError::OutOfReach(least)) if least.0 > 0.1 * wanted));
     }
 }
 
@@ -180,9 +188,9 @@ fn positions_stay_within_one_turn_and_passes_visit_every_direction_alike() {
             let (mut cosines, mut sines) = (0.0, 0.0);
             for index in 0..count {
                 let angle = order.angle(index, passes);
-                assert!((0.0..core::f64::consts::TAU).contains(&angle));
-                cosines += angle.cos();
-                sines += angle.sin();
+                assert!((0.0..core::f64::consts::TAU).contains(&angle.0));
+                cosines += angle.0.cos();
+                sines += angle.0.sin();
             }
             assert!(cosines.abs() < 1e-9 && sines.abs() < 1e-9, "{order:?}");
         }

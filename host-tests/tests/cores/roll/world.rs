@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use hal_mock::noise::Generator;
 use orientation::roll::{Condition, Setting, Spin, State};
 use orientation::signal::SpinSample;
-use orientation::units::{AngleIncrement, Instant, SpinForce};
+use orientation::units::{AngleIncrement, Instant, RadiansPerRootSecond, Seconds, SpinForce};
 
 /// Sample period, s.
 const PERIOD: f64 = 1e-4;
@@ -62,9 +62,9 @@ impl Known {
 /// Follows the body; samples that `spoil` refuses are lost.
 pub fn follow(body: &Body, mut spoil: impl FnMut(usize, &mut SpinSample) -> bool) -> Vec<Known> {
     let mut spin = Spin::new(&Setting {
-        angle_random_walk: 1e-6,
+        angle_random_walk: RadiansPerRootSecond(1e-6),
         scale_sigma: body.scale_sigma,
-        ..Setting::new(PERIOD)
+        ..Setting::new(Seconds(PERIOD))
     });
     let mut noise = Generator::new(body.seed);
     let mut carried = 0.0;
@@ -89,10 +89,10 @@ pub fn follow(body: &Body, mut spoil: impl FnMut(usize, &mut SpinSample) -> bool
         known.push(Known {
             time,
             error: off - TAU * (off / TAU).round(),
-            sigma: spin.sigma(),
+            sigma: spin.sigma().map(|sigma| sigma.0),
             scale: [(1.0 + scale) / (1.0 + body.scale) - 1.0, scale_sigma],
             state: spin.state(),
-            lift: spin.lift(),
+            lift: spin.lift().map(|lift| lift.0),
         });
     }
     known

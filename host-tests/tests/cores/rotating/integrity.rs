@@ -10,6 +10,9 @@ use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Harmonic, Ripple, Unevenness};
 use orientation::alignment::rotating::session::Procedure;
 use orientation::noise::model::{GyroNoise, StatedNoise};
+use orientation::units::{
+    GSensitivity, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
+};
 
 use crate::support::campaign::{Extent, campaigns};
 
@@ -74,9 +77,9 @@ fn case(seed: u64, colour: Colour, is_by_encoder: bool) -> Case {
     };
     let mut setting = flat(latitude_deg, n);
     setting.site.noise = StatedNoise::Whole(GyroNoise::from_field_units(n, b, k, r));
-    setting.site.g_sensitivity = kappa.map(per_g);
-    setting.site.g_sensitivity_sigma = per_g(kappa_sigma);
-    setting.site.accelerometer_bias_sigma = 0.1;
+    setting.site.g_sensitivity = kappa.map(|part| GSensitivity(per_g(part)));
+    setting.site.g_sensitivity_sigma = GSensitivity(per_g(kappa_sigma));
+    setting.site.accelerometer_bias_sigma = MetresPerSecondSquared(0.1);
     Case {
         instruments: instruments.leaning(tilt_deg, uphill_deg),
         unevenness,
@@ -143,9 +146,10 @@ fn a_session_that_turns_the_platform_itself_states_a_true_sigma() {
         let mut case = case(seed + 20_000, Colour::White, true);
         let speed = case.segments[1].rate_rad_s.max(0.4);
         // A session judges the tilt at rest by an accelerometer that is not calibrated.
-        case.setting.site.allowed_tilt = 0.1;
+        case.setting.site.allowed_tilt = Radians(0.1);
         let turns = 3 + (seed % 6) as u32;
-        let procedure = Procedure { turns, ..Procedure::new(&[speed], 0.02) };
+        let procedure =
+            Procedure { turns, ..Procedure::new(&[RadiansPerSecond(speed)], Seconds(0.02)) };
         let driven = driven(&case, procedure, seed, |_, _| {});
         assert!(driven.commands.iter().all(|rate| rate.abs() <= 1.26 * speed));
         let conclusion = driven.session.conclusion().expect("the session has ended");

@@ -10,6 +10,7 @@ use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{Ripple, Unevenness};
 use orientation::alignment::rotating::session::Procedure;
+use orientation::units::{RadiansPerSecond, Seconds};
 
 use super::rig::{Case, driven, molecular, over, rms};
 
@@ -59,7 +60,8 @@ fn case(seed: u64, draw: Draw) -> Case {
     };
     let mut setting = molecular(latitude_deg, draw.n);
     // Ten time constants of the high-pass, which passes a part of every change of speed.
-    setting.sensor.settle_seconds = if draw.high_pass_hz > 0.0 { 60.0 } else { 5.0 };
+    setting.sensor.settle_seconds =
+        if draw.high_pass_hz > 0.0 { Seconds(60.0) } else { Seconds(5.0) };
     let first = Ripple { relative: 0.002, phase_rad: between(0.0, TAU) };
     Case {
         instruments: instruments.leaning(tilt_deg, between(0.0, 360.0)),
@@ -75,7 +77,8 @@ fn case(seed: u64, draw: Draw) -> Case {
 fn campaign(draw: Draw) -> (Vec<f64>, Vec<f64>) {
     over(0..60, |seed| {
         let case = case(seed, draw);
-        let procedure = Procedure { turns: 8, ..Procedure::new(&SPEEDS, 0.02) };
+        let procedure =
+            Procedure { turns: 8, ..Procedure::new(&SPEEDS.map(RadiansPerSecond), Seconds(0.02)) };
         let driven = driven(&case, procedure, seed, |_, _| {});
         let run = case.error(driven.session.conclusion().expect("it has ended"));
         let (error, sigma) = run.expect("a healthy sensor");

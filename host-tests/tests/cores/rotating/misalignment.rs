@@ -4,6 +4,7 @@ use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::turntable::{Segment, Turntable};
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES, nearest};
 use orientation::alignment::rotating::turn_accumulator::{Mode, TurnAccumulator};
+use orientation::units::{RadiansPerSecond, Seconds};
 use proptest::prelude::*;
 
 use super::outcome::{SPEED, healthy, turns_s};
@@ -40,12 +41,14 @@ fn sine_and_lag_are_the_simulations_and_their_sigma_is_honest() {
             let misalignment = misalignment.expect("it was modulated");
             let sine = -case.instruments.gyro.axis_elevation_rad.sin();
             let (in_phase, quadrature) = pole(sine, lag_s, 0.83 * SPEED);
-            assert!((misalignment.frequency / SPEED / 0.83 - 1.0).abs() < 0.03);
-            assert!((misalignment.angle() - case.instruments.gyro.axis_elevation_rad).abs() < 1e-4);
+            assert!((misalignment.frequency.0 / SPEED / 0.83 - 1.0).abs() < 0.03);
+            assert!(
+                (misalignment.angle().0 - case.instruments.gyro.axis_elevation_rad).abs() < 1e-4
+            );
             let quadrature = quadrature / (0.83 * SPEED);
             [
                 (misalignment.sine - in_phase) / misalignment.sine_sigma,
-                (misalignment.quadrature - quadrature) / misalignment.quadrature_sigma,
+                (misalignment.quadrature.0 - quadrature) / misalignment.quadrature_sigma.0,
             ]
         });
         for part in [0, 1] {
@@ -62,7 +65,7 @@ fn the_response_at_the_turn_is_that_of_one_pole() {
         let learnt = 0.7;
         let (in_phase, lagging) = pole(sine, lag, learnt);
         let misalignment = stored(in_phase, lagging / learnt, learnt);
-        assert!((misalignment.lag() - lag).abs() < 1e-6);
+        assert!((misalignment.lag().0 - lag).abs() < 1e-6);
         for frequency in [0.1, -0.8, 0.8, 2.0] {
             let (re, im) = pole(sine, lag, frequency);
             let response = misalignment.response(frequency);
@@ -75,10 +78,10 @@ fn stored(sine: f64, quadrature: f64, frequency: f64) -> AxisMisalignment {
     let (sine_sigma, quadrature_sigma, date) = (1e-9, 1e-9, 1_700_000_000);
     AxisMisalignment {
         sine,
-        quadrature,
+        quadrature: Seconds(quadrature),
         sine_sigma,
-        quadrature_sigma,
-        frequency,
+        quadrature_sigma: Seconds(quadrature_sigma),
+        frequency: RadiansPerSecond(frequency),
         date,
         temperature: 21.5,
     }
@@ -114,10 +117,10 @@ proptest! {
     ) {
         let misalignment = AxisMisalignment {
             sine,
-            quadrature,
+            quadrature: Seconds(quadrature),
             sine_sigma: sigmas.0,
-            quadrature_sigma: sigmas.1,
-            frequency,
+            quadrature_sigma: Seconds(sigmas.1),
+            frequency: RadiansPerSecond(frequency),
             date,
             temperature,
         };

@@ -10,6 +10,7 @@ use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
 use hal_mock::turntable::{TurningSample, TurntableConfiguration};
 use orientation::alignment::refusal::Refusal;
+use orientation::units::MetresPerSecondSquared;
 
 use super::rig::{Case, both_senses, flat, over};
 
@@ -67,7 +68,7 @@ pub fn healthy(seed: u64, n: f64) -> Case {
     let instruments = instruments.leaning(between(0.05, 0.5), between(0.0, 360.0));
     let first = Ripple { relative: 0.002, phase_rad: between(0.0, TAU) };
     let mut setting = flat(LATITUDE_DEG, n);
-    setting.site.accelerometer_bias_sigma = 0.05;
+    setting.site.accelerometer_bias_sigma = MetresPerSecondSquared(0.05);
     Case {
         instruments,
         unevenness: Unevenness { first, ..Unevenness::default() },

@@ -4,6 +4,7 @@ use hal_mock::turntable::{EncoderSlip, Segment, TurntableConfiguration};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating;
 use orientation::alignment::rotating::session::Procedure;
+use orientation::units::{RadiansPerSecond, Seconds};
 
 use super::outcome::{
     SPEED, TURNS, assert_never_wrong, assert_refused, assert_right, between_s, changed_at,
@@ -72,14 +73,15 @@ fn a_platform_that_stands_for_a_while_loses_turns_and_no_truth() {
 /// Runs a session whose motor stops obeying at a time, s.
 fn stalled_at(time_s: f64) -> Result<f64, Refusal> {
     let case = healthy(1, 0.002);
-    let procedure = Procedure { turns: 5, ..Procedure::new(&[SPEED], 0.02) };
+    let procedure =
+        Procedure { turns: 5, ..Procedure::new(&[RadiansPerSecond(SPEED)], Seconds(0.02)) };
     let driven = driven(&case, procedure, 1, |sample, rate| {
         if sample.time_s > time_s {
             *rate = 0.0;
         }
     });
     assert!(driven.seconds < 1000.0, "it gave up after {} s", driven.seconds);
-    driven.session.conclusion().expect("the session has ended").verdict.map(|good| good.sigma)
+    driven.session.conclusion().expect("the session has ended").verdict.map(|good| good.sigma.0)
 }
 
 #[test]
@@ -127,7 +129,8 @@ fn a_slip_of_the_encoder_is_refused_wherever_it_happens() {
 fn a_slip_while_a_session_turns_the_platform_is_refused() {
     for time_s in [1.0, 30.0, 103.0, 140.0] {
         let case = healthy(2, 0.002);
-        let procedure = Procedure { turns: 5, ..Procedure::new(&[SPEED], 0.02) };
+        let procedure =
+            Procedure { turns: 5, ..Procedure::new(&[RadiansPerSecond(SPEED)], Seconds(0.02)) };
         let driven = driven(&case, procedure, 2, |sample, _| {
             if sample.time_s > time_s {
                 sample.stage_rad += 0.5_f64.to_radians();

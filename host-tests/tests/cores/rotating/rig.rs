@@ -16,7 +16,7 @@ use orientation::alignment::{Input, Method, Request};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
+use orientation::units::{Angle, AngularRate, Instant, Radians, Seconds, SpecificForce};
 
 /// A platform as the simulation knows it, and what the solver is reported of it.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ fn replayed(
     is_by_encoder: bool,
     samples: impl Iterator<Item = TurningSample>,
 ) -> Conclusion {
-    let procedure = Procedure::recorded(period);
+    let procedure = Procedure::recorded(Seconds(period));
     let mut session = Session::new(*setting, procedure).expect("a recording has no speeds");
     for turning in samples {
         let sample = sample(&turning);
@@ -79,7 +79,7 @@ pub fn both_senses(speed: f64, turns: f64) -> Vec<Segment> {
 pub fn flat(latitude_deg: f64, n: f64) -> Setting {
     let mut site = Site::at(Latitude::from_degrees(latitude_deg).expect("a latitude"));
     site.noise = StatedNoise::Whole(GyroNoise::from_field_units(n, 0.0, 0.0, 0.0));
-    site.required_sigma = PI;
+    site.required_sigma = Radians(PI);
     Setting::new(site, Sensor::GYRO)
 }
 
@@ -124,8 +124,8 @@ impl Case {
     /// Error of a conclusion's azimuth, and its σ, rad.
     pub fn error(&self, conclusion: &Conclusion) -> Result<(f64, f64), Refusal> {
         let azimuth = conclusion.verdict?;
-        let away = azimuth.angle - self.instruments.azimuth_deg.to_radians();
-        Ok((away.sin().atan2(away.cos()), azimuth.sigma))
+        let away = azimuth.angle.0 - self.instruments.azimuth_deg.to_radians();
+        Ok((away.sin().atan2(away.cos()), azimuth.sigma.0))
     }
 }
 
@@ -173,8 +173,8 @@ pub fn driven(
         fault(&mut turning, &mut obeyed);
         match session.feed(Input::Sample(&sample(&turning))) {
             Request::Turn(rate) => {
-                wanted = rate;
-                commands.push(rate);
+                wanted = rate.0;
+                commands.push(wanted);
             }
             Request::Done => return Driven { session, seconds: time_s, commands },
             _ => {}

@@ -4,6 +4,7 @@ use hal_mock::disturbance::Disturbance;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::turntable::TurntableConfiguration;
 use orientation::earth::Latitude;
+use orientation::units::Radians;
 
 use super::outcome::{
     assert_never_wrong, assert_refused, assert_right, clockwise_s, counter_s, edited, plain, with,
@@ -158,7 +159,7 @@ fn a_sensor_that_stands_badly_is_to_be_aligned_mechanically() {
 fn a_platform_too_steep_is_refused() {
     assert_refused(&["TiltTooGreat"], |seed, mut case| {
         case.instruments = case.instruments.leaning(16.0, 100.0);
-        case.setting.site.allowed_tilt = 10.0_f64.to_radians();
+        case.setting.site.allowed_tilt = Radians::from_degrees(10.0);
         plain(seed, &case)
     });
 }

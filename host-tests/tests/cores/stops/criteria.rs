@@ -5,6 +5,9 @@ use hal_mock::vehicle::{Drive, Event, Leg, Stop};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stops;
 use orientation::signal::rest::Sensors;
+use orientation::units::{
+    ForceNoise, MetresPerSecondSquared, RadiansPerRootSecond, RadiansPerSecond, Seconds,
+};
 
 use super::assert_near;
 use super::drives::two;
@@ -32,25 +35,29 @@ pub fn drive(seconds: f64) -> Leg {
 fn limits_follow_the_noise_and_the_root_of_the_time() {
     // So noisy that shaking and gravity's tolerance do not matter.
     let noisy = |factor: f64| Sensors {
-        angle_random_walk: 1.0 * factor,
-        force_noise: 1e4 * factor,
+        angle_random_walk: RadiansPerRootSecond(1.0 * factor),
+        force_noise: ForceNoise(1e4 * factor),
         ..Sensors::default()
     };
     let [short, long, twice] = [(1.0, 10.0), (1.0, 40.0), (2.0, 10.0)]
-        .map(|(factor, seconds)| noisy(factor).limits(seconds));
+        .map(|(factor, seconds)| noisy(factor).limits(Seconds(seconds)));
     for (short, long, twice) in
-        [(short.rate, long.rate, twice.rate), (short.force, long.force, twice.force)]
+        [(short.rate.0, long.rate.0, twice.rate.0), (short.force.0, long.force.0, twice.force.0)]
     {
         assert_near(short / long, 2.0, 1e-3);
         assert_near(twice / short, 2.0, 1e-3);
     }
     // Four σ of a mean: N/√T of a gyro, n/√(2T) of an accelerometer with one-sided density n.
-    assert_near(short.rate, 4.0 / 10f64.sqrt(), 1e-3);
-    assert_near(short.force, 4e4 / 20f64.sqrt(), 1.0);
+    assert_near(short.rate.0, 4.0 / 10f64.sqrt(), 1e-3);
+    assert_near(short.force.0, 4e4 / 20f64.sqrt(), 1.0);
     // Biases do not average out.
-    let biased = Sensors { bias_sigma: 1e-2, force_bias_sigma: 100.0, ..Sensors::default() };
-    assert_near(biased.limits(1e6).rate, 4e-2, 1e-6);
-    assert_near(biased.limits(1e6).force, 400.0, 0.1);
+    let biased = Sensors {
+        bias_sigma: RadiansPerSecond(1e-2),
+        force_bias_sigma: MetresPerSecondSquared(100.0),
+        ..Sensors::default()
+    };
+    assert_near(biased.limits(Seconds(1e6)).rate.0, 4e-2, 1e-6);
+    assert_near(biased.limits(Seconds(1e6)).force.0, 400.0, 0.1);
 }
 
 #[test]
@@ -62,8 +69,8 @@ fn stops_begin_and_end_within_seconds_of_the_truth() {
         let truth: Vec<_> = day.scenario.configuration().stops().collect();
         assert_eq!(outcome.stops.len(), truth.len(), "seed {seed}");
         for (stop, [from, to]) in outcome.stops.iter().zip(truth) {
-            late = [late[0].min(stop.from - from), late[1].max(stop.from - from)];
-            early = [early[0].min(to - stop.to), early[1].max(to - stop.to)];
+            late = [late[0].min(stop.from.0 - from), late[1].max(stop.from.0 - from)];
+            early = [early[0].min(to - stop.to.0), early[1].max(to - stop.to.0)];
         }
     }
     println!("stops begin {late:?} s after the truth and end {early:?} s before it");
@@ -94,7 +101,7 @@ fn steady_driving_is_a_stop_by_kryt2_alone_but_not_by_both() {
                 return;
             }
             last = time;
-            by_force += u32::from(criteria.force.abs() <= limits.force);
+            by_force += u32::from(criteria.force.0.abs() <= limits.force.0);
             by_both += u32::from(criteria.is_rest(&limits));
         },
     );

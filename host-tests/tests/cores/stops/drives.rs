@@ -3,6 +3,7 @@
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Stop};
 use orientation::noise::model::{GyroNoise, StatedNoise};
+use orientation::units::{MetresPerSecondSquared, Radians};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
@@ -37,7 +38,7 @@ impl Figures {
 
     /// RMS of the error at the end over the least σ of any estimator.
     fn over_limit(&self) -> f64 {
-        self.rms(|outcome| outcome.errors()[1] / outcome.found().limit)
+        self.rms(|outcome| outcome.errors()[1] / outcome.found().limit.0)
     }
 
     /// Errors of the biases over their σ.
@@ -45,14 +46,14 @@ impl Figures {
         let of = |outcome: &Outcome| {
             let found = outcome.found();
             [0, 1, 2].map(|axis: usize| {
-                (found.biases[axis] - outcome.biases[axis]) / found.bias_sigmas[axis]
+                (found.biases[axis].0 - outcome.biases[axis]) / found.bias_sigmas[axis].0
             })
         };
         self.outcomes.iter().flat_map(of).collect()
     }
 
     fn sigma(&self) -> f64 {
-        self.rms(|outcome| outcome.found().azimuth.sigma.to_degrees())
+        self.rms(|outcome| outcome.found().azimuth.sigma.degrees())
     }
 
     fn print(&self, name: &str) {
@@ -155,7 +156,7 @@ fn five_stops_are_calibrated_too(extent: Extent) {
     figures.assert_calibrated("five stops", extent, 0.2);
     // Of ten parts the fit takes up azimuth, level and biases.
     let residuals = figures.outcomes.iter().flat_map(|outcome| &outcome.residuals).flatten();
-    let ratios = residuals.flat_map(|left| left.tilt.map(|part| part / left.sigma));
+    let ratios = residuals.flat_map(|left| left.tilt.map(|part| part.0 / left.sigma.0));
     let ratio = rms(ratios);
     assert!((0.4..0.95).contains(&ratio), "{ratio}");
 }
@@ -180,7 +181,7 @@ fn a_force_that_is_tilted_at_the_last_stop_alone_is_the_residual_of_that_stop_al
             let wanted = if stop == 4 { wanted } else { [0.0; 2] };
             println!("{seed} {stop} {left:?}, {wanted:?}");
             for (part, wanted) in left.tilt.into_iter().zip(wanted) {
-                assert!((part - wanted).abs() < 0.1 * tilt, "{seed} {stop}: {part}, {wanted}");
+                assert!((part.0 - wanted).abs() < 0.1 * tilt, "{seed} {stop}: {part:?}, {wanted}");
             }
         }
     }
@@ -200,7 +201,7 @@ fn stops_beyond_the_eighth_are_not_taken_for_the_eighth() {
     // Eight days are too few for their RMS.
     assert!(figures.greatest() <= 3.8, "{} σ", figures.greatest());
     assert!(figures.outcomes.iter().all(|outcome| outcome.stops.len() == 8));
-    assert!(figures.outcomes.iter().all(|outcome| outcome.stops[7].seconds() < 40.0));
+    assert!(figures.outcomes.iter().all(|outcome| outcome.stops[7].seconds().0 < 40.0));
 }
 
 fn stated_stops_do_as_well_as_found_ones(extent: Extent) {
@@ -222,7 +223,7 @@ fn accelerometer_biases_are_covered_by_their_sigma(extent: Extent) {
     Figures::of(extent.of(60), |seed| {
         let mut day = quiet(two(seed));
         day.scenario.vehicle.accelerometer.bias_sigma_m_s2 = 0.01;
-        day.setting.site.accelerometer_bias_sigma = 0.01;
+        day.setting.site.accelerometer_bias_sigma = MetresPerSecondSquared(0.01);
         day
     })
     .assert_calibrated("accelerometer biases of 1 mg", extent, 0.2);
@@ -289,7 +290,7 @@ fn a_latitude_known_badly_is_covered_by_its_sigma() {
         let error =
             0.5 * [-1.6, -1.0, -0.7, -0.4, -0.1, 0.1, 0.4, 0.7, 1.0, 1.6][(seed % 10) as usize];
         day.setting.site.latitude = known(52.0 + error, 0.0, None).site.latitude;
-        day.setting.site.latitude_sigma = 0.5f64.to_radians();
+        day.setting.site.latitude_sigma = Radians::from_degrees(0.5f64);
         day
     })
     .assert_covered("latitude ± 0.5°");

@@ -48,8 +48,8 @@ fn levelling_undoes_pitch_and_roll() {
     let up = expected[2].map(|part: f64| -part);
     assert_matrix(&levelled(&up), &expected, 1e-15);
     let [pitch, roll] = pitch_and_roll(&up);
-    assert_near(pitch, 0.21, 1e-15);
-    assert_near(roll, -0.37, 1e-15);
+    assert_near(pitch.0, 0.21, 1e-15);
+    assert_near(roll.0, -0.37, 1e-15);
 }
 
 fn vector(largest: f64) -> impl Strategy<Value = Vector> {

@@ -70,7 +70,7 @@ fn figures(sways: bool, count: u64) -> ([f64; 2], usize) {
             let (azimuth, outcome) = averaged(&day);
             let found = outcome.conclusion.found.as_ref().expect("something to solve");
             let [_, end] = outcome.azimuths;
-            let ours = apart(found.azimuth.angle, end).to_degrees();
+            let ours = apart(found.azimuth.angle.0, end).to_degrees();
             (ours, apart(azimuth, end).to_degrees(), outcome.conclusion.verdict.is_err())
         })
         .collect();
@@ -133,7 +133,7 @@ fn off_axis(seed: u64, is_off: bool) -> Day {
 fn sensors_off_the_axis_of_the_sway_are_aligned_nearly_as_well_as_on_it() {
     let sigma = |seed, is_off| {
         let verdict = off_axis(seed, is_off).run().conclusion.verdict;
-        verdict.map_or(f64::INFINITY, |azimuth| azimuth.sigma)
+        verdict.map_or(f64::INFINITY, |azimuth| azimuth.sigma.0)
     };
     let mut worse: Vec<f64> =
         (0..60).into_par_iter().map(|seed| sigma(seed, true) / sigma(seed, false)).collect();

@@ -15,7 +15,9 @@ use orientation::alignment::{Input, Method};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce};
+use orientation::units::{
+    AngleIncrement, ForceNoise, Instant, Metres, RadiansPerSecond, Seconds, SpecificForce,
+};
 
 /// Stream of the errors of position fixes.
 const FIXES: u64 = 7001;
@@ -74,14 +76,17 @@ impl Outcome {
     /// Errors of the azimuth at the start and at the end, rad.
     pub fn errors(&self) -> [f64; 2] {
         let found = self.found();
-        [apart(found.start.angle, self.azimuths[0]), apart(found.azimuth.angle, self.azimuths[1])]
+        [
+            apart(found.start.angle.0, self.azimuths[0]),
+            apart(found.azimuth.angle.0, self.azimuths[1]),
+        ]
     }
 
     /// Errors of the azimuth at the start and at the end over their σ.
     pub fn ratios(&self) -> [f64; 2] {
         let found = self.found();
         let [start, end] = self.errors();
-        [start / found.start.sigma, end / found.azimuth.sigma]
+        [start / found.start.sigma.0, end / found.azimuth.sigma.0]
     }
 }
 
@@ -99,8 +104,8 @@ pub fn known(latitude_deg: f64, n_deg_sqrt_h: f64, bias_deg_h: Option<f64>) -> S
         ..Site::at(latitude)
     };
     Setting {
-        bias_sigma: bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR),
-        force_noise: 0.002_828_427,
+        bias_sigma: bias_deg_h.map(RadiansPerSecond::from_degrees_per_hour),
+        force_noise: ForceNoise(0.002_828_427),
         ..Setting::new(site)
     }
 }
@@ -145,12 +150,12 @@ impl Day {
         let stops: Vec<[f64; 2]> = configuration.stops().collect();
         let rests = match self.rests {
             Kind::Found => Rests::Found,
-            Kind::Stated => Rests::Stated(stops.iter().copied().collect()),
-            Kind::At(stops) => Rests::Stated(stops.iter().copied().collect()),
+            Kind::Stated => Rests::Stated(stops.iter().map(|stop| stop.map(Seconds)).collect()),
+            Kind::At(stops) => Rests::Stated(stops.iter().map(|stop| stop.map(Seconds)).collect()),
             Kind::Whole => Rests::Whole,
         };
         let period = 1.0 / configuration.rate_hz;
-        let procedure = Procedure::recorded(rests, period);
+        let procedure = Procedure::recorded(rests, Seconds(period));
         let mut session = Session::new(self.setting, procedure).expect("a procedure");
         let mut vehicle = Vehicle::new(&configuration, self.seed);
         let mut fixes = Generator::stream(self.seed, FIXES);
@@ -169,7 +174,7 @@ impl Day {
             look(&session, sample.time_s);
             if stops.get(next).is_some_and(|stop| sample.time_s + 0.5 * period >= stop[1]) {
                 if let Some(there) = self.fix(next, vehicle.truth().displacement_m, &mut fixes) {
-                    session.feed(Input::Displaced(&there));
+                    session.feed(Input::Displaced(&there.map(Metres)));
                 }
                 next += 1;
             }

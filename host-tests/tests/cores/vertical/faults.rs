@@ -85,7 +85,7 @@ fn a_slow_turn_is_no_rest_once_biases_are_known() {
         assert!(known.iter().filter(|known| known.time > 103.0).all(|k| !k.report.is_at_rest));
         let last = known.last().expect("samples");
         let azimuth = last.report.azimuth.expect("an azimuth");
-        assert!(last.azimuth.expect("an azimuth").abs() < 3.0 * azimuth.sigma);
+        assert!(last.azimuth.expect("an azimuth").abs() < 3.0 * azimuth.sigma.0);
     }
 }
 
@@ -165,7 +165,7 @@ fn samples_that_are_missing_are_covered() {
             assert!(worst(&known, after..120.0) < 3.0, "{} σ", worst(&known, after..120.0));
             for known in known.iter().filter(|known| known.time > after) {
                 let Some(azimuth) = known.report.azimuth else { continue };
-                assert!(known.azimuth.is_some_and(|off| off.abs() < 3.0 * azimuth.sigma));
+                assert!(known.azimuth.is_some_and(|off| off.abs() < 3.0 * azimuth.sigma.0));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! What the filter may not be too sure of: its level, the biases and the noise that were stated.
 
 use orientation::attitude::{Gyro, Setting};
-use orientation::units::{AngleIncrement, DEGREE};
+use orientation::units::{AngleIncrement, DEGREE, RadiansPerSecond};
 
 use super::world::{Body, Known, coarse, keep, precise, shaken};
 
@@ -90,7 +90,8 @@ fn a_body_that_lies_still_is_at_rest_though_its_gyros_are_five_times_as_noisy_as
 /// The coarse body with a tenth of its biases stated.
 fn understated(seconds: f64) -> Body {
     let body = coarse(seconds);
-    let gyros = body.setting.gyros.map(|gyro| Gyro { bias_sigma: 0.04 * DEGREE, ..gyro });
+    let gyros =
+        body.setting.gyros.map(|gyro| Gyro { bias_sigma: RadiansPerSecond(0.04 * DEGREE), ..gyro });
     Body { setting: Setting { gyros, ..body.setting }, ..body }
 }
 
@@ -103,7 +104,7 @@ fn biases_ten_times_as_large_as_stated_are_reported_and_learnt_at_rest() {
     let last = known.last().expect("samples").report;
     for (found, bias) in last.biases.iter().zip(body.biases) {
         // The Earth turns the body by 0.004°/s at most.
-        assert!((found - bias).abs() < 0.02 * DEGREE, "{found} {bias}");
+        assert!((found.0 - bias).abs() < 0.02 * DEGREE, "{found:?} {bias}");
     }
 }
 

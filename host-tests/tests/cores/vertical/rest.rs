@@ -55,7 +55,7 @@ fn a_level_gyro_whose_bias_moved_on_the_way_hides_the_rest_for_twenty_seconds_at
             (300.0, precise(150.0)),
         ] {
             let body = Body { attitude: drive::<1>, acceleration: pulling, seed, ..body };
-            let more = moved * DEGREE_PER_HOUR * body.setting.sample_seconds;
+            let more = moved * DEGREE_PER_HOUR * body.setting.sample_seconds.0;
             let mut carried = 0.0;
             let known = keep(&body, |time, sample| {
                 if time > 90.0 {
@@ -108,7 +108,7 @@ fn a_turn_that_was_taken_for_a_bias_at_first_is_found_out_as_the_body_stands() {
             assert!(from < 120.0, "turn {place}, seed {seed}: {from} s");
             let [.., down] = known.last().expect("samples").report.biases;
             // The Earth turns the body by 0.004°/s at most.
-            assert!((down - body.biases[2]).abs() < 0.01 * DEGREE, "turn {place}: {down} rad/s");
+            assert!((down.0 - body.biases[2]).abs() < 0.01 * DEGREE, "turn {place}: {down:?}");
         }
     }
 }
@@ -121,7 +121,7 @@ fn an_even_turn_after_a_rest_of_seconds_is_a_turn() {
         assert!(!rests_within(&known, 6.0..124.0), "{seed}");
         let last = known.last().expect("samples");
         let sigma = last.report.azimuth.expect("an azimuth").sigma;
-        assert!(last.azimuth.expect("an azimuth").abs() < 3.0 * sigma, "{seed}");
-        assert!(sigma < 10.0 * DEGREE && rests_from(&known) < 130.0, "{seed}: {sigma} rad");
+        assert!(last.azimuth.expect("an azimuth").abs() < 3.0 * sigma.0, "{seed}");
+        assert!(sigma.0 < 10.0 * DEGREE && rests_from(&known) < 130.0, "{seed}: {sigma:?}");
     }
 }

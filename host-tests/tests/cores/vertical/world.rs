@@ -7,7 +7,8 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;
 use orientation::units::{
-    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce, TURN, wrapped,
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds,
+    SpecificForce, TURN, wrapped,
 };
 
 type Vector = [f64; 3];
@@ -34,9 +35,9 @@ pub struct Body {
 /// A coarse IMU of which the data sheet is right, at 55°, at rest: N 0.4 °/√h, B 10 °/h, K 10 °/h/√h, scale 0.2 %.
 pub fn coarse(seconds: f64) -> Body {
     let noise = GyroNoise::from_field_units(0.4, 10.0, 10.0, 0.0);
-    let gyro = Gyro { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 2e-3 };
+    let gyro = Gyro { noise, bias_sigma: RadiansPerSecond(0.5 * DEGREE), scale_sigma: 2e-3 };
     Body {
-        setting: Setting { gyros: [gyro; 3], ..Setting::coarse(latitude(55.0), 0.01) },
+        setting: Setting { gyros: [gyro; 3], ..Setting::coarse(latitude(55.0), Seconds(0.01)) },
         latitude: 55.0,
         seconds,
         biases: [0.4 * DEGREE, -0.3 * DEGREE, 0.2 * DEGREE],
@@ -52,9 +53,13 @@ pub fn coarse(seconds: f64) -> Body {
 /// Three fibre-optic gyros: N 0.001 °/√h, B 0.007 °/h, switched on to 0.05 °/h.
 pub fn precise(seconds: f64) -> Body {
     let noise = GyroNoise::from_field_units(0.001, 0.007, 0.0, 0.0);
-    let gyro = Gyro { noise, bias_sigma: 0.05 * DEGREE_PER_HOUR, scale_sigma: 5e-5 };
+    let gyro = Gyro {
+        noise,
+        bias_sigma: RadiansPerSecond::from_degrees_per_hour(0.05),
+        scale_sigma: 5e-5,
+    };
     Body {
-        setting: Setting::precise(latitude(55.0), 0.01, gyro),
+        setting: Setting::precise(latitude(55.0), Seconds(0.01), gyro),
         biases: [0.03, -0.05, 0.02].map(|bias| bias * DEGREE_PER_HOUR),
         force_biases: [0.0; 3],
         ..coarse(seconds)
@@ -88,7 +93,7 @@ pub struct Known {
 
 impl Known {
     pub fn in_sigmas(&self) -> f64 {
-        self.tilt / self.report.level_sigma
+        self.tilt / self.report.level_sigma.0
     }
 }
 
@@ -99,8 +104,8 @@ pub fn keep(body: &Body, mut spoil: impl FnMut(f64, &mut InertialSample) -> bool
     let period = body.setting.sample_seconds;
     let mut known = Vec::new();
     let mut is_handed = false;
-    for place in 1..=(body.seconds / period).round() as u32 {
-        let time = f64::from(place) * period;
+    for place in 1..=(body.seconds / period.0).round() as u32 {
+        let time = f64::from(place) * period.0;
         let mut sample = sensors.sample(time);
         if spoil(time, &mut sample) {
             keeper.push(&sample);
@@ -108,9 +113,9 @@ pub fn keep(body: &Body, mut spoil: impl FnMut(f64, &mut InertialSample) -> bool
         if !is_handed && body.handed.is_some_and(|handed| time >= handed) {
             is_handed = true;
             let [azimuth, ..] = (body.attitude)(time).map(wrapped);
-            keeper.hand_over(Azimuth { angle: azimuth, sigma: 1e-3 });
+            keeper.hand_over(Azimuth { angle: Radians(azimuth), sigma: Radians(1e-3) });
         }
-        if place % (0.1 / period).round() as u32 == 0 {
+        if place % (0.1 / period.0).round() as u32 == 0 {
             known.push(judged(body, time, keeper.report()));
         }
     }
@@ -125,7 +130,7 @@ fn judged(body: &Body, time: f64, report: Report) -> Known {
     let across = length(&cross(&shown, &down));
     let along: f64 = shown.iter().zip(down).map(|(one, other)| one * other).sum();
     let azimuth = report.azimuth.map(|azimuth| {
-        let off = azimuth.angle - angles[0];
+        let off = azimuth.angle.0 - angles[0];
         off - TURN * (off / TURN).round()
     });
     Known { time, tilt: across.atan2(along), azimuth, report }
@@ -151,19 +156,19 @@ impl<'a> Sensors<'a> {
         let now = matrix((body.attitude)(time));
         let turned = rotation(&times(&transposed(&self.before), &now));
         self.before = now;
-        let middle = transposed(&matrix((body.attitude)(time - 0.5 * period)));
-        let earth = applied(&middle, &[place.horizontal_rate(), 0.0, -place.vertical_rate()]);
-        let [north, east, down] = (body.acceleration)(time - 0.5 * period);
-        let force = applied(&middle, &[north, east, down - place.gravity()]);
+        let middle = transposed(&matrix((body.attitude)(time - 0.5 * period.0)));
+        let earth = applied(&middle, &[place.horizontal_rate().0, 0.0, -place.vertical_rate().0]);
+        let [north, east, down] = (body.acceleration)(time - 0.5 * period.0);
+        let force = applied(&middle, &[north, east, down - place.gravity().0]);
         let turned = core::array::from_fn(|axis| {
             let walk = body.setting.gyros[axis].noise.angle_random_walk;
-            let walk = body.noise * walk * period.sqrt();
+            let walk = body.noise * walk.0 * period.0.sqrt();
             let rate = earth[axis] + body.biases[axis];
-            let angle = turned[axis] + rate * period + walk * self.noise.gaussian();
+            let angle = turned[axis] + rate * period.0 + walk * self.noise.gaussian();
             AngleIncrement::from_rad(angle, &mut self.carried[axis])
         });
         let force = core::array::from_fn(|axis| {
-            let noise = 1e-3 / period.sqrt() * self.noise.gaussian();
+            let noise = 1e-3 / period.0.sqrt() * self.noise.gaussian();
             SpecificForce::from_m_per_s2(force[axis] + body.force_biases[axis] + noise)
         });
         InertialSample { time: Instant::from_seconds(time), turned, force: Some(force) }

@@ -44,8 +44,7 @@ fn check(found: &FramesRun) {
     let last = found.run.kept.last().expect("it was kept");
     let [pitch, roll] = last.level_error().map(f64::to_degrees);
     // Where it stands gravity shows the level; on the road coarse gyros have it within what they say.
-    let bound =
-        if last.report.is_at_rest { 2.0 } else { 4.5 * last.report.level_sigma.to_degrees() };
+    let bound = if last.report.is_at_rest { 2.0 } else { 4.5 * last.report.level_sigma.degrees() };
     assert!(pitch.abs().max(roll.abs()) < bound, "{pitch}°, {roll}°, {bound}°");
 }
 

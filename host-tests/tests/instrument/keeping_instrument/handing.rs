@@ -6,7 +6,9 @@ use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
 use orientation::navigation::{self, Input, Motion, Navigator, Output, Policy, Realignment};
 use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, DEGREE, Instant, SpecificForce};
+use orientation::units::{
+    AngleIncrement, DEGREE, Instant, Radians, RadiansPerSecond, Seconds, SpecificForce,
+};
 
 use super::{drive, vehicle};
 use firmware::event::Event;
@@ -24,12 +26,12 @@ fn sample(index: u64, turn: f64) -> InertialSample {
 }
 
 fn gyro() -> Gyro {
-    Gyro { scale_sigma: 1e-4, bias_sigma: 1e-6, ..Gyro::default() }
+    Gyro { scale_sigma: 1e-4, bias_sigma: RadiansPerSecond(1e-6), ..Gyro::default() }
 }
 
 fn policy() -> Policy {
     Policy {
-        hold_seconds: f64::INFINITY,
+        hold_seconds: Seconds(f64::INFINITY),
         realignment: Realignment::Never,
         knows_stops: true,
         skips_known: false,
@@ -44,7 +46,7 @@ fn moved(index: u64, turn: f64) -> Input {
 
 fn keeper() -> Keeper {
     let latitude = Latitude::from_degrees(45.0).expect("a latitude");
-    Keeper::new(&Setting::precise(latitude, 0.01, gyro()))
+    Keeper::new(&Setting::precise(latitude, Seconds(0.01), gyro()))
 }
 
 /// The azimuth, °, after so many samples behind the session's last one, all of which waited in the queue
@@ -53,14 +55,15 @@ fn azimuth_after(later: u64) -> f64 {
     let mut keeper = keeper();
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
     let mut navigator = Navigator::new(&mut keeper, &policy(), None);
-    let azimuth = Azimuth { angle: 100.0 * DEGREE, sigma: 0.01 * DEGREE };
+    let azimuth =
+        Azimuth { angle: Radians::from_degrees(100.0), sigma: Radians::from_degrees(0.01) };
     navigator.take(&Input::Found(Instant(505 * 10_000), azimuth), &mut |_| ());
     for index in 501..=505 + later {
         navigator.take(&moved(index, TURN), &mut |_| ());
     }
     navigator.take(&Input::Settled, &mut |_| ());
     let azimuth = keeper.report().azimuth.expect("it was handed over");
-    azimuth.angle.to_degrees()
+    azimuth.angle.degrees()
 }
 
 #[test]
@@ -87,7 +90,10 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
             350 => Some(130.0),
             _ => None,
         };
-        let azimuth = outside.map(|it| Azimuth { angle: it * DEGREE, sigma: 0.01 * DEGREE });
+        let azimuth = outside.map(|it| Azimuth {
+            angle: Radians::from_degrees(it),
+            sigma: Radians::from_degrees(0.01),
+        });
         navigator.take(&Input::Aided(None, azimuth), &mut outlet);
         navigator.take(&moved(index, 0.0), &mut outlet);
         navigator.take(&Input::Settled, &mut outlet);
@@ -101,7 +107,7 @@ fn the_azimuth_goes_on_from_the_sessions_last_sample_without_a_gap() {
         let found = drive(&vehicle(seed, Hold::of(5.0)));
         let concluded = found.run.events.iter().find_map(|(at, event)| match event {
             Event::Alignment(Progress::Concluded(solution)) => {
-                Some((*at, solution.azimuth.angle.to_degrees()))
+                Some((*at, solution.azimuth.angle.degrees()))
             }
             _ => None,
         });

@@ -72,8 +72,8 @@ fn the_truth_of_an_alignment_at_a_later_stop_is_that_of_the_stop() {
     let found = run.conclusion().and_then(|conclusion| conclusion.verdict.ok());
     let azimuth = found.expect("it is aligned anew");
     let first_deg = scenario.base.azimuth_deg;
-    let error = |truth_deg: f64| azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
-    let sigma_deg = azimuth.sigma.to_degrees();
+    let error = |truth_deg: f64| azimuth_error(azimuth.angle.degrees(), truth_deg).abs();
+    let sigma_deg = azimuth.sigma.degrees();
     assert!(error(first_deg) > 100.0 * sigma_deg, "the vehicle did not turn");
     assert!(error(run.azimuth_deg(first_deg)) < 4.0 * sigma_deg);
 }

@@ -153,7 +153,7 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
             .and_then(|bytes: [u8; Remembered::BYTES]| Remembered::from_bytes(&bytes));
         let truth = before.run.kept.last().expect("it was kept").report;
         if let (Some(kept), Some(azimuth)) = (kept, truth.azimuth) {
-            assert!((kept.azimuth - azimuth.angle).abs() < 1e-3, "{words} words");
+            assert!((kept.azimuth.0 - azimuth.angle.0).abs() < 1e-3, "{words} words");
         }
         if words < 2 {
             let reported = reported(&before.run);

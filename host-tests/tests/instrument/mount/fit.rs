@@ -10,7 +10,10 @@ use orientation::alignment::stepwise::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::dwell::Dwell;
-use orientation::units::{Angle, DEGREE, DEGREE_PER_HOUR};
+use orientation::units::{
+    Angle, DEGREE, DEGREE_PER_HOUR, GSensitivity, MetresPerSecondSquared, Radians,
+    RadiansPerSecond, Seconds,
+};
 
 use super::oracle::{self, X, Y, Z, about, apply, dot, times};
 
@@ -51,16 +54,19 @@ fn dwells(world: &World) -> Vec<Dwell> {
     let frames = [[0.0, 90.0], [0.0, -90.0], [-90.0, 0.0], [90.0, 0.0]];
     let dwell = |(index, [outer, inner]): (usize, &[f64; 2])| {
         let [outer, inner] = [outer, inner].map(|angle| angle.to_radians());
-        let [_, inner_axis, axis] = oracle::axes(&world.mount, FrameAngles { outer, inner });
+        let [_, inner_axis, axis] = oracle::axes(
+            &world.mount,
+            FrameAngles { outer: Radians(outer), inner: Radians(inner) },
+        );
         let g = world.kappa[0] * dot(axis, force) + world.kappa[1] * dot(inner_axis, force);
         Dwell {
             stage: Angle::from_rad(axis[1].atan2(axis[0])),
             elevation: -axis[2].asin() as f32,
-            middle: 12.0 * index as f64,
-            seconds: 10.0,
-            rate: dot(axis, earth) + g * DEGREE_PER_HOUR,
+            middle: Seconds(12.0 * index as f64),
+            seconds: Seconds(10.0),
+            rate: RadiansPerSecond(dot(axis, earth) + g * DEGREE_PER_HOUR),
             taper: 1.0,
-            force: Some(force.map(|f| (f + world.bias) * gravity)),
+            force: Some(force.map(|f| MetresPerSecondSquared((f + world.bias) * gravity.0))),
             ..Dwell::default()
         }
     };
@@ -71,12 +77,16 @@ fn dwells(world: &World) -> Vec<Dwell> {
 fn found(setting: &Setting, world: &World, dwells: &[Dwell]) -> [f64; 2] {
     let conclusion = Conclusion::of(setting, dwells, Criterion::MaximumLikelihood);
     let azimuth = conclusion.verdict.expect("nothing is wrong");
-    let error = azimuth.angle.to_degrees() - world.azimuth_deg;
-    [(error + 180.0).rem_euclid(360.0) - 180.0, azimuth.sigma.to_degrees()]
+    let error = azimuth.angle.degrees() - world.azimuth_deg;
+    [(error + 180.0).rem_euclid(360.0) - 180.0, azimuth.sigma.degrees()]
 }
 
 fn skewed() -> TwoFrame {
-    TwoFrame { frames: 12.0 * MINUTE, gyro: -10.0 * MINUTE, ..TwoFrame::default() }
+    TwoFrame {
+        frames: Radians(12.0 * MINUTE),
+        gyro: Radians(-10.0 * MINUTE),
+        ..TwoFrame::default()
+    }
 }
 
 #[test]
@@ -97,7 +107,7 @@ fn a_skewed_mount_on_a_tilted_base_gives_the_exact_azimuth() {
 #[test]
 fn a_minute_of_elevation_left_out_turns_the_azimuth_by_its_tangent_of_the_latitude() {
     // The axis leans by 1′ to the inner axis' end: up when it points to the right, down to the left.
-    let mount = TwoFrame { gyro: MINUTE, ..TwoFrame::default() };
+    let mount = TwoFrame { gyro: Radians(MINUTE), ..TwoFrame::default() };
     let world = World { mount, azimuth_deg: 0.0, ..World::default() };
     let mut blind = dwells(&world);
     let [error, _] = found(&setting(), &world, &blind);
@@ -115,7 +125,7 @@ fn a_minute_of_elevation_left_out_turns_the_azimuth_by_its_tangent_of_the_latitu
 fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
     let kappa = [3.0, -2.0];
     let mut reported = setting();
-    reported.site.g_sensitivity = kappa.map(|k| k * DEGREE_PER_HOUR);
+    reported.site.g_sensitivity = kappa.map(GSensitivity::from_degrees_per_hour);
     for azimuth_deg in [10.0, 100.0, 260.0] {
         let world = World { azimuth_deg, pitch_deg: 2.0, roll_deg: 5.0, kappa, ..World::default() };
         let [error, _] = found(&reported, &world, &dwells(&world));
@@ -129,7 +139,7 @@ fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
     assert!((error - expected).abs() < 1e-4, "{error}° is not {expected}°");
     // So its uncertainty costs that much on a level base already.
     let mut unsure = setting();
-    unsure.site.g_sensitivity_sigma = 0.01 * DEGREE_PER_HOUR;
+    unsure.site.g_sensitivity_sigma = GSensitivity::from_degrees_per_hour(0.01);
     let world = World::default();
     let [_, sigma] = found(&unsure, &world, &dwells(&world));
     let [_, alone] = found(&setting(), &world, &dwells(&world));
@@ -142,7 +152,7 @@ fn a_bias_of_the_accelerometer_on_the_base_is_tilt_and_stands_in_sigma() {
     let world = World { azimuth_deg: 40.0, bias: 1e-3, ..World::default() };
     let gravity = setting().site.latitude.gravity();
     let mut reported = setting();
-    reported.site.accelerometer_bias_sigma = 1e-3 * gravity;
+    reported.site.accelerometer_bias_sigma = MetresPerSecondSquared(1e-3 * gravity.0);
     let [error, sigma] = found(&reported, &world, &dwells(&world));
     let expected = 1e-3 * LATITUDE_DEG.to_radians().tan().abs().to_degrees();
     assert!((sigma / expected - 1.0).abs() < 0.01, "σ {sigma}°, not {expected}°");
@@ -157,7 +167,7 @@ fn a_base_that_moves_once_is_noticed_and_frames_that_turn_are_not() {
         Conclusion::of(&setting(), dwells, Criterion::MaximumLikelihood).disturbances
     };
     assert!(conclude(&dwells).iter().all(Option::is_none));
-    dwells[5].force = dwells[5].force.map(|[x, y, z]| [x + 0.02, y, z]);
+    dwells[5].force = dwells[5].force.map(|[x, y, z]| [MetresPerSecondSquared(x.0 + 0.02), y, z]);
     let disturbances = conclude(&dwells);
     for (index, why) in disturbances.iter().enumerate() {
         assert_eq!(matches!(why, Some(Disturbance::Moved(_))), index == 5, "{disturbances:?}");

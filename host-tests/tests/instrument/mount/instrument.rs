@@ -8,12 +8,12 @@ use hal_mock::plant::StageFault;
 use host::campaign::statistics::rms;
 use host::instrument::kept::KeptPlan;
 use host::instrument::{FramesRun, Trial};
-use host::output::{azimuth_error, degrees};
+use host::output::azimuth_error;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
-use orientation::units::DEGREE;
+use orientation::units::{DEGREE, Radians};
 use rayon::prelude::*;
 use simulated::fault::Injection;
 use simulated::mount::FramesScenario;
@@ -38,12 +38,12 @@ fn drawn(seed: u64) -> FramesScenario {
         ..Scenario::default()
     };
     let calibrated = TwoFrame {
-        azimuth: within(0.2 * DEGREE),
-        pitch: within(0.2 * DEGREE),
-        frames: within(0.2 * DEGREE),
-        gyro: within(0.2 * DEGREE),
-        outer_zero: within(0.2 * DEGREE),
-        inner_zero: within(0.2 * DEGREE),
+        azimuth: Radians(within(0.2 * DEGREE)),
+        pitch: Radians(within(0.2 * DEGREE)),
+        frames: Radians(within(0.2 * DEGREE)),
+        gyro: Radians(within(0.2 * DEGREE)),
+        outer_zero: Radians(within(0.2 * DEGREE)),
+        inner_zero: Radians(within(0.2 * DEGREE)),
     };
     let start_deg = Frames { outer: within(90.0), inner: within(90.0) };
     FramesScenario { base, calibrated, start_deg, ..FramesScenario::default() }
@@ -68,8 +68,8 @@ fn healthy(scenario: &FramesScenario) -> FramesRun {
 /// Error and σ, °, or why there is none.
 fn found(scenario: &FramesScenario, run: &FramesRun) -> Result<[f64; 2], Refusal> {
     let azimuth = run.run.conclusion().expect("every run concludes").verdict?;
-    let error = azimuth_error(degrees(azimuth.angle), scenario.base.azimuth_deg);
-    Ok([error, degrees(azimuth.sigma)])
+    let error = azimuth_error(azimuth.angle.degrees(), scenario.base.azimuth_deg);
+    Ok([error, azimuth.sigma.degrees()])
 }
 
 fn reported(run: &FramesRun) -> Vec<String> {
@@ -110,7 +110,7 @@ fn errors_are_those_that_sigma_says_and_the_gyro_ends_vertical(extent: Extent) {
 #[test]
 fn a_calibration_that_the_board_does_not_know_turns_its_azimuth() {
     // The axis leans by 0.2°: at 70° and facing north that turns the azimuth by tan 70° of it.
-    let calibrated = TwoFrame { gyro: 0.2 * DEGREE, ..TwoFrame::default() };
+    let calibrated = TwoFrame { gyro: Radians::from_degrees(0.2), ..TwoFrame::default() };
     let base = Scenario { latitude_deg: 70.0, azimuth_deg: 0.0, ..drawn(3).base };
     let scenario = FramesScenario { base, calibrated, ..FramesScenario::default() };
     let [error, sigma] = found(&scenario, &healthy(&scenario)).expect("it is healthy");
@@ -192,7 +192,7 @@ fn a_frame_that_stays_blocked_is_refused_by_its_name() {
 fn an_encoder_that_slips_is_refused_by_the_frame_that_disagrees_with_it() {
     for (seed, by_deg) in [(1, 0.5), (2, -0.5), (3, 0.15)] {
         let slip = StageFault::Slip { at: MIDDLE, by_rad: by_deg * DEGREE };
-        let disagrees = |trouble: Trouble| matches!(trouble, Trouble::Disagrees(apart) if (apart - by_deg).abs() < 0.06);
+        let disagrees = |trouble: Trouble| matches!(trouble, Trouble::Disagrees(apart) if (apart.0 - by_deg).abs() < 0.06);
         assert_refused(&short(seed), &of_inner(slip), Device::InnerFrame, disagrees);
         assert_refused(&short(seed), &of_outer(slip), Device::OuterFrame, disagrees);
     }
@@ -299,7 +299,7 @@ fn the_log_tells_both_frames_and_the_storage_in_order() {
 fn a_seed_gives_one_run_and_another_seed_another() {
     let azimuth = |seed| {
         let verdict = healthy(&short(seed)).run.conclusion().and_then(|c| c.verdict.ok());
-        verdict.expect("a healthy run").angle.to_bits()
+        verdict.expect("a healthy run").angle.0.to_bits()
     };
     assert_eq!(azimuth(5), azimuth(5));
     assert_ne!(azimuth(5), azimuth(6));

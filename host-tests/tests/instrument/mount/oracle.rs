@@ -46,17 +46,17 @@ pub const Z: [f64; 3] = [0.0, 0.0, 1.0];
 /// The axes are built where they lie with both frames at zero, then each frame turns what it carries
 /// about its own axis: not the products that the code under test forms.
 pub fn axes(mount: &TwoFrame, shown: FrameAngles) -> [[f64; 3]; 3] {
-    let case = times(&about(Z, mount.azimuth), &about(Y, mount.pitch));
+    let case = times(&about(Z, mount.azimuth.0), &about(Y, mount.pitch.0));
     let outer = apply(&case, X);
-    let inner_at_zero = apply(&times(&case, &about(Z, mount.frames)), Y);
+    let inner_at_zero = apply(&times(&case, &about(Z, mount.frames.0)), Y);
     // Perpendicular to the inner axis and, at zero, to the outer frame's forward direction; then
     // leaning towards the inner axis.
     let perpendicular = apply(&case, Z);
     let leaning: [f64; 3] = core::array::from_fn(|i| {
-        mount.gyro.cos() * perpendicular[i] + mount.gyro.sin() * inner_at_zero[i]
+        mount.gyro.0.cos() * perpendicular[i] + mount.gyro.0.sin() * inner_at_zero[i]
     });
-    let by_outer = about(outer, shown.outer - mount.outer_zero);
-    let by_inner = about(inner_at_zero, shown.inner - mount.inner_zero);
+    let by_outer = about(outer, shown.outer.0 - mount.outer_zero.0);
+    let by_inner = about(inner_at_zero, shown.inner.0 - mount.inner_zero.0);
     let sensitive = apply(&by_outer, apply(&by_inner, leaning));
     [outer, apply(&by_outer, inner_at_zero), sensitive]
 }

@@ -10,6 +10,7 @@ use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::tmc5160::Oscillator;
 use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
+use orientation::units::Radians;
 use proptest::prelude::*;
 
 use super::kinematics::{calibration, frames};
@@ -46,13 +47,13 @@ fn gimbal(mount: &TwoFrame, angles: FrameAngles, kappa: [f64; 3]) -> GimbalConfi
             },
             ..PlantConfiguration::default()
         },
-        outer: frame(angles.outer, mount.outer_zero),
-        inner: frame(angles.inner, mount.inner_zero),
+        outer: frame(angles.outer.0, mount.outer_zero.0),
+        inner: frame(angles.inner.0, mount.inner_zero.0),
         misalignment: Misalignment {
-            azimuth_rad: mount.azimuth,
-            pitch_rad: mount.pitch,
-            frames_rad: mount.frames,
-            gyro_rad: mount.gyro,
+            azimuth_rad: mount.azimuth.0,
+            pitch_rad: mount.pitch.0,
+            frames_rad: mount.frames.0,
+            gyro_rad: mount.gyro.0,
         },
         third_g_sensitivity_deg_h_g: kappa[2],
     }
@@ -78,9 +79,9 @@ proptest! {
         let expected = dot(sensitive, base()[0]);
         prop_assert!((rate - expected).abs() < 1e-17, "{rate} is not {expected}");
         let shown = plant.outer.shaft_turns(at(1.0)) * core::f64::consts::TAU;
-        prop_assert!((shown - angles.outer).abs() < 1e-12);
+        prop_assert!((shown - angles.outer.0).abs() < 1e-12);
         let shown = plant.inner.shaft_turns(at(1.0)) * core::f64::consts::TAU;
-        prop_assert!((shown - angles.inner).abs() < 1e-12);
+        prop_assert!((shown - angles.inner.0).abs() < 1e-12);
     }
 
     #[test]
@@ -113,18 +114,18 @@ fn normalised(a: [f64; 3]) -> [f64; 3] {
 
 #[test]
 fn a_turning_frame_turns_the_gyro_about_its_own_axis() {
-    let mount = TwoFrame { frames: 0.01, gyro: -0.02, ..TwoFrame::default() };
+    let mount = TwoFrame { frames: Radians(0.01), gyro: Radians(-0.02), ..TwoFrame::default() };
     let (outer, inner) = (-0.4, 0.7);
-    let start = FrameAngles { outer, inner };
+    let start = FrameAngles { outer: Radians(outer), inner: Radians(inner) };
     let rate = 0.2;
     for is_inner in [false, true] {
         let mut plant = Gimbal::new(&gimbal(&mount, start, [0.0; 3]), 1);
         let side = if is_inner { &mut plant.inner } else { &mut plant.outer };
         side.drive.drive(at(1.0), 0.0, rate * PER_RAD);
         let now = if is_inner {
-            FrameAngles { inner: inner + 2.0 * rate, ..start }
+            FrameAngles { inner: Radians(inner + 2.0 * rate), ..start }
         } else {
-            FrameAngles { outer: outer + 2.0 * rate, ..start }
+            FrameAngles { outer: Radians(outer + 2.0 * rate), ..start }
         };
         let [outer_axis, inner_axis, sensitive] = oracle::axes(&mount, now);
         let axis = if is_inner { inner_axis } else { outer_axis };
@@ -140,7 +141,7 @@ fn the_accelerometer_sits_on_the_base_whatever_the_frames_do() {
     let mount = TwoFrame::default();
     let gravity = hal_mock::earth::normal_gravity_m_s2(60.0_f64.to_radians());
     for (outer, inner) in [(0.0, 0.0), (1.0, -1.2), (-1.5, 0.3)] {
-        let angles = FrameAngles { outer, inner };
+        let angles = FrameAngles { outer: Radians(outer), inner: Radians(inner) };
         let felt = Gimbal::new(&gimbal(&mount, angles, [0.0; 3]), 1).force_g(at(1.0));
         for (felt, expected) in felt.into_iter().zip(base()[1]) {
             assert!((felt - expected * gravity / STANDARD_GRAVITY).abs() < 1e-12);
@@ -152,7 +153,7 @@ fn the_accelerometer_sits_on_the_base_whatever_the_frames_do() {
 fn one_frame_is_held_and_slips_and_meets_its_end_without_the_other() {
     let held = StageFault::Block { from: at(1.0), until: at(5.0) };
     let faults = [held, StageFault::Slip { at: at(2.0), by_rad: 0.01 }];
-    let angles = FrameAngles { outer: 0.0, inner: 0.0 };
+    let angles = FrameAngles { outer: Radians(0.0), inner: Radians(0.0) };
     let mut configuration = gimbal(&TwoFrame::default(), angles, [0.0; 3]);
     configuration.inner.faults = &faults;
     let mut plant = Gimbal::new(&configuration, 1);
@@ -174,7 +175,7 @@ fn one_frame_is_held_and_slips_and_meets_its_end_without_the_other() {
 
 #[test]
 fn a_driver_that_loses_its_supply_stops_its_own_frame_alone() {
-    let angles = FrameAngles { outer: 0.0, inner: 0.0 };
+    let angles = FrameAngles { outer: Radians(0.0), inner: Radians(0.0) };
     let gimbal = Gimbal::new(&gimbal(&TwoFrame::default(), angles, [0.0; 3]), 1);
     let oscillator = Oscillator::Internal { hertz: 12_000_000 };
     let mut board = GimbalBoard::new(gimbal, oscillator);

@@ -9,6 +9,7 @@ use host::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
 use host::methods::spin::errors::wrapped;
 use host::methods::spin::samples::Converter;
 use orientation::roll::{Condition, Setting, Spin, State};
+use orientation::units::{RadiansPerRootSecond, Seconds};
 
 /// 80 turns a second.
 const SPIN: f64 = 160.0 * std::f64::consts::PI;
@@ -53,9 +54,9 @@ fn followed(body: &SpinConfiguration, seed: u64) -> Vec<Seen> {
     let mut world = SpinWorld::new(body, seed);
     let mut converter = Converter::new(1.0 / RATE_HZ);
     let mut spin = Spin::new(&Setting {
-        angle_random_walk: 1e-5,
+        angle_random_walk: RadiansPerRootSecond(1e-5),
         scale_sigma: 0.01,
-        ..Setting::new(1.0 / RATE_HZ)
+        ..Setting::new(Seconds(1.0 / RATE_HZ))
     });
     let mut seen = Vec::new();
     while let Some(sample) = world.next() {
@@ -63,7 +64,7 @@ fn followed(body: &SpinConfiguration, seed: u64) -> Vec<Seen> {
         seen.push(Seen {
             time_s: sample.time_s,
             error_rad: wrapped(spin.roll().rad() - world.truth().roll_rad),
-            sigma_rad: spin.sigma(),
+            sigma_rad: spin.sigma().map(|sigma| sigma.0),
             state: spin.state(),
         });
     }

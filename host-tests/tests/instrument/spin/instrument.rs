@@ -37,14 +37,14 @@ fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
     let run = flown(&SpinScenario::default(), None);
     let flight = &run.run.replay;
     let sigma = flight.spin.sigma().expect("it is locked");
-    assert!(error(&run).abs() < 4.0 * sigma, "{} {sigma}", error(&run));
-    assert!(sigma.to_degrees() < 0.3, "{sigma}");
+    assert!(error(&run).abs() < 4.0 * sigma.0, "{} {}", error(&run), sigma.0);
+    assert!(sigma.degrees() < 0.3, "{sigma:?}");
     let [scale, of_scale] = flight.spin.scale().expect("two seconds tell it");
     assert!((scale - run.truth.gyro_scale_error[0]).abs() < 4.0 * of_scale, "{scale}");
     // More lift than weight bends the flight upwards, and nothing to the side.
     let risen = run.truth.flight.pitch_rad - run.start.flight.pitch_rad;
-    let pitch = flight.attitude.pitch - risen;
-    let course = wrapped(flight.attitude.course - run.truth.flight.course_rad);
+    let pitch = flight.attitude.pitch.0 - risen;
+    let course = wrapped(flight.attitude.course.0 - run.truth.flight.course_rad);
     assert!(risen.to_degrees() > 5.0, "{risen}");
     assert!(pitch.abs().to_degrees() < 0.3 && course.abs().to_degrees() < 0.3, "{pitch} {course}");
     let health = run.run.health;
@@ -77,7 +77,7 @@ fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
     let end = &replay.answer().end;
     let flight = run.run.replay.spin;
     assert_eq!(end.roll_rad.to_bits(), flight.roll().rad().to_bits());
-    assert_eq!(end.sigma_rad.map(f64::to_bits), flight.sigma().map(f64::to_bits));
+    assert_eq!(end.sigma_rad.map(f64::to_bits), flight.sigma().map(|sigma| sigma.0.to_bits()));
     // One seed gives one run.
     assert_eq!(flown(&scenario, None).samples, run.samples);
 }
@@ -91,9 +91,9 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
         rolled!(LiftBack(seconds)) => Some(*seconds),
         _ => None,
     });
-    assert!(back.is_some_and(|seconds| (0.2..0.6).contains(&seconds)), "{events:?}");
+    assert!(back.is_some_and(|seconds| (0.2..0.6).contains(&seconds.0)), "{events:?}");
     let sigma = run.run.replay.spin.sigma().expect("it is back");
-    assert!(error(&run).abs() < 4.0 * sigma);
+    assert!(error(&run).abs() < 4.0 * sigma.0);
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn no_fault_makes_a_roll_that_its_sigma_does_not_cover() {
         let run = flown(&scenario, Some(fault));
         let Some(sigma) = run.run.replay.spin.sigma() else { continue };
         // Held on the gyro alone, that is what its scale leaves.
-        assert!(error(&run).abs() < 5.0 * sigma, "{fault}: {} {sigma}", error(&run));
+        assert!(error(&run).abs() < 5.0 * sigma.0, "{fault}: {} {}", error(&run), sigma.0);
     }
 }
 

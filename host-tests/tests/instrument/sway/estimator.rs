@@ -4,7 +4,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use hal_mock::noise::Generator;
 use orientation::signal::sway::{CoarseSensors, Decision, Size, Sway, SwayNoise};
-use orientation::units::{AngularRate, SpecificForce};
+use orientation::units::{AngularRate, Seconds, SpecificForce};
 use proptest::prelude::*;
 
 /// Readings a second.
@@ -278,11 +278,12 @@ fn an_estimate_goes_on_after_a_gap() {
 fn the_variance_of_a_mean_has_its_limits() {
     let of = |correlation: f64| SwayNoise {
         angle_variance: 0.5 * correlation,
-        correlation,
+        correlation: Seconds(correlation),
         residual_variance: 0.0,
     };
     assert!((of(1e7).mean_variance(10.0) * 10.0 - 1.0).abs() < 1e-5);
-    let short = SwayNoise { angle_variance: 3.0, correlation: 1e-3, residual_variance: 2.0 };
+    let short =
+        SwayNoise { angle_variance: 3.0, correlation: Seconds(1e-3), residual_variance: 2.0 };
     assert!((short.mean_variance(10.0) - 0.1).abs() < 1e-12);
     assert_eq!(SwayNoise::NONE.mean_variance(10.0), 0.0);
 }

@@ -39,8 +39,8 @@ fn scenario(seed: u64) -> Scenario {
 fn found(scenario: &Scenario, run: &Run) -> Result<[f64; 2], Refusal> {
     let verdict = run.conclusion().expect("every run concludes").verdict;
     verdict.map(|azimuth| {
-        let error = azimuth_error(degrees(azimuth.angle), scenario.azimuth_deg);
-        [error, degrees(azimuth.sigma)]
+        let error = azimuth_error(azimuth.angle.degrees(), scenario.azimuth_deg);
+        [error, azimuth.sigma.degrees()]
     })
 }
 
@@ -63,7 +63,7 @@ fn reported(run: &Run) -> Vec<String> {
 fn plain_azimuth(run: &Run) -> f64 {
     let dwells = run.replay.session.dwells();
     let part = |of: fn(f64) -> f64| {
-        dwells.iter().map(|dwell| dwell.rate * of(dwell.stage.rad())).sum::<f64>()
+        dwells.iter().map(|dwell| dwell.rate.0 * of(dwell.stage.rad())).sum::<f64>()
     };
     // Rates are Ω_h cos(A + θ): the sine's coefficient is −sin A.
     (-part(f64::sin)).atan2(part(f64::cos)).to_degrees()
@@ -85,7 +85,7 @@ fn a_subtracted_sway_leaves_an_azimuth_with_its_true_sigma(extent: Extent) {
             match found(&scenario, &run) {
                 Ok(outcome) => Some(outcome),
                 // By chance its dwells scatter as if something moved, which widens σ.
-                Err(Refusal::BudgetNotMet { sigma, .. }) if sigma < 12.0 => None,
+                Err(Refusal::BudgetNotMet { sigma, .. }) if sigma.0 < 12.0 => None,
                 Err(reason) => panic!("seed {seed}: {reason}"),
             }
         })
@@ -275,7 +275,7 @@ fn rates_that_are_subtracted_are_small_beside_what_a_still_base_leaves_in_them()
     let azimuth = scenario.azimuth_deg.to_radians();
     let rate = 15.041 * scenario.latitude_deg.to_radians().cos() * DEGREE_PER_HOUR;
     let dwells = felt.replay.session.dwells();
-    let rest = |i: usize| dwells[i].rate - rate * (azimuth + dwells[i].stage.rad()).cos();
+    let rest = |i: usize| dwells[i].rate.0 - rate * (azimuth + dwells[i].stage.rad()).cos();
     let spread = (0..dwells.len()).map(|i| (rest(i) - rest(0)).abs()).fold(0.0, f64::max);
     assert!(spread < 2.0 * bound + 0.2 * rate, "{spread} rad/s");
 }

@@ -3,6 +3,7 @@
 use orientation::noise::model::GyroNoise;
 use orientation::noise::whitener::Whitener;
 use orientation::signal::sway::SwayNoise;
+use orientation::units::Seconds;
 
 /// Begins and ends of dwells, s: of several lengths, with and without gaps.
 const DWELLS: [[f64; 2]; 7] = [
@@ -16,11 +17,11 @@ const DWELLS: [[f64; 2]; 7] = [
 ];
 
 const SWAY: SwayNoise =
-    SwayNoise { angle_variance: 2.5e-8, correlation: 20.0, residual_variance: 0.0 };
+    SwayNoise { angle_variance: 2.5e-8, correlation: Seconds(20.0), residual_variance: 0.0 };
 
 /// Covariance of the changes of a Gauss–Markov angle over two dwells, each over its time.
 fn shared([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
-    let of = |s: f64, t: f64| SWAY.angle_variance * (-(s - t).abs() / SWAY.correlation).exp();
+    let of = |s: f64, t: f64| SWAY.angle_variance * (-(s - t).abs() / SWAY.correlation.0).exp();
     (of(b, d) - of(b, c) - of(a, d) + of(a, c)) / ((b - a) * (d - c))
 }
 

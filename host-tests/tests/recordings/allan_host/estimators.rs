@@ -88,7 +88,7 @@ fn a_constant_rate_has_no_variance_and_a_ramp_that_of_its_slope() {
 fn the_averaging_time_is_in_seconds_and_the_terms_are_counted() {
     let record = Record::new(0.1, [thousand().as_slice()]);
     let found = OVERLAPPING(&record, 30).expect("it is long enough");
-    assert!((found.seconds - 3.0).abs() < 1e-12 && (found.stride - 0.1).abs() < 1e-12);
+    assert!((found.seconds.0 - 3.0).abs() < 1e-12 && (found.stride.0 - 0.1).abs() < 1e-12);
     assert_eq!(found.terms, 1000 - 2 * 30 + 1);
     assert_eq!(ADJACENT(&record, 30).map(|found| found.terms), Some(32));
 }

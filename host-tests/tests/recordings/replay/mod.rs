@@ -21,6 +21,7 @@ use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::quality::Disturbance;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
+use orientation::units::Radians;
 
 use crate::support::files::recording;
 
@@ -38,8 +39,8 @@ impl Replayed {
     /// Error and σ, °; none where it is refused.
     fn answer(&self) -> Option<(f64, f64)> {
         let azimuth = self.conclusion().verdict.ok()?;
-        let error = azimuth_error(azimuth.angle.to_degrees(), self.truth_deg);
-        Some((error, azimuth.sigma.to_degrees()))
+        let error = azimuth_error(azimuth.angle.degrees(), self.truth_deg);
+        Some((error, azimuth.sigma.degrees()))
     }
 
     /// Error and σ, °.
@@ -49,13 +50,13 @@ impl Replayed {
 
     fn sigma_over_limit(&self) -> f64 {
         let fit = self.conclusion().fit.as_ref().expect("there is a fit");
-        fit.sigma() / fit.limit
+        fit.sigma().0 / fit.limit.0
     }
 
     /// The dwells left out: start, end, why.
     fn excluded(&self) -> Vec<(f64, f64, Disturbance)> {
         let dwells = self.replay.session.dwells().iter().zip(&self.conclusion().disturbances);
-        dwells.filter_map(|(d, why)| why.map(|why| (d.start(), d.end(), why))).collect()
+        dwells.filter_map(|(d, why)| why.map(|why| (d.start().0, d.end().0, why))).collect()
     }
 }
 
@@ -113,11 +114,11 @@ fn the_limit_on_the_full_circle_is_the_closed_form() {
         let latitude = replayed.header.latitude_deg.expect("it is stated").to_radians();
         let kept = replayed.replay.session.dwells().iter().zip(&replayed.conclusion().disturbances);
         let hours: f64 =
-            kept.filter(|(_, why)| why.is_none()).map(|(d, _)| d.seconds / 3600.0).sum();
+            kept.filter(|(_, why)| why.is_none()).map(|(d, _)| d.seconds.0 / 3600.0).sum();
         // √2 N / (Ω_h √T), and what a dwell left out of twelve changes of the circle's symmetry.
         let expected = 2.0_f64.sqrt() * n / (15.041_067 * latitude.cos() * hours.sqrt());
         let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
-        assert!((fit.limit / expected - 1.0).abs() < 0.12, "{name}: {} {expected}", fit.limit);
+        assert!((fit.limit.0 / expected - 1.0).abs() < 0.12, "{name}: {} {expected}", fit.limit.0);
     }
 }
 
@@ -195,7 +196,7 @@ fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
             let options = Asked { half: Some(half), ..Asked::default() };
             let replayed = replayed_with(name, &options);
             let conclusion = replayed.conclusion();
-            let is_right = half.contains(replayed.truth_deg.to_radians());
+            let is_right = half.contains(Radians::from_degrees(replayed.truth_deg));
             match conclusion.verdict {
                 Ok(_) => {
                     let (error, sigma) = replayed.error_and_sigma();
@@ -232,12 +233,12 @@ fn noise_that_is_not_stated_is_estimated_from_the_dwells() {
         let stated = header.gyro_n_deg_sqrt_h.take().expect("N is stated");
         let replay = replay(&header, &body, &Asked::default(), |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
-        let found = conclusion.angle_random_walk.to_degrees() * 60.0;
+        let found = conclusion.angle_random_walk.0.to_degrees() * 60.0;
         assert!((found / stated - 1.0).abs() < 0.15, "{name}: {found} for {stated}");
         let azimuth = conclusion.verdict.expect("there is an azimuth");
         let truth = truth.azimuth_deg.expect("it carries a truth");
-        let error = azimuth_error(azimuth.angle.to_degrees(), truth);
-        assert!(error.abs() < 3.5 * azimuth.sigma.to_degrees(), "{name}: {error}");
+        let error = azimuth_error(azimuth.angle.degrees(), truth);
+        assert!(error.abs() < 3.5 * azimuth.sigma.degrees(), "{name}: {error}");
     }
 }
 
@@ -250,17 +251,20 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
     text += "stage_rad,rate_rad_s,sigma_rad_s,seconds,mid_s,fx_m_s2,fy_m_s2,fz_m_s2\n";
     let density = 0.004 * (PI / 180.0 / 60.0);
     for dwell in sampled.replay.session.dwells() {
-        let sigma = density / dwell.seconds.sqrt() * dwell.taper.sqrt();
-        let [x, y, z] = dwell.force.expect("it was measured");
-        let (stage, rate) = (dwell.stage.rad(), dwell.rate);
-        let (seconds, middle) = (dwell.seconds, dwell.middle);
+        let sigma = density / dwell.seconds.0.sqrt() * dwell.taper.sqrt();
+        let [x, y, z] = dwell.force.expect("it was measured").map(|part| part.0);
+        let (stage, rate) = (dwell.stage.rad(), dwell.rate.0);
+        let (seconds, middle) = (dwell.seconds.0, dwell.middle.0);
         writeln!(text, "{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}")
             .expect("strings take all");
     }
     let replay = replayed_dwells(&text, &Asked::default()).expect("it replays");
     let conclusion = replay.session.conclusion().expect("it has ended");
     let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
-    assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");
+    assert!(
+        (a.angle.0 - b.angle.0).abs() < 1e-9 && (a.sigma.0 - b.sigma.0).abs() < 1e-9,
+        "{a:?} {b:?}"
+    );
 }
 
 /// A recording of so many dwells of 10 s in steps of 42° at 55.75°, whose noise is that of 0.001 °/√h, and its 1σ in
@@ -307,12 +311,16 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
         let replay = replayed_dwells(&text, &options).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
         let azimuth = conclusion.verdict.expect("there is an azimuth");
-        let error = azimuth_error(azimuth.angle.to_degrees(), azimuth_deg).to_radians();
-        assert!(error.abs() < 3.5 * azimuth.sigma, "{criterion:?}: {error} ± {}", azimuth.sigma);
+        let error = azimuth_error(azimuth.angle.degrees(), azimuth_deg).to_radians();
+        assert!(
+            error.abs() < 3.5 * azimuth.sigma.0,
+            "{criterion:?}: {error} ± {}",
+            azimuth.sigma.0
+        );
         // √(2/n) σ of a dwell over the Earth rate, for positions spread over the circle.
         let limit = conclusion.fit.as_ref().expect("there is a fit").limit;
         let expected = sigma * (2.0_f64 / 1024.0).sqrt();
-        assert!((limit / expected - 1.0).abs() < 0.02, "{criterion:?}: {limit} {expected}");
+        assert!((limit.0 / expected - 1.0).abs() < 0.02, "{criterion:?}: {limit:?} {expected}");
     }
     let (text, _) = dwells(1025, azimuth_deg);
     let error = replayed_dwells(&text, &Asked::default()).err().map(|error| error.to_string());
@@ -334,8 +342,8 @@ fn what_explains_the_dwells_beside_the_earth_rate_stands_in_the_model_and_costs_
         let azimuth = conclusion.verdict.expect(name);
         let model = columns(conclusion.fit.as_ref().expect("there is a fit"));
         assert!(model.iter().any(|column| column.contains(name)), "{name}: {model:?}");
-        let error = azimuth_error(azimuth.angle.to_degrees(), 213.7).to_radians();
-        assert!(error.abs() < 4.0 * azimuth.sigma, "{name}: {error} ± {}", azimuth.sigma);
+        let error = azimuth_error(azimuth.angle.degrees(), 213.7).to_radians();
+        assert!(error.abs() < 4.0 * azimuth.sigma.0, "{name}: {error} ± {}", azimuth.sigma.0);
     }
 }
 
@@ -443,8 +451,8 @@ fn accelerometer_biases_that_drift_are_distinguished_from_a_base_that_tilts() {
             let verdict = replay.session.conclusion().expect("it has ended").verdict;
             let Ok(azimuth) = verdict else { continue };
             let truth_deg = truth.azimuth_deg.expect("it carries a truth");
-            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg);
-            let sigma = azimuth.sigma.to_degrees();
+            let error = azimuth_error(azimuth.angle.degrees(), truth_deg);
+            let sigma = azimuth.sigma.degrees();
             assert!(error.abs() < 4.0 * sigma, "{name}, {rate} g/s: {error}° ± {sigma}°");
             answered += 1;
         }

@@ -35,7 +35,7 @@ type Moves = fn(&mut StageRow, &Motion);
 fn turns(row: &mut StageRow, motion: &Motion) {
     let axis = motion.azimuth_rad + row.stage_rad;
     let turned = motion.rate * motion.since;
-    row.rate_rad_s += motion.latitude.horizontal_rate() * ((axis + turned).cos() - axis.cos());
+    row.rate_rad_s += motion.latitude.horizontal_rate().0 * ((axis + turned).cos() - axis.cos());
     row.rate_rad_s -= motion.rate * row.force_m_s2[0] / GRAVITY;
 }
 
@@ -46,7 +46,7 @@ fn rolls(row: &mut StageRow, motion: &Motion) {
     let tilt = motion.rate * motion.since;
     row.force_m_s2[0] -= GRAVITY * tilt * sine;
     row.force_m_s2[1] -= GRAVITY * tilt * cosine;
-    row.rate_rad_s += motion.rate * cosine - motion.latitude.vertical_rate() * tilt * sine;
+    row.rate_rad_s += motion.rate * cosine - motion.latitude.vertical_rate().0 * tilt * sine;
 }
 
 /// Upwards at its nose: the same a quarter of a turn on.
@@ -55,7 +55,7 @@ fn pitches(row: &mut StageRow, motion: &Motion) {
     let tilt = motion.rate * motion.since;
     row.force_m_s2[0] += GRAVITY * tilt * cosine;
     row.force_m_s2[1] -= GRAVITY * tilt * sine;
-    row.rate_rad_s += motion.rate * sine + motion.latitude.vertical_rate() * tilt * cosine;
+    row.rate_rad_s += motion.rate * sine + motion.latitude.vertical_rate().0 * tilt * cosine;
 }
 
 /// The rows of a stage whose base moves at a rate in rad/s, and how long they are, s.

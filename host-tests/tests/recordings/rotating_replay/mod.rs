@@ -76,8 +76,8 @@ fn both_recordings_give_north_within_three_and_a_half_sigma() {
     for name in [GYRO, MET] {
         let recorded = recorded(name);
         let azimuth = conclusion(&recorded.replayed()).verdict.expect("there is an azimuth");
-        let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg);
-        let sigma = azimuth.sigma.to_degrees();
+        let error = azimuth_error(azimuth.angle.degrees(), recorded.truth_deg);
+        let sigma = azimuth.sigma.degrees();
         println!("{name}: {error:+.4}° ± {sigma:.4}°");
         assert!(error.abs() <= 3.5 * sigma, "{name}: {error}° ± {sigma}°");
     }
@@ -88,7 +88,7 @@ fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
     for name in [GYRO, MET] {
         let replay = with_exact_zero(recorded(name)).replayed();
         let fit = conclusion(&replay).fit.expect("there is a fit");
-        let ratio = fit.sigma() / fit.limit;
+        let ratio = fit.sigma().0 / fit.limit.0;
         assert!((0.999..1.1).contains(&ratio), "{name}: σ is {ratio} of the limit");
     }
     // √2 N/(Ω_h √T), and of 24 turns at 0.137 Hz one in either sense may be lost to the change of speed.
@@ -99,9 +99,9 @@ fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
         2.0_f64.sqrt() * 0.002 / (15.041_067 * 55.75_f64.to_radians().cos() * hours.sqrt())
     };
     assert!(
-        (closed(24.0)..closed(22.0) * 1.001).contains(&fit.limit),
+        (closed(24.0)..closed(22.0) * 1.001).contains(&fit.limit.0),
         "{} {}",
-        fit.limit,
+        fit.limit.0,
         closed(24.0)
     );
 }
@@ -110,7 +110,7 @@ fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
 fn two_speeds_cost_what_the_times_of_the_recording_make_of_them() {
     let replay = recorded(MET).replayed();
     let fit = conclusion(&replay).fit.expect("there is a fit");
-    let ratio = fit.limit / fit.plain_limit;
+    let ratio = fit.limit.0 / fit.plain_limit.0;
     // Weights of 4/3 and −1/3 with a third of the time at the faster speed: 2.35 of the limit without G
     // and H; what the drift and G take of so few turns comes on top.
     assert!((2.3..2.6).contains(&ratio), "{ratio}");
@@ -121,8 +121,7 @@ fn the_misalignment_is_that_of_an_independent_fit() {
     let recorded = recorded(GYRO);
     let independent = -oracle::misalignment(recorded.between(0.0, MODULATED_S)).asin().to_degrees();
     let replay = recorded.replayed();
-    let found =
-        conclusion(&replay).misalignments.first().expect("there is one").angle().to_degrees();
+    let found = conclusion(&replay).misalignments.first().expect("there is one").angle().degrees();
     println!("{found:.6}° {independent:.6}°");
     assert!((found - independent).abs() < 1e-4, "{found}° {independent}°");
     assert!((found - 0.8).abs() < 1e-4, "{found}°");
@@ -141,9 +140,9 @@ fn an_independent_solution_of_the_gyros_recording_agrees() {
     let independent = oracle::azimuth(turns, misalignment, &known).to_degrees();
     let replay = recorded.replayed();
     let azimuth = conclusion(&replay).verdict.expect("there is an azimuth");
-    let difference = azimuth_error(azimuth.angle.to_degrees(), independent);
+    let difference = azimuth_error(azimuth.angle.degrees(), independent);
     // Another choice of turns, and no lag in the independent one: within the noise.
-    assert!(difference.abs() < azimuth.sigma.to_degrees(), "{difference}°");
+    assert!(difference.abs() < azimuth.sigma.degrees(), "{difference}°");
 }
 
 #[test]
@@ -152,8 +151,8 @@ fn the_recording_of_the_molecular_sensor_needs_its_second_speed() {
     let fit = conclusion(&replay).fit.expect("there is a fit");
     // 1.1° at ρ 0.2: within the bound ρ²/2, and far beyond σ.
     let ratio = fit.molecular.size();
-    assert!(fit.one_speed.abs() > 3.0 * fit.sigma(), "{}", fit.one_speed.to_degrees());
-    assert!(fit.one_speed.abs() < 0.55 * ratio * ratio, "{} {ratio}", fit.one_speed);
+    assert!(fit.one_speed.0.abs() > 3.0 * fit.sigma().0, "{}", fit.one_speed.degrees());
+    assert!(fit.one_speed.0.abs() < 0.55 * ratio * ratio, "{} {ratio}", fit.one_speed.0);
 }
 
 #[test]
@@ -182,7 +181,7 @@ fn what_is_not_known_is_said() {
     let replay = recorded.replayed();
     assert!(replay.assumed.iter().any(|words| words.contains("a gyro, not a molecular")));
     assert!(replay.assumed.iter().any(|words| words.contains("white noise as the turns show it")));
-    let found = conclusion(&replay).angle_random_walk.to_degrees() * 60.0;
+    let found = conclusion(&replay).angle_random_walk.0.to_degrees() * 60.0;
     assert!((found / 0.002 - 1.0).abs() < 0.4, "{found}");
 }
 
@@ -192,7 +191,7 @@ fn an_encoder_whose_zero_is_not_stated_is_reported_and_in_sigma() {
     let replay = recorded.replayed();
     let is_reported = |words: &String| words.contains("encoder zero to 0.15°");
     assert!(replay.assumed.iter().any(is_reported), "{:?}", replay.assumed);
-    let encoder = conclusion(&replay).fit.expect("there is a fit").budget.encoder.to_degrees();
+    let encoder = conclusion(&replay).fit.expect("there is a fit").budget.encoder.degrees();
     assert!((encoder - 0.15).abs() < 0.01, "{encoder}");
     let exact = with_exact_zero(recorded).replayed();
     assert!(!exact.assumed.iter().any(is_reported), "{:?}", exact.assumed);
@@ -252,15 +251,15 @@ fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size(
         for row in &mut turning.rows {
             let axis = recorded.truth_deg.to_radians() + row.stage_rad;
             let turned = rate * (row.time_s - begin);
-            row.rate_rad_s += horizontal * ((axis + turned).cos() - axis.cos());
+            row.rate_rad_s += horizontal.0 * ((axis + turned).cos() - axis.cos());
             row.rate_rad_s -= rate * row.force_m_s2 / 9.81;
         }
         let seconds = turning.rows[turning.rows.len() - 1].time_s - begin;
         let truth_deg = recorded.truth_deg + (rate * seconds).to_degrees();
         let replay = turning.replayed();
         let Ok(azimuth) = conclusion(&replay).verdict else { continue };
-        let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
-        let sigma = azimuth.sigma.to_degrees();
+        let error = azimuth_error(azimuth.angle.degrees(), truth_deg).abs();
+        let sigma = azimuth.sigma.degrees();
         let line = replay.assumed.iter().find(|line| line.starts_with("no slow turn"));
         eprintln!("{rate_deg_min} {error} {sigma} {line:?}");
         if error > 5.0 * sigma {
@@ -295,9 +294,9 @@ fn turned_after(
         let apart = |index: &usize| (found.pairs[*index].speed() - speed).abs();
         let nearest = (0..found.pairs.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
         let pair = nearest.expect("there is one");
-        let phase = fit.phases[pair] * row.stage_rate_rad_s.signum();
+        let phase = fit.phases[pair].0 * row.stage_rate_rad_s.signum();
         let axis = recorded.truth_deg.to_radians() + row.stage_rad + phase;
-        let size = found.pairs[pair].gain(horizontal) * horizontal;
+        let size = found.pairs[pair].gain(horizontal.0) * horizontal.0;
         row.rate_rad_s += size * ((axis + turn_deg.to_radians()).cos() - axis.cos());
     }
     turned
@@ -323,8 +322,8 @@ fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_tak
                     continue;
                 }
             };
-            let error = azimuth_error(azimuth.angle.to_degrees(), turned.truth_deg);
-            let sigmas = error.abs() / azimuth.sigma.to_degrees();
+            let error = azimuth_error(azimuth.angle.degrees(), turned.truth_deg);
+            let sigmas = error.abs() / azimuth.sigma.degrees();
             assert!(sigmas < 5.0, "after {stretch}, {turn_deg}°: {error}°, {sigmas} σ");
         }
     }
@@ -357,14 +356,14 @@ fn of_coarse_steps(name: &str) -> Vec<f64> {
     let latitude = Latitude::from_degrees(recorded.header.latitude_deg.expect("it has one"));
     let horizontal = latitude.expect("it is one").horizontal_rate();
     let of_step = |part: i32| {
-        let step = 2.5 / 40.0 * f64::from(part) * horizontal;
+        let step = 2.5 / 40.0 * f64::from(part) * horizontal.0;
         let mut coarse = recorded.clone();
         for row in &mut coarse.rows {
             row.rate_rad_s = (row.rate_rad_s / step).round() * step;
         }
         let azimuth = conclusion(&coarse.replayed()).verdict.ok()?;
-        let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg);
-        Some(error.to_radians() / azimuth.sigma)
+        let error = azimuth_error(azimuth.angle.degrees(), recorded.truth_deg);
+        Some(error.to_radians() / azimuth.sigma.0)
     };
     (1..=40).filter_map(of_step).collect()
 }
@@ -389,9 +388,9 @@ fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed
             recorded.rows.iter_mut().for_each(change);
             let replay = recorded.replayed();
             let Ok(azimuth) = conclusion(&replay).verdict else { continue };
-            let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg).abs();
+            let error = azimuth_error(azimuth.angle.degrees(), recorded.truth_deg).abs();
             let is_reported = replay.assumed.iter().any(|line| line.starts_with(words));
-            let is_wrong = error > 4.0 * azimuth.sigma.to_degrees();
+            let is_wrong = error > 4.0 * azimuth.sigma.degrees();
             assert!(is_reported || !is_wrong, "{name}, {words}: {error}° in silence");
             reported += i32::from(is_wrong);
         }

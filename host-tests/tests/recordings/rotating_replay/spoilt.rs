@@ -81,7 +81,7 @@ fn an_encoder_that_slips_is_refused() {
         else {
             panic!("{slip_deg}°: {}", slipped.refusal());
         };
-        assert!((angle - slip_deg).abs() < 0.3, "{angle}° of {slip_deg}°");
+        assert!((angle.0 - slip_deg).abs() < 0.3, "{}° of {slip_deg}°", angle.0);
     }
 }
 
@@ -95,8 +95,8 @@ fn a_slow_slip_gives_no_wrong_north() {
         });
         let replay = crept.replayed();
         if let Ok(azimuth) = conclusion(&replay).verdict {
-            let error = azimuth_error(azimuth.angle.to_degrees(), crept.truth_deg);
-            let sigma = azimuth.sigma.to_degrees();
+            let error = azimuth_error(azimuth.angle.degrees(), crept.truth_deg);
+            let sigma = azimuth.sigma.degrees();
             assert!(error.abs() < 5.0 * sigma, "{degrees_a_minute}° a minute: {error}° ± {sigma}°");
         }
     }
@@ -130,8 +130,8 @@ fn without_the_modulated_stretch_there_is_no_north_of_an_uneven_platform() {
         even.rows.retain(|row| row.time_s > modulated_s);
         let replay = even.replayed();
         if let Ok(azimuth) = conclusion(&replay).verdict {
-            let error = azimuth_error(azimuth.angle.to_degrees(), even.truth_deg);
-            assert!(error.abs() < 3.5 * azimuth.sigma.to_degrees(), "{name}: {error}°");
+            let error = azimuth_error(azimuth.angle.degrees(), even.truth_deg);
+            assert!(error.abs() < 3.5 * azimuth.sigma.degrees(), "{name}: {error}°");
         }
     }
 }
@@ -143,11 +143,7 @@ fn a_molecular_sensor_at_one_speed_gives_what_its_sigma_says() {
     let replay = one.replayed();
     let found = conclusion(&replay);
     let fit = found.fit.expect("there is a fit");
-    let error = azimuth_error(fit.azimuth.to_degrees(), one.truth_deg);
-    assert!(
-        error.abs() < 3.5 * fit.sigma().to_degrees(),
-        "{error}° ± {}°",
-        fit.sigma().to_degrees()
-    );
-    assert!(fit.sigma() > 3.0 * fit.plain_limit, "one speed cannot be so good");
+    let error = azimuth_error(fit.azimuth.degrees(), one.truth_deg);
+    assert!(error.abs() < 3.5 * fit.sigma().degrees(), "{error}° ± {}°", fit.sigma().degrees());
+    assert!(fit.sigma().0 > 3.0 * fit.plain_limit.0, "one speed cannot be so good");
 }

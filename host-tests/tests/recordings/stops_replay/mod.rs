@@ -13,6 +13,7 @@ use host::recording::{Body, Header, ImuRow, Truth};
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stops::conclusion::{Conclusion, Found};
+use orientation::units::Radians;
 
 use crate::support::files::recording;
 
@@ -65,7 +66,7 @@ impl Recorded {
 
 fn off(azimuth: Azimuth, truth_deg: Option<f64>) -> [f64; 2] {
     let truth = truth_deg.expect("it carries a truth");
-    [azimuth_error(degrees(azimuth.angle), truth), degrees(azimuth.sigma)]
+    [azimuth_error(azimuth.angle.degrees(), truth), azimuth.sigma.degrees()]
 }
 
 fn found(conclusion: &Conclusion) -> &Found {
@@ -106,8 +107,8 @@ fn rest_rates_leave_at_most_a_third_of_what_the_papers_method_leaves() {
     let conclusion = conclusion(&replay);
     let [_, sigma] = recorded.error(conclusion);
     let plain = &found(conclusion).plain;
-    println!("{sigma:.4}° by everything, {:.4}° by the paper", degrees(plain.sigma));
-    assert!(sigma <= degrees(plain.sigma) / 3.0, "{sigma}° {}°", degrees(plain.sigma));
+    println!("{sigma:.4}° by everything, {:.4}° by the paper", plain.sigma.degrees());
+    assert!(sigma <= plain.sigma.degrees() / 3.0, "{sigma}° {}°", plain.sigma.degrees());
     // And the paper's own σ is an honest one.
     let start_deg = recorded.truth.start_azimuth_deg;
     let [error, sigma] = off(Azimuth { angle: plain.azimuth, sigma: plain.sigma }, start_deg);
@@ -121,7 +122,7 @@ fn three_stops_show_the_biases_that_the_gyros_had() {
     assert!(found.are_biases_observed);
     let both = found.biases.into_iter().zip(found.bias_sigmas);
     for ((bias, sigma), truth) in both.zip([0.9, 0.7, -1.1]) {
-        let [bias, sigma] = [bias, sigma].map(degrees_per_hour);
+        let [bias, sigma] = [bias.0, sigma.0].map(degrees_per_hour);
         println!("{bias:+.4} ± {sigma:.4} °/h, truly {truth}");
         assert!((bias - truth).abs() <= 3.0 * sigma, "{bias} ± {sigma}, truly {truth}");
         // 1 °/h was what was known of them.
@@ -141,7 +142,7 @@ fn a_swaying_vehicle_aligns_where_averaging_does_not() {
     for ImuRow { sample, .. } in &recorded.rows {
         averages.push(sample.rates_rad_s, sample.force_m_s2);
     }
-    let plain = Azimuth { angle: averages.azimuth(), sigma: 0.0 };
+    let plain = Azimuth { angle: Radians(averages.azimuth()), sigma: Radians(0.0) };
     let [averaged, _] = off(plain, recorded.truth.azimuth_deg);
     println!("{averaged:+.4}° by averaging");
     assert!(averaged.abs() > 3.0 * error.abs(), "{averaged}° by averaging, {error}°");
@@ -168,7 +169,7 @@ fn the_criteria_find_the_stops_that_were_not_stated() {
             .session
             .stops()
             .iter()
-            .map(|stop| [stop.from, stop.to].map(|time| time + replay.zero_s))
+            .map(|stop| [stop.from, stop.to].map(|time| time.0 + replay.zero_s))
             .collect();
         println!("{name}: {found:?}");
         assert_eq!(found.len(), stated.len(), "{name}: {found:?}");
@@ -190,7 +191,7 @@ fn brents_search_and_the_closed_form_agree_on_every_drive() {
     for name in [IDEAL, FOG, THREE] {
         let replay = recorded(name).replayed();
         let plain = &found(conclusion(&replay)).plain;
-        let apart = |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth)).abs();
+        let apart = |azimuth: f64| azimuth_error(degrees(azimuth), plain.azimuth.degrees()).abs();
         let [angle, euler] = [plain.angle.at, plain.euler.at].map(apart);
         println!("{name}: {angle:.1e}° as an angle, {euler:.1e}° in Euler form");
         assert!(angle < 1e-6, "{name}: {angle}°");
@@ -206,7 +207,7 @@ fn an_independent_solution_of_the_drives_agrees_with_the_papers_method() {
         let independent = oracle::start_azimuth_deg(&recorded.header, &recorded.rows);
         let replay = recorded.replayed();
         let plain = &found(conclusion(&replay)).plain;
-        let apart = azimuth_error(degrees(plain.azimuth), independent);
+        let apart = azimuth_error(plain.azimuth.degrees(), independent);
         println!("{name}: {apart:+.1e}° from the independent solution");
         // The heading at the first stop is that of its middle here, a mean of all of it there: gyros that
         // walk turn by 0.05 °/√h · √30 s = 0.005° between.

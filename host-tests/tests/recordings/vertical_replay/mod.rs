@@ -14,6 +14,7 @@ use host::recording::{Body, Header, ImuRow};
 
 use crate::support::campaign::assert_in_readme;
 use crate::support::files::recording;
+use orientation::units::RadiansPerSecond;
 
 /// The trials, and inclination and heading RMSE of VQF, ° (`compare_vqf.py excerpts`).
 const TRIALS: [(&str, [f64; 2]); 6] = [
@@ -110,8 +111,8 @@ fn a_drift_that_is_stated_counts_beside_a_noise_that_is_assumed() {
     recorded.header.gyro_k_deg_h_sqrt_h = Some(1000.0);
     let by_walk = recorded.replayed().last.bias_sigmas;
     for (axis, assumed) in assumed.into_iter().enumerate() {
-        assert!(by_instability[axis] > 1.2 * assumed, "{assumed} {by_instability:?}");
-        assert!(by_walk[axis] > 1.2 * assumed, "{assumed} {by_walk:?}");
+        assert!(by_instability[axis].0 > 1.2 * assumed.0, "{assumed:?} {by_instability:?}");
+        assert!(by_walk[axis].0 > 1.2 * assumed.0, "{assumed:?} {by_walk:?}");
     }
 }
 
@@ -120,7 +121,7 @@ fn enlarge_biases(recorded: &mut Recorded, more_deg_s: [f64; 3]) {
     let own = recorded.replayed().last.biases;
     for row in &mut recorded.rows {
         for (axis, rate) in row.sample.rates_rad_s.iter_mut().enumerate() {
-            *rate += more_deg_s[axis].to_radians().copysign(own[axis]);
+            *rate += more_deg_s[axis].to_radians().copysign(own[axis].0);
         }
     }
 }
@@ -143,7 +144,7 @@ fn a_bias_ten_times_as_large_as_stated_is_reported_and_costs_no_level() {
 fn a_tenth_of_the_own_bias_stated_costs_no_level() {
     for (name, _) in TRIALS {
         let mut recorded = recorded(name);
-        let own = recorded.replayed().last.biases.map(f64::abs);
+        let own = recorded.replayed().last.biases.map(|bias| bias.0.abs());
         let greatest = own.into_iter().fold(0.0, f64::max).to_degrees();
         recorded.header.gyro_bias_deg_h = Some(0.1 * greatest * 3600.0);
         let replay = recorded.replayed();
@@ -157,7 +158,13 @@ fn a_tenth_of_the_own_bias_stated_costs_no_level() {
 /// A moment with this attitude.
 fn moment(attitude: [f64; 4]) -> Moment {
     let level_sigma = 1.5_f64.to_radians();
-    Moment { time_s: 0.0, attitude, level_sigma, biases: [0.0; 3], bias_sigmas: [0.0; 3] }
+    Moment {
+        time_s: 0.0,
+        attitude,
+        level_sigma,
+        biases: [RadiansPerSecond(0.0); 3],
+        bias_sigmas: [RadiansPerSecond(0.0); 3],
+    }
 }
 
 /// A rotation by an angle in degrees about an axis of length one.

@@ -55,7 +55,7 @@ fn gyros_that_clip_lose_the_level_and_it_comes_back_at_rest() {
     println!("{:?} {:?}", replay.states, replay.last);
     assert!(met(&replay, "rotation lost") > 1.0, "{:?}", replay.states);
     assert_eq!(replay.refusal, None);
-    assert!(replay.last.level_sigma < 1.5_f64.to_radians(), "{:?}", replay.last);
+    assert!(replay.last.level_sigma.0 < 1.5_f64.to_radians(), "{:?}", replay.last);
     let errors = recorded.errors(&replay);
     let worst = errors.off.iter().filter(|off| off.time_s > until + 5.0);
     let worst = worst.map(|off| off.inclination_deg).fold(0.0, f64::max);

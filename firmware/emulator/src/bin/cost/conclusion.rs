@@ -11,7 +11,7 @@ use orientation::filter::{Coefficients, DesignError};
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::Sample;
 use orientation::signal::dwell::{Dwell, DwellAverage};
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
+use orientation::units::{Angle, AngularRate, Instant, Seconds, SpecificForce, TURN, Temperature};
 
 use crate::report::Report;
 use firmware::budget::CONCLUSION_INSTRUCTIONS;
@@ -69,7 +69,7 @@ fn conclude(conclusion: &mut Conclusion, setting: &Setting, dwells: &[Dwell]) {
 
 /// Whether the azimuth is that of the simulated dwells within 5σ.
 fn is_right(conclusion: &Conclusion) -> bool {
-    conclusion.verdict.is_ok_and(|azimuth| (azimuth.angle - AZIMUTH).abs() < 5.0 * azimuth.sigma)
+    conclusion.verdict.is_ok_and(|it| (it.angle.0 - AZIMUTH).abs() < 5.0 * it.sigma.0)
 }
 
 /// Configuration with this bias instability and rate random walk.
@@ -92,14 +92,15 @@ fn fill(dwells: &mut [Dwell]) -> Result<&[Dwell], DesignError> {
         for moment in 1..SAMPLES {
             average.push(&coefficients, &sample(index * PERIOD + moment, angle, &mut noise));
         }
-        *dwell = average.finish(&coefficients, SAMPLE_SECONDS).unwrap_or_default();
+        *dwell = average.finish(&coefficients, Seconds(SAMPLE_SECONDS)).unwrap_or_default();
     }
     Ok(dwells)
 }
 
 /// A sample of a level platform at stage angle `angle`, rad.
 fn sample(moment: u32, angle: f64, noise: &mut Generator) -> Sample {
-    let horizontal = Latitude::from_degrees(LATITUDE_DEG).map_or(0.0, Latitude::horizontal_rate);
+    let horizontal =
+        Latitude::from_degrees(LATITUDE_DEG).map_or(0.0, |latitude| latitude.horizontal_rate().0);
     let white = GyroNoise::from_field_units(WHITE, 0.0, 0.0, 0.0).white_variance(SAMPLE_SECONDS);
     let rate = horizontal * libm::cos(AZIMUTH + angle) + libm::sqrt(white) * noise.gaussian();
     Sample {

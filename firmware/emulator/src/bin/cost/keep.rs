@@ -12,7 +12,8 @@ use orientation::roll as spin;
 use orientation::roll::{Signal, Spin};
 use orientation::signal::{InertialSample, SpinSample};
 use orientation::units::{
-    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce, SpinForce, TURN,
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds,
+    SpecificForce, SpinForce, TURN,
 };
 
 use crate::report::{Report, figure, mean_and_greatest};
@@ -58,16 +59,17 @@ type PushSpin = fn(&mut Spin, &SpinSample) -> Option<Signal>;
 /// Measures all cases.
 pub fn report(counter: &Counter, report: &mut Report) {
     let latitude = Latitude::from_degrees(52.0).unwrap_or(Latitude::EQUATOR);
-    let coarse = Setting::coarse(latitude, 1.0 / COARSE_HZ as f64);
+    let coarse = Setting::coarse(latitude, Seconds(1.0 / COARSE_HZ as f64));
     let [mean, worst] = kept(counter, Keeper::new(&coarse), COARSE_HZ, report);
     let name = "gyrovertical on a coarse IMU, a sample at 416 Hz";
     report.budget(name, mean, VERTICAL_INSTRUCTIONS);
     let name = "gyrovertical, the sample that costs most";
     report.budget(name, worst, VERTICAL_GREATEST_INSTRUCTIONS);
     let noise = GyroNoise::from_field_units(0.001, 0.007, 0.0, 0.0);
-    let gyro = Gyro { noise, bias_sigma: DEGREE_PER_HOUR, scale_sigma: 1e-4 };
-    let mut keeper = Keeper::new(&Setting::precise(latitude, 1.0 / PRECISE_HZ as f64, gyro));
-    keeper.hand_over(Azimuth { angle: 1.0, sigma: 0.1 * DEGREE });
+    let gyro = Gyro { noise, bias_sigma: RadiansPerSecond(DEGREE_PER_HOUR), scale_sigma: 1e-4 };
+    let mut keeper =
+        Keeper::new(&Setting::precise(latitude, Seconds(1.0 / PRECISE_HZ as f64), gyro));
+    keeper.hand_over(Azimuth { angle: Radians(1.0), sigma: Radians::from_degrees(0.1) });
     let [mean, worst] = kept(counter, keeper, PRECISE_HZ, report);
     let name = "heading from three precise gyros, a sample at 2 kHz";
     report.budget(name, mean, HEADING_INSTRUCTIONS);
@@ -86,7 +88,7 @@ fn kept(counter: &Counter, mut keeper: Keeper, rate: u64, report: &mut Report) -
         counter.measure(|| push(&mut keeper, &sample)).0
     });
     let kept = keeper.report();
-    let is_level = libm::hypot(kept.pitch, kept.roll) < DEGREE;
+    let is_level = libm::hypot(kept.pitch.0, kept.roll.0) < DEGREE;
     report.require("the body is level to a degree", is_level);
     costs
 }
@@ -111,7 +113,7 @@ fn moving(index: u64, rate: u64, noise: &mut Generator, carried: &mut [f64; 3]) 
 /// Measures a spinning body with noise, in phase lock.
 fn spun(counter: &Counter, report: &mut Report) {
     let mut noise = Generator::new(4);
-    let mut spin = Spin::new(&spin::Setting::new(1.0 / SPIN_HZ as f64));
+    let mut spin = Spin::new(&spin::Setting::new(Seconds(1.0 / SPIN_HZ as f64)));
     let push = black_box(Spin::push as PushSpin);
     let (mut roll, mut carried) = (0.0, 0.0);
     let [mean, worst] = mean_and_greatest(SPUN, |index| {

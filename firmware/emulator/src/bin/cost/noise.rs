@@ -7,7 +7,7 @@ use heapless::Vec;
 use orientation::noise::allan::{Allan, MOST_POINTS, Point, variance};
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::noise::model::GyroNoise;
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Seconds};
 
 use crate::report::{Report, mean_and_greatest};
 use firmware::budget::{ALLAN_INSTRUCTIONS, NOISE_FIT_INSTRUCTIONS};
@@ -52,7 +52,7 @@ pub fn stack() -> usize {
 /// Fit that is measured, not inlined.
 #[inline(never)]
 fn fit(points: &[Point]) -> Result<NoiseFit, FitError> {
-    NoiseFit::of_points(points, 1.0 / RATE_HZ)
+    NoiseFit::of_points(points, Seconds(1.0 / RATE_HZ))
 }
 
 /// Mean number of instructions of a sample, call included.
@@ -80,9 +80,9 @@ fn points(samples: f64) -> Vec<Point, MOST_POINTS> {
         let seconds = m * stride / RATE_HZ;
         let scatter = libm::sqrt(m / terms.max(1.0)) * noise.gaussian();
         Point {
-            seconds,
+            seconds: Seconds(seconds),
             variance: variance(&gyro, seconds) * (1.0 + scatter).max(0.1),
-            stride: stride / RATE_HZ,
+            stride: Seconds(stride / RATE_HZ),
             terms: terms.max(0.0) as u64,
         }
     };

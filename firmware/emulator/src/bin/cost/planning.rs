@@ -3,6 +3,7 @@
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Plan, PlanError, Rotation, burov, for_sigma, for_time};
+use orientation::units::{RadiansPerSecond, Seconds};
 
 use crate::report::Report;
 use firmware::budget::PLAN_INSTRUCTIONS;
@@ -41,10 +42,12 @@ pub fn stack() -> usize {
 fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
     let conditions = conditions(gyro);
     let (time, planned) = counter.measure(|| plan(&conditions));
-    let wanted = RELAXED * planned.map_or(0.0, |plan| plan.rate_sigma);
-    let (sigma, found) = counter.measure(|| for_sigma(&conditions, wanted, LONGEST));
+    let wanted = RELAXED * planned.map_or(0.0, |plan| plan.rate_sigma.0);
+    let (sigma, found) =
+        counter.measure(|| for_sigma(&conditions, RadiansPerSecond(wanted), Seconds(LONGEST)));
     report.require("both plans were made", planned.is_ok() && found.is_ok());
-    let (burov, best) = counter.measure(|| burov::best(&conditions.noise, SECONDS, 2.0));
+    let (burov, best) =
+        counter.measure(|| burov::best(&conditions.noise, Seconds(SECONDS), Seconds(2.0)));
     report.require("Burov's best was found", best.is_some());
     [time, sigma, burov].map(Cost::instructions)
 }
@@ -52,15 +55,15 @@ fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
 /// Plan that is measured, not inlined.
 #[inline(never)]
 fn plan(conditions: &Conditions) -> Result<Plan, PlanError> {
-    for_time(conditions, SECONDS)
+    for_time(conditions, Seconds(SECONDS))
 }
 
 /// Conditions for a gyro with this noise.
 fn conditions([n, b, k, r]: [f64; 4]) -> Conditions {
     Conditions {
         noise: GyroNoise::from_field_units(n, b, k, r),
-        rotation: Rotation::fixed(2.0),
-        shortest: 1.0,
+        rotation: Rotation::fixed(Seconds(2.0)),
+        shortest: Seconds(1.0),
         fewest: 8,
         orders: &Order::COMPARED,
     }

@@ -11,7 +11,10 @@ use orientation::alignment::stops::stop_detector::{Rests, StopDetector};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce};
+use orientation::units::{
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, ForceNoise, Instant, RadiansPerSecond, Seconds,
+    SpecificForce,
+};
 
 use crate::report::{Report, figure, mean_and_greatest};
 use firmware::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
@@ -44,7 +47,7 @@ pub fn report(counter: &Counter, report: &mut Report) {
     let mut stop_detector = drive();
     let (cost, conclusion) = counter.measure(|| conclude(&mut stop_detector));
     let found = conclusion.found.filter(|_| conclusion.verdict.is_ok());
-    let is_right = found.is_some_and(|found| (found.start.angle - AZIMUTH).abs() < 0.01 * DEGREE);
+    let is_right = found.is_some_and(|found| (found.start.angle.0 - AZIMUTH).abs() < 0.01 * DEGREE);
     report.require("the azimuth at the start is found from two stops", is_right);
     report.budget("conclusion of two stops and a drive", cost.instructions(), STOPS_INSTRUCTIONS);
     if let Some(found) = found {
@@ -107,14 +110,15 @@ fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE).unwrap_or(Latitude::EQUATOR);
     let noise = GyroNoise::from_field_units(0.05, 0.0, 0.0, 0.0);
     let site = Site { noise: StatedNoise::Whole(noise), ..Site::at(latitude) };
-    Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(site) }
+    let bias_sigma = Some(RadiansPerSecond(DEGREE_PER_HOUR));
+    Setting { bias_sigma, force_noise: ForceNoise(1e-3), ..Setting::new(site) }
 }
 
 /// Stop detector at this sample rate, Hz.
 fn stop_detector(rate: u64) -> StopDetector {
     let setting = setting();
     let gravity = setting.site.latitude.gravity();
-    StopDetector::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
+    StopDetector::new(Rests::Found, &setting.sensors(), gravity, Seconds(1.0 / rate as f64))
 }
 
 /// Recording of a level vehicle that stands for a minute, turns for a quarter of an hour and stands
@@ -131,7 +135,7 @@ fn drive() -> StopDetector {
         let (sine, cosine) = libm::sincos(azimuth + 0.5 * step);
         azimuth += step;
         let north = earth.horizontal_rate();
-        let rates = [north * cosine, -north * sine, turning - earth.vertical_rate()];
+        let rates = [north.0 * cosine, -north.0 * sine, turning - earth.vertical_rate().0];
         stop_detector.push(&inertial(index, DRIVE_HZ, rates, &mut carried));
     }
     stop_detector
@@ -145,6 +149,6 @@ fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> I
         turned: core::array::from_fn(|axis| {
             AngleIncrement::from_rad(rates[axis] / rate as f64, &mut carried[axis])
         }),
-        force: Some([0.0, 0.0, -gravity].map(SpecificForce::from_m_per_s2)),
+        force: Some([0.0, 0.0, -gravity.0].map(SpecificForce::from_m_per_s2)),
     }
 }

@@ -184,7 +184,7 @@ fn log<S, T: Method<S> + Trace>(method: &T) {
     match method.verdict() {
         Some(Ok(solution)) => {
             let azimuth = solution.azimuth;
-            row(AZIMUTH, &[azimuth.angle, azimuth.sigma].map(f64::to_bits));
+            row(AZIMUTH, &[azimuth.angle.0, azimuth.sigma.0].map(f64::to_bits));
         }
         Some(Err(reason)) => println!("reason {}", reason),
         None => {}

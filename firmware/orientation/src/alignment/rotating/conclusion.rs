@@ -16,7 +16,7 @@ use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion, refuse_if};
 use crate::device::Device;
 use crate::math::{Complex, chi_square_tail};
 use crate::noise::GyroNoise;
-use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
+use crate::units::{MilliG, Radians, RadiansPerRootSecond, RadiansPerSecond, TURN};
 
 /// Greatest relative difference between the speeds of both senses.
 const EQUAL_SPEEDS: f64 = 0.01;
@@ -66,8 +66,8 @@ pub struct Conclusion {
     pub misalignments: Vec<AxisMisalignment, SPEEDS>,
     /// Averages of both senses at each speed.
     pub pairs: Vec<Pair, SPEEDS>,
-    /// Angle random walk N used, rad/√s: known, or from the scatter of the turns.
-    pub angle_random_walk: f64,
+    /// Angle random walk N used: known, or from the scatter of the turns.
+    pub angle_random_walk: RadiansPerRootSecond,
     /// Chi-square of the turns about their means.
     pub chi_square: f64,
     /// Degrees of freedom of chi-square.
@@ -92,7 +92,7 @@ impl Default for Conclusion {
             fit: None,
             misalignments: Vec::new(),
             pairs: Vec::new(),
-            angle_random_walk: 0.0,
+            angle_random_walk: RadiansPerRootSecond(0.0),
             chi_square: 0.0,
             degrees: 0,
         }
@@ -116,7 +116,7 @@ impl Conclusion {
         self.pair(evidence, &mut marks)?;
         let drift = self.scatter(setting);
         let moved = |reason| {
-            let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 }.into();
+            let tilted = |change: f64| Refusal::TiltChanged { change: MilliG(change * 1e3) }.into();
             tilting.step.map_or(reason, tilted)
         };
         self.judge_left_out(setting).map_err(moved)?;
@@ -157,7 +157,7 @@ impl Conclusion {
         if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(alignment::Refusal::Device { device: Device::Accelerometer, trouble });
         }
-        let angle = turn_accumulator.slip * DEGREES;
+        let angle = Radians(turn_accumulator.slip).into();
         refuse_if(turn_accumulator.slip != 0.0, Refusal::EncoderSlipped { angle })
     }
 
@@ -204,7 +204,7 @@ impl Conclusion {
     fn averages(&self, evidence: &Evidence, marks: &mut Marks) -> Vec<Average, STRETCHES> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
         let (stretches, misalignments) = (&turn_accumulator.stretches, &self.misalignments);
-        let horizontal = setting.site.latitude.horizontal_rate();
+        let horizontal = setting.site.latitude.horizontal_rate().0;
         let steady = steady_part(stretches);
         let slow = stretches.first().map_or(0.0, Stretch::speed);
         let mut averages = Vec::new();
@@ -285,7 +285,7 @@ impl Conclusion {
         let is_it =
             |pair: &&Pair| (pair.speed() - average.speed).abs() <= EQUAL_SPEEDS * average.speed;
         let pair = self.pairs.iter().find(is_it).filter(|_| !setting.sensor.is_flat);
-        let gain = pair.map_or(1.0, |pair| pair.gain(horizontal));
+        let gain = pair.map_or(1.0, |pair| pair.gain(horizontal.0));
         of_one_turn(&self.noise(setting), average.speed) * gain * gain / average.joined()
     }
 
@@ -311,16 +311,16 @@ impl Conclusion {
         let mut fit = problem.solve().ok_or(alignment::Refusal::MisalignmentUnknown)?;
         let inflation = Directions { problem: &problem, fit: &fit }.inflation(marks);
         let excess = self.excess(setting);
-        fit.budget.noise *= excess;
-        let drift = fit.budget.drift * excess;
-        fit.budget.drift =
-            libm::sqrt(drift * drift + inflation.as_ref().map_or(0.0, |inflation| *inflation));
+        fit.budget.noise.0 *= excess;
+        let drift = fit.budget.drift.0 * excess;
+        let inflation_of = inflation.as_ref().map_or(0.0, |inflation| *inflation);
+        fit.budget.drift = Radians(libm::sqrt(drift * drift + inflation_of));
         let slip = tilting.slip(fit.tilt.size());
-        let is_small = slip <= SMALL_SLIP * fit.sigma();
-        fit.budget.encoder = libm::hypot(fit.budget.encoder, OF_SLIP * slip);
+        let is_small = slip <= SMALL_SLIP * fit.sigma().0;
+        fit.budget.encoder = Radians(libm::hypot(fit.budget.encoder.0, OF_SLIP * slip));
         self.fit = Some(fit);
         match tilting.step.filter(|_| !is_small) {
-            Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }.into()),
+            Some(change) => Err(Refusal::TiltChanged { change: MilliG(change * 1e3) }.into()),
             None => inflation.map(|_| ()),
         }
     }
@@ -350,8 +350,8 @@ impl Conclusion {
 
     /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
     fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Passed {
-        let gravity = setting.site.latitude.gravity();
-        let allowed = FORCE_TOLERANCE + DIFFERENT * setting.site.accelerometer_bias_sigma;
+        let gravity = setting.site.latitude.gravity().0;
+        let allowed = FORCE_TOLERANCE + DIFFERENT * setting.site.accelerometer_bias_sigma.0;
         let (density, degrees) = force_density(&self.pairs);
         let different = different(degrees);
         for average in self.pairs.iter().flat_map(Pair::senses) {
@@ -365,12 +365,12 @@ impl Conclusion {
             let allowed = different * 2.0 * sigma + AXES_TOLERANCE * average.force.size() / gravity;
             let is_off =
                 average.across != Complex::default() && difference > allowed + TILT_TOLERANCE;
-            let scatter = difference * 1e3;
+            let scatter = MilliG(difference * 1e3);
             refuse_if(is_off, alignment::Refusal::AccelerometerDisagrees { scatter })?;
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
             let is_changed = apart.size() > different * sigma + TILT_TOLERANCE;
-            refuse_if(is_changed, Refusal::TiltChanged { change: apart.size() * 1e3 })?;
+            refuse_if(is_changed, Refusal::TiltChanged { change: MilliG(apart.size() * 1e3) })?;
         }
         Ok(())
     }
@@ -381,17 +381,17 @@ impl<'a> Evidence<'a> {
     fn of(setting: &'a Setting, turn_accumulator: &'a TurnAccumulator) -> Self {
         let latitude = setting.site.latitude;
         let [along, across] = setting.site.g_sensitivity;
-        let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
-        let tilting = Tilting::of(&turn_accumulator.stretches, latitude.gravity(), per_tilt);
+        let per_tilt = Complex::new(latitude.vertical_rate().0 + along.0, across.0);
+        let tilting = Tilting::of(&turn_accumulator.stretches, latitude.gravity().0, per_tilt);
         Self { setting, turn_accumulator, tilting }
     }
 }
 
-/// Angle random walk N from the scatter of neighbouring turns, rad/√s.
-fn estimate(stretches: &[Stretch], misalignments: &[AxisMisalignment]) -> f64 {
+/// Angle random walk N from the scatter of neighbouring turns.
+fn estimate(stretches: &[Stretch], misalignments: &[AxisMisalignment]) -> RadiansPerRootSecond {
     let variance = variance_of_neighbours(stretches, misalignments);
     let speed = stretches.first().map_or(0.0, Stretch::speed);
-    libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE))
+    RadiansPerRootSecond(libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE)))
 }
 
 /// Significance limit for a σ that is itself estimated with so many degrees of freedom: with few it
@@ -400,9 +400,10 @@ fn different(degrees: u32) -> f64 {
     DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)))
 }
 
-/// Refusal of unequal speeds, °/s.
+/// Refusal of unequal speeds.
 fn unequal(clockwise: &Average, counter: &Average) -> alignment::Refusal {
-    let [clockwise, counter] = [clockwise, counter].map(|average| average.speed * DEGREES);
+    let [clockwise, counter] =
+        [clockwise, counter].map(|average| RadiansPerSecond(average.speed).into());
     Refusal::SpeedsUnequal { clockwise, counter }.into()
 }
 
@@ -419,7 +420,7 @@ fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Passed {
 /// Tests of a flat sensor: the senses agree, and the Earth rate has the expected magnitude.
 fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Passed {
     let sigmas = libm::sqrt(fit.difference);
-    let is_molecular = setting.sensor.molecular_sigma > 0.0;
+    let is_molecular = setting.sensor.molecular_sigma.0 > 0.0;
     let different = different(degrees);
     let tolerance = SENSES_TOLERANCE + different * fit.senses_sigma;
     let is_apart = !is_molecular && sigmas > different && fit.molecular.size() > tolerance;
@@ -435,10 +436,10 @@ fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Passed {
 /// Tests of a sensor with unknown response: its phase, and the agreement of the speeds.
 fn judge_lagging(setting: &Setting, fit: &Fit) -> Passed {
     let phase =
-        fit.phases.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
-    let degrees = phase * DEGREES;
-    refuse_if(phase.abs() > GREATEST_PHASE, Refusal::PhaseAmbiguous { phase: degrees })?;
-    if setting.sensor.molecular_sigma == 0.0 {
+        fit.phases.iter().fold(0.0, |most: f64, x| if x.0.abs() > most.abs() { x.0 } else { most });
+    let is_great = phase.abs() > GREATEST_PHASE;
+    refuse_if(is_great, Refusal::PhaseAmbiguous { phase: Radians(phase).into() })?;
+    if setting.sensor.molecular_sigma.0 == 0.0 {
         return Ok(());
     }
     let sigmas = fit.disagreement.max(fit.lag_disagreement);

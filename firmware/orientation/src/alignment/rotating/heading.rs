@@ -11,7 +11,7 @@ use super::turn::Sense;
 use super::{Refusal, misalignment, solution};
 use crate::alignment::{self, Passed, SlowMotion, refuse_if};
 use crate::math::{Column, Complex};
-use crate::units::DEGREES_PER_RADIAN as DEGREES;
+use crate::units::{MilliG, Radians, RadiansPerSecond, Seconds};
 
 /// Gain of chi-square from which a drift of the direction is accepted (p = 0.0001).
 const BELIEVED: f64 = 15.1;
@@ -73,7 +73,8 @@ impl Directions<'_> {
         let steady = record.steady()?;
         let drift = record.changing(Shape::Rate, &steady);
         let variance = drift.map_or(f64::INFINITY, |drift| drift.change_variance);
-        Some(SlowMotion { sigma: libm::sqrt(variance), lever: record.to_end() })
+        let sigma = RadiansPerSecond(libm::sqrt(variance));
+        Some(SlowMotion { sigma, lever: Seconds(record.to_end()) })
     }
 
     /// Directions of the turns, rad, relative to that of the Earth rate.
@@ -110,7 +111,7 @@ impl Directions<'_> {
         let is_creep = drift.zip(tilting.creep(self.fit.tilt)).is_some_and(|(drift, creep)| {
             (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
         });
-        refuse_if(is_creep, Refusal::TiltChanged { change: tilting.change() * 1e3 })
+        refuse_if(is_creep, Refusal::TiltChanged { change: MilliG(tilting.change() * 1e3) })
     }
 
     /// Whether the sensor has a flat response.
@@ -121,7 +122,7 @@ impl Directions<'_> {
     /// Time, s, that a rotating base must have turned for its angle to equal the effect of its rate
     /// on the vertical Earth rate, which the gyro measures through the tilt.
     fn lever(&self) -> f64 {
-        let across = (self.fit.tilt * Complex::unit(-self.fit.azimuth)).im;
+        let across = (self.fit.tilt * Complex::unit(-self.fit.azimuth.0)).im;
         across / self.problem.earth()[0]
     }
 
@@ -137,7 +138,7 @@ impl Directions<'_> {
     fn reference(&self, pair: &Pair, sense: Sense) -> Complex {
         if self.is_flat() {
             let size = self.fit.ratio * self.problem.earth()[0];
-            return Complex::unit(self.fit.azimuth).scaled(size);
+            return Complex::unit(self.fit.azimuth.0).scaled(size);
         }
         if sense == Sense::Clockwise { pair.clockwise.phasor } else { pair.counter.phasor }
     }
@@ -175,7 +176,8 @@ fn stepped(record: &Record, step: Option<Found>) -> alignment::Refusal {
     if record.is_between_senses(after) {
         return Refusal::SensesDisagree { sigmas: libm::sqrt(step.gain) }.into();
     }
-    alignment::Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
+    let (angle, after) = (Radians(step.change[0]).into(), Seconds(after));
+    alignment::Refusal::HeadingStepped { angle, after }
 }
 
 /// Variance that the azimuth lacks where a possible change is neglected, rad²: at the end, or of a

@@ -5,14 +5,15 @@
 //! specific force, in g, as F = sin p + j sin r cos p (rotations azimuth, pitch, roll in this order).
 
 use crate::math::Complex;
+use crate::units::Radians;
 
 /// Inclination of the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lean {
-    /// Pitch of body x, rad, up positive.
-    pub pitch: f64,
-    /// Roll about body x, rad, positive right side down.
-    pub roll: f64,
+    /// Pitch of body x, up positive.
+    pub pitch: Radians,
+    /// Roll about body x, positive right side down.
+    pub roll: Radians,
 }
 
 impl Lean {
@@ -21,14 +22,14 @@ impl Lean {
     pub fn of(force: Complex) -> Self {
         let pitch = libm::asin(force.re.clamp(-1.0, 1.0));
         let roll = libm::asin((force.im / libm::cos(pitch).max(1e-6)).clamp(-1.0, 1.0));
-        Self { pitch, roll }
+        Self { pitch: Radians(pitch), roll: Radians(roll) }
     }
 
     /// Rate of the base that a rate of the force's phasor, g/s, implies, as a phasor in the plane,
     /// rad/s: pitch about the axis to the right, roll about the axis forward.
     pub fn turning(&self, rate: Complex) -> Complex {
-        let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch);
-        let (sine_roll, cosine_roll) = libm::sincos(self.roll);
+        let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch.0);
+        let (sine_roll, cosine_roll) = libm::sincos(self.roll.0);
         let pitching = rate.re / cosine_pitch;
         let rolling = (rate.im + pitching * sine_pitch * sine_roll) / (cosine_roll * cosine_pitch);
         Complex::new(rolling, -pitching * cosine_roll)
@@ -36,8 +37,8 @@ impl Lean {
 
     /// Coefficients a and b: the contributions of cosine and sine of the azimuth.
     fn parts(&self) -> (Complex, f64) {
-        let (sine, cosine) = libm::sincos(self.pitch);
-        (Complex::new(cosine, -libm::sin(self.roll) * sine), libm::cos(self.roll))
+        let (sine, cosine) = libm::sincos(self.pitch.0);
+        (Complex::new(cosine, -libm::sin(self.roll.0) * sine), libm::cos(self.roll.0))
     }
 
     /// Azimuth, rad, and magnitude of the horizontal rate with this phasor in the plane.

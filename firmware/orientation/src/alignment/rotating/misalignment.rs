@@ -12,7 +12,7 @@ use crate::checksum::{numbers, record, record_bytes};
 use crate::math::{Column, Complex};
 use crate::noise::GyroNoise;
 use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, TURNING};
-use crate::units::TURN;
+use crate::units::{Radians, RadiansPerSecond, Seconds, TURN};
 
 /// Least modulation of the platform's rate, RMS over its mean, that determines a misalignment.
 const LEAST_MODULATION: f64 = 0.02;
@@ -34,14 +34,14 @@ pub struct AxisMisalignment {
     /// Part of the platform's rate that the gyro shows, s = −sin α: the in-phase response at the
     /// frequency of the modulation.
     pub sine: f64,
-    /// Part of the platform's acceleration that the gyro shows, q = −s τ, s.
-    pub quadrature: f64,
+    /// Part of the platform's acceleration that the gyro shows, q = −s τ.
+    pub quadrature: Seconds,
     /// Standard deviation of `sine`, 1σ.
     pub sine_sigma: f64,
-    /// Standard deviation of `quadrature`, 1σ, s.
-    pub quadrature_sigma: f64,
-    /// Frequency of the modulation, rad/s.
-    pub frequency: f64,
+    /// Standard deviation of `quadrature`, 1σ.
+    pub quadrature_sigma: Seconds,
+    /// Frequency of the modulation.
+    pub frequency: RadiansPerSecond,
     /// Date of the measurement, s since 1970; zero where it is unknown.
     pub date: u64,
     /// Temperature at the measurement, °C; NaN where it is unknown.
@@ -80,12 +80,13 @@ impl Modulated {
         let density = noise.density_at(frequency / TURN) * rows / seconds;
         let sigma = |column: usize| libm::sqrt(density * found.covariance[column][column]);
         let (sine, quadrature) = (found.coefficients[TURNING], found.coefficients[QUICKENING]);
+        let whole = at_one_frequency(frequency * quadrature / sine, *width);
         Some(AxisMisalignment {
             sine,
-            quadrature: quadrature * at_one_frequency(frequency * quadrature / sine, *width),
+            quadrature: Seconds(quadrature * whole),
             sine_sigma: sigma(TURNING),
-            quadrature_sigma: sigma(QUICKENING),
-            frequency,
+            quadrature_sigma: Seconds(sigma(QUICKENING)),
+            frequency: RadiansPerSecond(frequency),
             date: 0,
             temperature: f32::NAN,
         })
@@ -93,50 +94,51 @@ impl Modulated {
 }
 
 impl AxisMisalignment {
-    /// Misalignment angle α of the axis from the platform's plane, rad, up positive.
+    /// Misalignment angle α of the axis from the platform's plane, up positive.
     #[must_use]
-    pub fn angle(&self) -> f64 {
-        -libm::asin(self.sine.clamp(-1.0, 1.0))
+    pub fn angle(&self) -> Radians {
+        Radians(-libm::asin(self.sine.clamp(-1.0, 1.0)))
     }
 
-    /// Lag of the gyro behind the encoder as one pole, s; near zero where the misalignment is too
+    /// Lag of the gyro behind the encoder as one pole; near zero where the misalignment is too
     /// small to show it.
     #[must_use]
-    pub fn lag(&self) -> f64 {
+    pub fn lag(&self) -> Seconds {
         // The estimate is shrunk by the part that noise alone would explain.
-        let variance = squared(self.frequency * self.quadrature_sigma) + squared(self.sine_sigma);
-        -self.quadrature * self.sine / (squared(self.sine) + variance).max(f64::MIN_POSITIVE)
+        let sigma = self.frequency.0 * self.quadrature_sigma.0;
+        let variance = squared(sigma) + squared(self.sine_sigma);
+        let power = (squared(self.sine) + variance).max(f64::MIN_POSITIVE);
+        Seconds(-self.quadrature.0 * self.sine / power)
     }
 
     /// Standard deviation of that lag, 1σ, s; infinite without misalignment.
     pub(super) fn lag_sigma(&self) -> f64 {
-        self.quadrature_sigma / self.sine.abs()
+        self.quadrature_sigma.0 / self.sine.abs()
     }
 
     /// Response of the gyro to a modulation of the platform's rate at a frequency in rad/s,
     /// clockwise rotation positive: the misalignment behind one pole, which lags, or leads as a
     /// high-pass does.
     pub fn response(&self, frequency: f64) -> Complex {
-        let lag = self.lag();
-        let passed = self.sine * (1.0 + squared(self.frequency * lag));
+        let (lag, own) = (self.lag().0, self.frequency.0);
+        let passed = self.sine * (1.0 + squared(own * lag));
         // The tangent of a lag grows with the frequency, that of a lead falls.
-        let tangent =
-            if lag < 0.0 { lag * squared(self.frequency) / frequency } else { frequency * lag };
+        let tangent = if lag < 0.0 { lag * squared(own) / frequency } else { frequency * lag };
         Complex::new(passed, 0.0) / Complex::new(1.0, tangent)
     }
 
     /// Standard deviations, 1σ, of the in-phase and quadrature parts of that response.
     pub(super) fn sigmas(&self, frequency: f64) -> [f64; 2] {
-        [self.sine_sigma, frequency * self.quadrature_sigma]
+        [self.sine_sigma, frequency * self.quadrature_sigma.0]
     }
 
     /// Stored form: version, the numbers in the order of their fields, CRC-32, all little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; BYTES] {
-        let [sine, quadrature] = [self.sine, self.quadrature].map(f64::to_bits);
-        let sigmas = [self.sine_sigma, self.quadrature_sigma].map(f64::to_bits);
+        let [sine, quadrature] = [self.sine, self.quadrature.0].map(f64::to_bits);
+        let sigmas = [self.sine_sigma, self.quadrature_sigma.0].map(f64::to_bits);
         let (frequency, temperature) =
-            (self.frequency.to_bits(), self.temperature.to_bits().into());
+            (self.frequency.0.to_bits(), self.temperature.to_bits().into());
         record(LAYOUT, &[sine, quadrature, sigmas[0], sigmas[1], frequency, self.date, temperature])
     }
 
@@ -147,6 +149,8 @@ impl AxisMisalignment {
         let [sine, quadrature, sine_sigma, quadrature_sigma, frequency] =
             numbers.map(f64::from_bits);
         let temperature = f32::from_bits(temperature as u32);
+        let [quadrature, quadrature_sigma] = [quadrature, quadrature_sigma].map(Seconds);
+        let frequency = RadiansPerSecond(frequency);
         let misalignment =
             Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, date, temperature };
         misalignment.is_possible().then_some(misalignment)
@@ -155,8 +159,8 @@ impl AxisMisalignment {
     /// Whether every number is finite and in its range.
     fn is_possible(&self) -> bool {
         let Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, .. } = *self;
-        let numbers = [sine, quadrature, sine_sigma, quadrature_sigma, frequency];
-        numbers.iter().all(|number| number.is_finite()) && sine.abs() <= 1.0 && frequency > 0.0
+        let numbers = [sine, quadrature.0, sine_sigma, quadrature_sigma.0, frequency.0];
+        numbers.iter().all(|number| number.is_finite()) && sine.abs() <= 1.0 && frequency.0 > 0.0
     }
 }
 
@@ -171,7 +175,7 @@ fn at_one_frequency(lead: f64, width: f64) -> f64 {
 /// Misalignment that was measured nearest to a speed in rad/s.
 #[must_use]
 pub fn nearest(misalignments: &[AxisMisalignment], speed: f64) -> Option<&AxisMisalignment> {
-    let apart = |misalignment: &AxisMisalignment| (misalignment.frequency - speed.abs()).abs();
+    let apart = |misalignment: &AxisMisalignment| (misalignment.frequency.0 - speed.abs()).abs();
     misalignments.iter().reduce(|best, next| if apart(next) < apart(best) { next } else { best })
 }
 

@@ -35,7 +35,7 @@ use self::misalignment::AxisMisalignment;
 use self::turn::SPEEDS;
 use super::refusal::{Passed, refuse_if};
 use super::site::Site;
-use crate::units::{DEGREE, DEGREES_PER_RADIAN};
+use crate::units::{Degrees, Radians, RadiansPerSecond, Seconds};
 
 /// Kind of sensor on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,20 +46,27 @@ pub struct Sensor {
     pub is_flat: bool,
     /// Standard deviation, 1σ, of either part of a g-sensitivity that integrates acceleration
     /// (molecular-electronic sensors): its effect of tilt times the platform's speed, over the
-    /// horizontal Earth rate, rad/s. Zero for a gyro without it; infinite where it is unknown,
+    /// horizontal Earth rate. Zero for a gyro without it; infinite where it is unknown,
     /// which requires two speeds.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::units::or_infinite"))]
-    pub molecular_sigma: f64,
-    /// Settling time of the output after a change of speed, s.
-    pub settle_seconds: f64,
+    pub molecular_sigma: RadiansPerSecond,
+    /// Settling time of the output after a change of speed.
+    pub settle_seconds: Seconds,
 }
 
 impl Sensor {
     /// Ordinary gyro: flat, with a g-sensitivity proportional to force only, settled within 1 s.
-    pub const GYRO: Self = Self { is_flat: true, molecular_sigma: 0.0, settle_seconds: 1.0 };
+    pub const GYRO: Self = Self {
+        is_flat: true,
+        molecular_sigma: RadiansPerSecond(0.0),
+        settle_seconds: Seconds(1.0),
+    };
     /// Molecular-electronic sensor without prior knowledge, settled within 5 s.
-    pub const MOLECULAR: Self =
-        Self { is_flat: false, molecular_sigma: f64::INFINITY, settle_seconds: 5.0 };
+    pub const MOLECULAR: Self = Self {
+        is_flat: false,
+        molecular_sigma: RadiansPerSecond(f64::INFINITY),
+        settle_seconds: Seconds(5.0),
+    };
 }
 
 /// Configuration of an alignment on a rotating platform.
@@ -72,21 +79,21 @@ pub struct Setting {
     pub sensor: Sensor,
     /// Stored axis misalignments, one for each speed; rate-modulated turns replace them.
     pub misalignments: [Option<AxisMisalignment>; SPEEDS],
-    /// Greatest misalignment of the sensitive axis from the platform's plane, rad.
-    pub misalignment_limit: f64,
-    /// Standard deviation of the encoder's zero, 1σ, rad. It enters the azimuth fully, and no
+    /// Greatest misalignment of the sensitive axis from the platform's plane.
+    pub misalignment_limit: Radians,
+    /// Standard deviation of the encoder's zero, 1σ. It enters the azimuth fully, and no
     /// rotation shows it.
-    pub encoder_zero_sigma: f64,
+    pub encoder_zero_sigma: Radians,
     /// Whether the encoder's error twice per turn is within [`Site::encoder_sigma`]; otherwise
     /// modulation of the platform's rate at that frequency may be such an error.
     pub harmonics_known: bool,
-    /// Quantisation step of the gyro's rates, rad/s, as far as their noise does not hide it:
+    /// Quantisation step of the gyro's rates, as far as their noise does not hide it:
     /// rounding that is synchronous with the turn does not average out.
-    pub rate_step: f64,
+    pub rate_step: RadiansPerSecond,
 }
 
 /// Default of [`Setting::misalignment_limit`]: 2°.
-const MISALIGNMENT_LIMIT: f64 = 2.0 * DEGREE;
+const MISALIGNMENT_LIMIT: Radians = Radians::from_degrees(2.0);
 
 impl Setting {
     /// Configuration without stored misalignments, for an exact encoder.
@@ -97,9 +104,9 @@ impl Setting {
             sensor,
             misalignments: [None; SPEEDS],
             misalignment_limit: MISALIGNMENT_LIMIT,
-            encoder_zero_sigma: 0.0,
+            encoder_zero_sigma: Radians(0.0),
             harmonics_known: true,
-            rate_step: 0.0,
+            rate_step: RadiansPerSecond(0.0),
         }
     }
 
@@ -109,8 +116,8 @@ impl Setting {
     /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
     pub fn accept(&self, misalignment: &AxisMisalignment) -> Passed {
         let (angle, allowed) = (misalignment.angle(), self.misalignment_limit);
-        let is_allowed = angle.abs() <= allowed;
-        let [angle, allowed] = [angle, allowed].map(|angle| angle * DEGREES_PER_RADIAN);
+        let is_allowed = angle.0.abs() <= allowed.0;
+        let [angle, allowed] = [angle, allowed].map(Degrees::from);
         refuse_if(!is_allowed, Refusal::Misaligned { angle, allowed })
     }
 }

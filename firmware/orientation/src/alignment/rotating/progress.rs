@@ -2,7 +2,7 @@
 
 use super::turn::Sense;
 use crate::earth::Latitude;
-use crate::units::DEGREES_PER_RADIAN as DEGREES;
+use crate::units::{DEGREES_PER_RADIAN as DEGREES, Radians, RadiansPerSecond};
 use crate::words::Rounded;
 
 /// Progress of an alignment by continuous rotation.
@@ -16,13 +16,13 @@ pub enum Progress {
         latitude: Latitude,
     },
     /// The platform begins rate-modulated turns, which make the axis misalignment observable, at
-    /// this mean rate, rad/s.
-    Modulated(f64),
+    /// this mean rate.
+    Modulated(RadiansPerSecond),
     /// The estimated axis misalignment, the elevation of the gyro's sensitive axis above the plane
-    /// of rotation, and its 1σ, rad.
-    Misalignment(f64, f64),
-    /// Turns are evaluated from here on: sense of rotation and speed, rad/s.
-    Stretch(Sense, f64),
+    /// of rotation, and its 1σ.
+    Misalignment(Radians, Radians),
+    /// Turns are evaluated from here on: sense of rotation and speed.
+    Stretch(Sense, RadiansPerSecond),
     /// A turn was completed: its number from 1, the number of planned turns.
     Turned(u32, u32),
     /// The number of turns of one sense of rotation that are excluded from the fit.
@@ -34,12 +34,12 @@ crate::words! { Progress:
         "begin: {} turns at latitude {}°", turns, Rounded::<4>(latitude.rad() * DEGREES);
     Self::Modulated(rate) =>
         "rate-modulated turns, {} °/s in the mean, to measure the axis misalignment",
-        Rounded::<2>(rate * DEGREES);
+        Rounded::<2>(rate.degrees_per_second());
     Self::Misalignment(angle, sigma) =>
         "gyro's axis {}° ± {}° (1σ) above the platform",
-        Rounded::<4>(angle * DEGREES), Rounded::<4>(sigma * DEGREES);
+        Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees());
     Self::Stretch(sense, speed) =>
-        "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed * DEGREES);
+        "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed.degrees_per_second());
     Self::Turned(number, of) => "turn {} of {}", number, of;
     Self::LeftOut(turns, sense) =>
         "{} turn(s) {} left out: something disturbed them", turns, sense;

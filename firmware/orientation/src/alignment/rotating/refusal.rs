@@ -1,6 +1,7 @@
 //! Refusals of an alignment by continuous rotation, with the sentences that are printed for them.
 
 use super::turn::Sense;
+use crate::units::{Degrees, DegreesPerSecond, MilliG};
 use crate::words::Rounded;
 
 /// Reason for which an alignment by continuous rotation gives no azimuth, beside those that several methods have.
@@ -28,27 +29,27 @@ pub enum Refusal {
     },
     /// The platform turned faster in one sense than in the other.
     SpeedsUnequal {
-        /// Speed of clockwise rotation, °/s.
-        clockwise: f64,
-        /// Speed of counter-clockwise rotation, °/s.
-        counter: f64,
+        /// Speed of clockwise rotation.
+        clockwise: DegreesPerSecond,
+        /// Speed of counter-clockwise rotation.
+        counter: DegreesPerSecond,
     },
     /// The platform does not turn at the commanded rate.
     PlatformStopped {
-        /// Commanded rate, °/s, clockwise positive.
-        wanted: f64,
+        /// Commanded rate, clockwise positive.
+        wanted: DegreesPerSecond,
     },
     /// The encoder angle moved relative to the platform.
     EncoderSlipped {
-        /// Angle by which the encoder slipped, °.
-        angle: f64,
+        /// Angle by which the encoder slipped.
+        angle: Degrees,
     },
     /// The gyro's sensitive axis is too far from the plane of rotation (axis misalignment).
     Misaligned {
-        /// Misalignment found, °.
-        angle: f64,
-        /// Greatest misalignment accepted, °.
-        allowed: f64,
+        /// Misalignment found.
+        angle: Degrees,
+        /// Greatest misalignment accepted.
+        allowed: Degrees,
     },
     /// The phasors of both senses of rotation differ by more than a sensor of flat response allows.
     SensesDisagree {
@@ -63,8 +64,8 @@ pub enum Refusal {
     },
     /// The tilt measured by the accelerometer changed between senses of rotation or between speeds.
     TiltChanged {
-        /// Change of the tilt, mg.
-        change: f64,
+        /// Change of the tilt.
+        change: MilliG,
     },
     /// The direction of the Earth-rate phasor drifts from turn to turn.
     DirectionDrifts {
@@ -74,8 +75,8 @@ pub enum Refusal {
     /// The phase lag of the sensor is so large that an azimuth and its opposite cannot be
     /// distinguished.
     PhaseAmbiguous {
-        /// Phase lag of the sensor, °.
-        phase: f64,
+        /// Phase lag of the sensor.
+        phase: Degrees,
     },
     /// The integrated g-sensitivity of a molecular-electronic sensor is too large against the Earth
     /// rate (MET 2018, ρ = |G|/(w Ω cos φ)).
@@ -96,14 +97,14 @@ crate::words! { Refusal:
         "{} whole even turn(s) {}: two are needed in either sense", turns, sense;
     Self::SpeedsUnequal { clockwise, counter } =>
         "the platform turned by {} °/s clockwise, by {} °/s counter-clockwise: both must be equal",
-        Rounded::<3>(clockwise), Rounded::<3>(counter);
+        Rounded::<3>(clockwise.0), Rounded::<3>(counter.0);
     Self::PlatformStopped { wanted } =>
-        "the platform does not turn, or not evenly, by {} °/s as stated", Rounded::<2>(wanted);
+        "the platform does not turn, or not evenly, by {} °/s as stated", Rounded::<2>(wanted.0);
     Self::EncoderSlipped { angle } =>
-        "the encoder moved by {}° against the platform", Rounded::<2>(angle);
+        "the encoder moved by {}° against the platform", Rounded::<2>(angle.0);
     Self::Misaligned { angle, allowed } =>
         "the sensitive axis stands {}° from the platform's plane, more than {}°: align the sensor mechanically",
-        Rounded::<2>(angle), Rounded::<1>(allowed);
+        Rounded::<2>(angle.0), Rounded::<1>(allowed.0);
     Self::SensesDisagree { sigmas } =>
         "clockwise and counter-clockwise disagree by {} σ: this sensor is not flat, or lags",
         Rounded::<1>(sigmas);
@@ -113,12 +114,12 @@ crate::words! { Refusal:
         Rounded::<1>(sigmas);
     Self::TiltChanged { change } =>
         "the tilt changed by {} mg between senses or speeds: the base moved, or the encoder slipped",
-        Rounded::<2>(change);
+        Rounded::<2>(change.0);
     Self::DirectionDrifts { sigmas } =>
         "the Earth rate's direction drifts from turn to turn by {} σ: the encoder slips, or the base turns",
         Rounded::<1>(sigmas);
     Self::PhaseAmbiguous { phase } =>
-        "the sensor lags by {}°: north looks like south", Rounded::<0>(phase);
+        "the sensor lags by {}°: north looks like south", Rounded::<0>(phase.0);
     Self::MolecularTooGreat { ratio } =>
         "g-sensitivity makes {} of what turns with the platform: level it, or turn faster",
         Rounded::<2>(ratio);

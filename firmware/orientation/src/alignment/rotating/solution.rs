@@ -14,7 +14,7 @@ use super::turn::SPEEDS;
 use crate::alignment::budget::Budget;
 use crate::math::Complex;
 use crate::noise::GyroNoise;
-use crate::units::{ARCSECOND, TURN, wrapped};
+use crate::units::{ARCSECOND, Radians, TURN, wrapped};
 
 /// Standard deviation of a flat sensor's lag without a rate-modulated turn, 1σ, s.
 const UNKNOWN_LAG: f64 = 0.01;
@@ -133,27 +133,27 @@ pub(super) fn of_one_turn(noise: &GyroNoise, speed: f64) -> f64 {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stages {
     /// Angle of the raw phasor of the clockwise turns at the first speed.
-    pub raw: f64,
+    pub raw: Radians,
     /// Angle after the axis misalignment is compensated.
-    pub misalignment: f64,
+    pub misalignment: Radians,
     /// Angle from both senses together.
-    pub senses: f64,
+    pub senses: Radians,
     /// Azimuth after all compensations: tilt, g-sensitivity, second speed.
-    pub full: f64,
+    pub full: Radians,
 }
 
 /// Result of the fit of the phasors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
-    pub azimuth: f64,
+    /// Azimuth of body x from true north, clockwise from above, [0, 2π).
+    pub azimuth: Radians,
     /// Error budget of the azimuth.
     pub budget: Budget,
-    /// Cramér–Rao bound of the azimuth for the same unknowns, 1σ, rad; zero where the gyro's noise
+    /// Cramér–Rao bound of the azimuth for the same unknowns, 1σ; zero where the gyro's noise
     /// is not known.
-    pub limit: f64,
-    /// Cramér–Rao bound with gain, lag and integrated g-sensitivity known, 1σ, rad.
-    pub plain_limit: f64,
+    pub limit: Radians,
+    /// Cramér–Rao bound with gain, lag and integrated g-sensitivity known, 1σ.
+    pub plain_limit: Radians,
     /// Azimuth after each stage of compensation.
     pub stages: Stages,
     /// Tilt phasor F of the platform from the accelerometer, g.
@@ -170,15 +170,15 @@ pub struct Fit {
     pub passed: f64,
     /// Integrated g-sensitivity at the slower speed over the Earth rate, γ.
     pub molecular: Complex,
-    /// Error of the slower speed alone due to the integrated g-sensitivity, rad.
-    pub one_speed: f64,
+    /// Error of the slower speed alone due to the integrated g-sensitivity.
+    pub one_speed: Radians,
     /// Disagreement of both speeds on the integrated g-sensitivity, in σ.
     pub disagreement: f64,
     /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ; sensors of
     /// unknown lag only.
     pub lag_disagreement: f64,
-    /// Phase of the sensor at each speed, rad; zero for a flat one.
-    pub phases: [f64; SPEEDS],
+    /// Phase of the sensor at each speed; zero for a flat one.
+    pub phases: [Radians; SPEEDS],
     /// Squared difference of both senses over the variance of either part; flat sensors only.
     pub difference: f64,
     /// Standard deviation, 1σ, of half the difference between the senses of a flat sensor beyond
@@ -188,9 +188,9 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Standard deviation of the azimuth, rad.
+    /// Standard deviation of the azimuth.
     #[must_use]
-    pub fn sigma(&self) -> f64 {
+    pub fn sigma(&self) -> Radians {
         self.budget.sigma()
     }
 }
@@ -220,7 +220,7 @@ impl Problem<'_> {
     /// Spectral density of the gyro's white noise, (rad/s)²/Hz; zero where it is not known.
     fn white(&self) -> f64 {
         let walk = self.noise.angle_random_walk;
-        if self.setting.site.noise.is_white_known() { walk * walk } else { 0.0 }
+        if self.setting.site.noise.is_white_known() { walk.0 * walk.0 } else { 0.0 }
     }
 
     /// Solves for the azimuth; `None` without a pair, or without a solution on the horizon.
@@ -232,13 +232,13 @@ impl Problem<'_> {
         fit.ratio_sigma = f64::INFINITY;
         let is_flat = self.setting.sensor.is_flat;
         let turned = if is_flat { self.flat(&mut fit) } else { self.lagging(&mut fit)? };
-        fit.azimuth = wrapped(turned.angle);
+        fit.azimuth = Radians(wrapped(turned.angle));
         fit.budget = self.budget(&fit, &turned);
-        fit.plain_limit = self.plain_limit();
-        fit.limit = if self.white() > 0.0 { fit.budget.noise } else { 0.0 };
+        fit.plain_limit = Radians(self.plain_limit());
+        fit.limit = if self.white() > 0.0 { fit.budget.noise } else { Radians(0.0) };
         let senses = if is_flat { first.even().angle() } else { self.halves(first).angle };
         let stages = [first.clockwise.raw.angle(), first.clockwise.phasor.angle(), senses];
-        let [raw, misalignment, senses] = stages.map(wrapped);
+        let [raw, misalignment, senses] = stages.map(|angle| Radians(wrapped(angle)));
         fit.stages = Stages { raw, misalignment, senses, full: fit.azimuth };
         Some(fit)
     }
@@ -246,8 +246,8 @@ impl Problem<'_> {
     /// Horizontal and vertical Earth rate that the misaligned axis can measure, rad/s.
     pub(crate) fn earth(&self) -> [f64; 2] {
         let latitude = self.setting.site.latitude;
-        let along = self.misalignments.first().map_or(1.0, |found| libm::cos(found.angle()));
-        [latitude.horizontal_rate() * along, latitude.vertical_rate()]
+        let along = self.misalignments.first().map_or(1.0, |found| libm::cos(found.angle().0));
+        [latitude.horizontal_rate().0 * along, latitude.vertical_rate().0]
     }
 
     /// Tilt phasor and the 1σ of its parts, g.
@@ -259,13 +259,13 @@ impl Problem<'_> {
             seconds += average.seconds;
         }
         let variance = force_density(self.pairs).0 / seconds;
-        (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
+        (sum.scaled(1.0 / seconds / gravity.0), libm::sqrt(variance) / gravity.0)
     }
 
     /// Factor of the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
     fn per_tilt(&self, ratio: f64) -> Complex {
         let [along, across] = self.setting.site.g_sensitivity;
-        Complex::new(ratio * self.earth()[1] + along, across)
+        Complex::new(ratio * self.earth()[1] + along.0, across.0)
     }
 
     /// Solution of a flat sensor: terms that change sign with the sense cancel.
@@ -275,12 +275,12 @@ impl Problem<'_> {
         for pair in self.pairs {
             let found = misalignment::nearest(self.misalignments, pair.speed());
             let sigma = found.map_or(UNKNOWN_LAG, AxisMisalignment::lag_sigma).min(UNKNOWN_LAG);
-            let harmonic = ENCODER_HARMONIC + self.setting.site.encoder_sigma;
+            let harmonic = ENCODER_HARMONIC + self.setting.site.encoder_sigma.0;
             let shown = match found {
                 Some(found) => harmonic * found.sine.abs() * pair.speed() / horizontal,
                 // Without a misalignment the response to the platform's unevenness cancels between
                 // the senses.
-                None => self.setting.misalignment_limit * pair.unevenness().size() / horizontal,
+                None => self.setting.misalignment_limit.0 * pair.unevenness().size() / horizontal,
             };
             let known = libm::hypot(shown, self.rounded(1.0, self.beside()));
             fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), known));
@@ -315,7 +315,7 @@ impl Problem<'_> {
     /// Earth rate, for a sensor's gain and for the further rotating signal `beside`, also relative
     /// to it.
     fn rounded(&self, gain: f64, beside: f64) -> f64 {
-        let step = self.setting.rate_step / self.earth()[0] / gain;
+        let step = self.setting.rate_step.0 / self.earth()[0] / gain;
         // Bessel's function J₁ of 2π times the signal over the step falls as √(2/(πx)).
         let falling = libm::sqrt(step / libm::hypot(1.0, beside)) / core::f64::consts::PI;
         ROUNDED * step * falling.min(BESSEL)
@@ -351,14 +351,14 @@ impl Problem<'_> {
     fn lagging(&self, fit: &mut Fit) -> Option<Turned> {
         let halves: heapless::Vec<Halves, SPEEDS> =
             self.pairs.iter().map(|pair| self.halves(pair)).collect();
-        let freed: Freed = molecular::freed(&halves, self.setting.sensor.molecular_sigma)?;
+        let freed: Freed = molecular::freed(&halves, self.setting.sensor.molecular_sigma.0)?;
         fit.molecular = freed.ratio;
-        fit.one_speed = freed.one_speed;
+        fit.one_speed = Radians(freed.one_speed);
         fit.disagreement = freed.disagreement;
         fit.lag_disagreement = self.lag_disagreement(&halves, &freed, self.misalignment_sigma(fit));
         let slowest = self.slowest()?.speed();
         for ((phase, half), pair) in fit.phases.iter_mut().zip(&halves).zip(self.pairs) {
-            *phase = half.phase + freed.ratio.re * slowest / pair.speed();
+            *phase = Radians(half.phase + freed.ratio.re * slowest / pair.speed());
         }
         let [horizontal, _] = self.earth();
         let others = self.per_tilt(1.0) * fit.tilt + self.tilting.turning(&fit.lean);
@@ -399,8 +399,8 @@ impl Problem<'_> {
         let phase = at(speed);
         // A pole and a high-pass together curve as either may; the test is whether one pole holds
         // from speed to speed.
-        let is_near = (speed / found.frequency - 1.0).abs() < SAME_SPEED;
-        let bent = if is_near { phase - at(found.frequency) } else { 0.0 };
+        let is_near = (speed / found.frequency.0 - 1.0).abs() < SAME_SPEED;
+        let bent = if is_near { phase - at(found.frequency.0) } else { 0.0 };
         let lag = speed * found.lag_sigma();
         let beside = molecular * self.earth()[0] / (speed * found.sine).abs();
         let sigma = libm::hypot(libm::hypot(lag, beside), bent).min(TURN);
@@ -431,25 +431,26 @@ impl Problem<'_> {
         let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
         let across = (fit.tilt * Complex::unit(-turned.angle)).im;
         let cosine = libm::cos(site.latitude.rad());
+        let encoder = self.encoder_sigma(turned.angle);
         Budget {
-            noise: libm::sqrt(turned.noise * white),
-            drift: libm::sqrt(
+            noise: Radians(libm::sqrt(turned.noise * white)),
+            drift: Radians(libm::sqrt(
                 turned.noise * (1.0 - white)
                     + self.tilting.inflation(&fit.lean, turned.angle, horizontal),
-            ),
-            g_sensitivity: libm::hypot(
-                site.kappa_sigma(self.noise.angle_random_walk) * size / horizontal,
+            )),
+            g_sensitivity: Radians(libm::hypot(
+                site.kappa_sigma(self.noise.angle_random_walk).0 * size / horizontal,
                 libm::sqrt(turned.left),
-            ),
-            accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
-            encoder: libm::hypot(self.encoder_sigma(turned.angle), self.misalignment_sigma(fit)),
-            latitude: across.abs() * site.latitude_sigma / (cosine * cosine),
+            )),
+            accelerometer: Radians(self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal),
+            encoder: Radians(libm::hypot(encoder, self.misalignment_sigma(fit))),
+            latitude: Radians(across.abs() * site.latitude_sigma.0 / (cosine * cosine)),
             // A flat sensor's scale is estimated with the azimuth, but it still scales the rotation
             // of a tilting base.
-            scale: libm::hypot(
+            scale: Radians(libm::hypot(
                 self.tilting.scale(site.scale_sigma, &fit.lean, turned.angle, horizontal),
                 turned.rounded,
-            ),
+            )),
             ..Budget::default()
         }
     }
@@ -457,7 +458,8 @@ impl Problem<'_> {
     /// Contribution of the encoder to the azimuth, 1σ, rad: of its zero, and, where the harmonics
     /// are unknown, of an error twice per turn, (ε/2) e^{j(ψ − 2A)} relative to the Earth rate.
     fn encoder_sigma(&self, azimuth: f64) -> f64 {
-        let known = libm::hypot(self.setting.site.encoder_sigma, self.setting.encoder_zero_sigma);
+        let Setting { site, encoder_zero_sigma: zero, .. } = self.setting;
+        let known = libm::hypot(site.encoder_sigma.0, zero.0);
         if self.setting.harmonics_known {
             return known;
         }
@@ -475,7 +477,7 @@ impl Problem<'_> {
             let [clockwise, counter] = pair.senses().map(|average| average.turning);
             let (even, odd) = ((clockwise + counter).scaled(0.5), pair.unevenness());
             let found = misalignment::nearest(self.misalignments, pair.speed());
-            let limit = self.setting.misalignment_limit;
+            let limit = self.setting.misalignment_limit.0;
             let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
             let [in_phase, lagging] = found.map_or(unknown, |found| found.sigmas(pair.speed()));
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
@@ -492,7 +494,7 @@ impl Problem<'_> {
 /// a lag is small.
 pub(super) fn believed_lag(misalignment: &AxisMisalignment) -> f64 {
     let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, misalignment.lag_sigma());
-    misalignment.lag() * known / (known + sigma * sigma)
+    misalignment.lag().0 * known / (known + sigma * sigma)
 }
 
 /// Variance of either part of a force's phasor times the time over which it was measured,

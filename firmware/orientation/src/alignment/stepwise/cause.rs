@@ -70,7 +70,7 @@ fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
 /// Configured noise power plus the remainder of sway compensation, (rad/s)²·s.
 fn stated(setting: &Setting, statistics: &BlockStatistics) -> f64 {
     let (walk, seconds) = (setting.site.noise.model().angle_random_walk, statistics.block_seconds);
-    walk * walk + setting.sway.mean_variance(seconds) * seconds
+    walk.0 * walk.0 + setting.sway.mean_variance(seconds) * seconds
 }
 
 /// Noise power of a dwell's block means, (rad/s)²·s.
@@ -90,9 +90,9 @@ fn means(dwells: &[Dwell]) -> Option<f64> {
     let mut regression = Regression::<3>::default();
     for dwell in dwells {
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
-        let deviation = libm::sqrt(power(dwell.statistics.as_ref()?) / dwell.seconds);
+        let deviation = libm::sqrt(power(dwell.statistics.as_ref()?) / dwell.seconds.0);
         let columns = [cosine, sine, 1.0].map(|column| column / deviation);
-        regression.push(&columns, dwell.rate / deviation);
+        regression.push(&columns, dwell.rate.0 / deviation);
     }
     let solution = regression.solve(&[Column::Free; 3])?;
     (solution.degrees > 0).then(|| solution.chi_square / solution.degrees as f64)

@@ -16,7 +16,7 @@ use super::{CAPACITY, Refusal, cause, different_positions, level};
 use crate::alignment::{self, Azimuth, Judged, Passed, SlowMotion, refuse_if};
 use crate::math::chi_square_tail;
 use crate::signal::Dwell;
-use crate::units::{Angle, TURN, wrapped};
+use crate::units::{Angle, Degrees, MilliG, Radians, RadiansPerRootSecond, Seconds, TURN, wrapped};
 
 /// Studentised residual beyond which a dwell is excluded (2.7e-5 two-sided: one sound session of 60
 /// dwells in 600 loses one).
@@ -62,9 +62,9 @@ pub struct Conclusion {
     /// Fit of the dwells, where the positions determine one; its azimuth is valid only together
     /// with the verdict.
     pub fit: Option<Fit>,
-    /// Angle random walk N used, rad/√s: configured, or estimated from the scatter within the
+    /// Angle random walk N used: configured, or estimated from the scatter within the
     /// dwells.
-    pub angle_random_walk: f64,
+    pub angle_random_walk: RadiansPerRootSecond,
     /// Reason for the exclusion of each dwell; none where it was used.
     pub disturbances: Vec<Option<Disturbance>, CAPACITY>,
     /// Residual of each dwell; zero where it was excluded.
@@ -78,7 +78,7 @@ impl Default for Conclusion {
             verdict: Err(Refusal::TooFewPositions { positions: 0 }.into()),
             tilt: Tilt::default(),
             fit: None,
-            angle_random_walk: 0.0,
+            angle_random_walk: RadiansPerRootSecond(0.0),
             disturbances: Vec::new(),
             residuals: Vec::new(),
         }
@@ -115,11 +115,11 @@ impl Conclusion {
     }
 
     /// Checks each dwell by itself and determines the tilt from those that passed; returns the lag
-    /// of the gyro, s, if there is one.
+    /// of the gyro, if there is one.
     #[inline(never)]
-    fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
+    fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<Seconds> {
         let norm = ExpectedScatter::of(setting, dwells);
-        self.angle_random_walk = libm::sqrt(norm.white);
+        self.angle_random_walk = RadiansPerRootSecond(libm::sqrt(norm.white));
         for dwell in dwells {
             // The vectors hold as many entries as a session has dwells, so the pushes cannot fail.
             let _ = self.disturbances.push(norm.disturbance(dwell));
@@ -128,7 +128,7 @@ impl Conclusion {
         self.level(setting, dwells);
         quality::moved(setting, dwells, &self.tilt, &mut self.disturbances);
         self.level(setting, dwells);
-        quality::lag(&norm, dwells, &self.disturbances)
+        quality::lag(&norm, dwells, &self.disturbances).map(Seconds)
     }
 
     /// Tilt from the dwells that are not excluded.
@@ -147,9 +147,9 @@ impl Conclusion {
             Self::enough(setting, dwells.len(), &kept)
                 .map_err(|why| cause::of(why, setting, dwells))?;
             if !setting.site.noise.is_white_known() {
-                self.angle_random_walk = libm::sqrt(white_of(&kept));
+                self.angle_random_walk = RadiansPerRootSecond(libm::sqrt(white_of(&kept)));
             }
-            let white = self.angle_random_walk * self.angle_random_walk;
+            let white = self.angle_random_walk.0 * self.angle_random_walk.0;
             let tilt = self.tilt;
             let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
             let nothing = setting.half.map_or(Refusal::AzimuthUnobservable, |_| Refusal::NotInHalf);
@@ -171,7 +171,7 @@ impl Conclusion {
                 (step.is_believed || worst.is_some()) && !explains(worst, step)
             };
             if let Some(step) = step.filter(is_stepped) {
-                let angle = step.angle / TURN * 360.0;
+                let angle = Degrees(step.angle.0 / TURN * 360.0);
                 return Err(alignment::Refusal::HeadingStepped { angle, after: step.after });
             }
             let (worst, residual) = match worst {
@@ -200,7 +200,7 @@ impl Conclusion {
             (first, 0) => first,
             (_, last) => dwells.len() - last,
         };
-        let after = dwells.get(at.max(1) - 1).map_or(0.0, Dwell::end);
+        let after = dwells.get(at.max(1) - 1).map(Dwell::end).unwrap_or_default();
         Err(Refusal::EndDisagrees { dwells: first.max(last), after }.into())
     }
 
@@ -270,10 +270,11 @@ impl Conclusion {
     /// Refuses an accelerometer that does not measure gravity: one that is dead, inverted or in
     /// other units shows a false tilt.
     fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Passed {
-        let gravity = setting.site.latitude.gravity();
+        let gravity = setting.site.latitude.gravity().0;
         let ratio = level::gravity_ratio(self.kept(dwells), gravity);
         let Some(ratio) = ratio else { return Ok(()) };
-        let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.site.accelerometer_bias_sigma / gravity;
+        let bias = setting.site.accelerometer_bias_sigma.0;
+        let tolerance = GRAVITY_TOLERANCE + 5.0 * bias / gravity;
         let is_off = (ratio - 1.0).abs() > tolerance;
         refuse_if(is_off, alignment::Refusal::AccelerometerImplausible { ratio })
     }
@@ -286,13 +287,14 @@ impl Conclusion {
         refuse_if(sigma > required, Refusal::TiltTooUncertain { sigma, required })?;
         // An encoder slip changes F by the same angle times its magnitude, and the azimuth by at
         // most the slip.
-        let matters = |change: &(f64, f64)| change.1 > fit.sigma() * self.tilt.magnitude();
+        let matters = |change: &(f64, f64)| change.1 > fit.sigma().0 * self.tilt.magnitude();
         if let Some((after, change)) = self.tilt.step.filter(matters) {
-            return Err(Refusal::TiltStepped { change: change * 1e3, after }.into());
+            let (change, after) = (MilliG(change * 1e3), Seconds(after));
+            return Err(Refusal::TiltStepped { change, after }.into());
         }
         let Tilt { counter, scatter, .. } = self.tilt;
         let is_off = counter > 0.0 || scatter > FORCE_TOLERANCE;
-        let scatter = if counter > 0.0 { counter } else { scatter } * 1e3;
+        let scatter = MilliG(if counter > 0.0 { counter } else { scatter } * 1e3);
         refuse_if(is_off, alignment::Refusal::AccelerometerDisagrees { scatter })
     }
 
@@ -307,7 +309,7 @@ impl Conclusion {
         // The difference of two unit vectors is perpendicular to their mean.
         let axis = first.rad() + 0.5 * other + 0.25 * TURN;
         let slope = libm::tan(fit.direction.azimuth + axis).abs();
-        refuse_if(fit.sigma() > STEEPNESS * slope, Refusal::AzimuthUnobservable)
+        refuse_if(fit.sigma().0 > STEEPNESS * slope, Refusal::AzimuthUnobservable)
     }
 
     /// Tests chi-square of the residuals, and the correlation of neighbours.
@@ -330,7 +332,7 @@ impl Conclusion {
 
     /// Fit problem of the dwells that took part.
     fn problem<'a>(&'a self, setting: &'a Setting, kept: &'a [&'a Dwell]) -> Problem<'a> {
-        let white = self.angle_random_walk * self.angle_random_walk;
+        let white = self.angle_random_walk.0 * self.angle_random_walk.0;
         Problem { setting, tilt: &self.tilt, white, dwells: kept }
     }
 
@@ -357,7 +359,7 @@ impl Conclusion {
         let problem = self.problem(setting, &kept);
         let azimuth = match criterion {
             Criterion::MaximumLikelihood => {
-                Azimuth { angle: wrapped(fit.direction.azimuth), sigma: fit.sigma() }
+                Azimuth { angle: Radians(wrapped(fit.direction.azimuth)), sigma: fit.sigma() }
             }
             paper => criterion::azimuth(&problem, fit, paper)?,
         };
@@ -414,6 +416,6 @@ fn white_of(kept: &[&Dwell]) -> f64 {
 }
 
 /// Converts radians to degrees.
-fn degrees(angle: f64) -> f64 {
-    angle / TURN * 360.0
+fn degrees(angle: Radians) -> Degrees {
+    Degrees(angle.0 / TURN * 360.0)
 }

@@ -14,7 +14,7 @@ use crate::alignment::Azimuth;
 use crate::math::reference_table::{ONE, STEP};
 use crate::math::{Table, sort};
 use crate::signal::Dwell;
-use crate::units::wrapped;
+use crate::units::{Radians, wrapped};
 
 /// Criterion by which the azimuth is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,19 +65,19 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
         Criterion::LeastSquares => searched(&series, etalon::Criterion::LeastSquares),
         Criterion::LeastAbsolute => searched(&series, etalon::Criterion::LeastAbsolute),
         Criterion::WithinSquares(bound) => {
-            let units = bound / (rate * rate) * (ONE * ONE);
+            let units = bound / (rate.0 * rate.0) * (ONE * ONE);
             accepted(&series, Limit::WithinSquares(units as u128))?
         }
         Criterion::WithinAbsolute(bound) => {
-            accepted(&series, Limit::WithinAbsolute((bound / rate * ONE) as u64))?
+            accepted(&series, Limit::WithinAbsolute((bound / rate.0 * ONE) as u64))?
         }
     };
     let start = row.dwells.first().map_or(0.0, |dwell| dwell.stage.rad());
     let variance = row.variance(problem, first, criterion) + width * width / 12.0;
     let others = fit.budget.beside_noise();
     // No criterion on the same dwells can be better than maximum likelihood.
-    let sigma = libm::sqrt(variance + others * others).max(fit.sigma());
-    Ok(Azimuth { angle: wrapped(first - start), sigma })
+    let sigma = libm::sqrt(variance + others.0 * others.0).max(fit.sigma().0);
+    Ok(Azimuth { angle: Radians(wrapped(first - start)), sigma: Radians(sigma) })
 }
 
 /// Best azimuth of the first position, rad, with a width of zero.

@@ -9,6 +9,7 @@
 
 use super::setting::{Amplitude, Half};
 use crate::math::{Table, reference_table as table};
+use crate::units::Radians;
 
 /// The two components with their covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +161,7 @@ impl<'a> Profile<'a> {
             let azimuth = self.refine(k as f64 * step, step);
             let value = self.at(azimuth).0;
             least = least.min(value);
-            if self.components.half.is_some_and(|half| !half.contains(azimuth)) {
+            if self.components.half.is_some_and(|half| !half.contains(Radians(azimuth))) {
                 continue;
             }
             if value < best.1 {

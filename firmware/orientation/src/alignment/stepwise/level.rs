@@ -124,8 +124,8 @@ pub(super) fn gravity_ratio<'a>(
 ) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for [x, y, z] in dwells.filter_map(|dwell| dwell.force) {
-        let size = libm::sqrt(x * x + y * y + z * z);
-        sum += if z < 0.0 { size } else { -size };
+        let size = libm::sqrt(x.0 * x.0 + y.0 * y.0 + z.0 * z.0);
+        sum += if z.0 < 0.0 { size } else { -size };
         count += 1.0;
     }
     (count > 0.0).then(|| sum / count / gravity)
@@ -181,9 +181,9 @@ struct Found {
 impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
     /// Forces of these dwells, with rates counted from the end of the last dwell.
     fn new(setting: &'m Setting, dwells: D) -> Self {
-        let (mount, gravity) = (&setting.mount, setting.site.latitude.gravity());
-        let bias = (setting.site.accelerometer_bias_sigma / gravity).max(EXACT_BIAS);
-        let time = dwells.clone().last().map_or(0.0, Dwell::end);
+        let (mount, gravity) = (&setting.mount, setting.site.latitude.gravity().0);
+        let bias = (setting.site.accelerometer_bias_sigma.0 / gravity).max(EXACT_BIAS);
+        let time = dwells.clone().last().map_or(0.0, |dwell| dwell.end().0);
         Self { mount, bias, dwells, gravity, time, drift: [0.0; 2] }
     }
 
@@ -215,25 +215,25 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
             if let Some(last) = before {
                 let gain = (sum[0] * sum[0] + sum[1] * sum[1]) / (behind * (1.0 - behind / count));
                 if gain > best.0 {
-                    best = (gain, 0.5 * (last + dwell.middle));
+                    best = (gain, 0.5 * (last + dwell.middle.0));
                 }
             }
             let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
             let [real, imaginary] = standing.phasor;
-            let [x, y] = self.steady([x, y], dwell);
+            let [x, y] = self.steady([x.0, y.0], dwell);
             let left_x = x - standing.bias[0] - (real * cosine - imaginary * sine);
             let left_y = y - standing.bias[1] + real * sine + imaginary * cosine;
             sum[0] += left_x * cosine - left_y * sine;
             sum[1] -= left_x * sine + left_y * cosine;
             behind += 1.0;
-            before = Some(dwell.middle);
+            before = Some(dwell.middle.0);
         }
         best.1
     }
 
     /// Force in g without the known drift of the biases, from m/s².
     fn steady(&self, [x, y]: [f64; 2], dwell: &Dwell) -> [f64; 2] {
-        let elapsed = dwell.middle - self.time;
+        let elapsed = dwell.middle.0 - self.time;
         [x / self.gravity - self.drift[0] * elapsed, y / self.gravity - self.drift[1] * elapsed]
     }
 
@@ -245,16 +245,16 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
         for dwell in self.dwells.clone() {
             let Some([x, y, _]) = dwell.force else { continue };
             let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
-            let elapsed = dwell.middle - self.time;
+            let elapsed = dwell.middle.0 - self.time;
             let (mut across, mut along) = ([0.0; 2], [0.0; 2]);
-            let [mut left_x, mut left_y] = self.steady([x, y], dwell);
+            let [mut left_x, mut left_y] = self.steady([x.0, y.0], dwell);
             match beside {
                 Beside::Rate => {
                     along = [cosine * elapsed, -sine * elapsed];
                     across = [-sine * elapsed, -cosine * elapsed];
                 }
                 Beside::Drift => (along, across) = ([elapsed, 0.0], [0.0, elapsed]),
-                Beside::Step(after) if dwell.middle > after => {
+                Beside::Step(after) if dwell.middle.0 > after => {
                     along = [cosine, -sine];
                     across = [-sine, -cosine];
                 }

@@ -21,7 +21,7 @@ use super::tilt::Tilt;
 use crate::earth::Latitude;
 use crate::math::rotation::{IDENTITY, dot};
 use crate::signal::Dwell;
-use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
+use crate::units::{DEGREE, Radians, wrapped};
 use crate::words::Rounded;
 
 /// Mechanism that carries the gyro, and the place of its accelerometer. A mount brings its own
@@ -68,13 +68,13 @@ impl PartialEq for Mount {
     }
 }
 
-/// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for the corrections of its
+/// Greatest angle of either frame: ±90° (Burov, Fig. 2) and 2° for the corrections of its
 /// calibration.
-pub const LIMIT: f64 = 92.0 * DEGREE;
+pub const LIMIT: Radians = Radians::from_degrees(92.0);
 
-/// Distance of a heading from its station that counts as arrived, rad. The mount's calibration
+/// Distance of a heading from its station that counts as arrived. The mount's calibration
 /// shifts headings off their nominal values, and each is known exactly.
-pub const ARRIVAL: f64 = 1.0 * DEGREE;
+pub const ARRIVAL: Radians = Radians::from_degrees(1.0);
 
 /// Quarter turn, rad.
 const QUARTER: f64 = 90.0 * DEGREE;
@@ -83,18 +83,18 @@ const QUARTER: f64 = 90.0 * DEGREE;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameAngles {
     /// Angle of the outer frame about the base's longitudinal axis, positive right side down.
-    pub outer: f64,
+    pub outer: Radians,
     /// Angle of the inner frame, positive where it takes the sensitive axis from down to forward.
-    pub inner: f64,
+    pub inner: Radians,
 }
 
 /// Direction of the sensitive axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointing {
-    /// Heading θ in the base plane, rad, [0, 2π): clockwise from above, zero along body x.
-    pub heading: f64,
-    /// Elevation above the base plane, rad, up positive.
-    pub elevation: f64,
+    /// Heading θ in the base plane, [0, 2π): clockwise from above, zero along body x.
+    pub heading: Radians,
+    /// Elevation above the base plane, up positive.
+    pub elevation: Radians,
 }
 
 /// Orientation to which the mount can be commanded.
@@ -115,12 +115,12 @@ pub enum Station {
 /// Reason for which there are no frame angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MountError {
-    /// No station lies at this heading, rad.
-    NoStation(f64),
+    /// No station lies at this heading.
+    NoStation(Radians),
     /// This calibration does not let the axis reach the station.
     Unreachable(Station),
-    /// A frame would turn beyond [`LIMIT`], to this angle, rad.
-    BeyondLimit(f64),
+    /// A frame would turn beyond [`LIMIT`], to this angle.
+    BeyondLimit(Radians),
 }
 
 crate::words! { Station:
@@ -135,11 +135,11 @@ impl core::error::Error for MountError {}
 
 crate::words! { MountError:
     Self::NoStation(heading) =>
-        "the mount has no station at heading {}°", Rounded::<2>(heading * DEGREES_PER_RADIAN);
+        "the mount has no station at heading {}°", Rounded::<2>(heading.degrees());
     Self::Unreachable(station) =>
         "this calibration lets the gyro's axis not stand {}", station;
     Self::BeyondLimit(angle) =>
-        "a frame would turn to {}°, beyond its limit", Rounded::<2>(angle * DEGREES_PER_RADIAN);
+        "a frame would turn to {}°, beyond its limit", Rounded::<2>(angle.degrees());
 }
 
 /// Calibration of the mount; the default is a perfect one. All angles in rad, right-handed about
@@ -147,28 +147,28 @@ crate::words! { MountError:
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TwoFrame {
     /// Rotation of the outer axis from body x about body z: positive to the right.
-    pub azimuth: f64,
+    pub azimuth: Radians,
     /// Rotation of the outer axis from body x about body y: positive where its front is raised.
-    pub pitch: f64,
+    pub pitch: Radians,
     /// ε, non-orthogonality of the frames: the inner axis is turned about z from the perpendicular to
     /// the outer one, positive where its right end goes back.
-    pub frames: f64,
+    pub frames: Radians,
     /// δ, non-orthogonality of the gyro: the sensitive axis leans from the perpendicular to the inner
     /// axis towards that axis' right end.
-    pub gyro: f64,
+    pub gyro: Radians,
     /// Reading of the outer encoder where the outer frame stands at zero.
-    pub outer_zero: f64,
+    pub outer_zero: Radians,
     /// Reading of the inner encoder where the inner frame stands at zero.
-    pub inner_zero: f64,
+    pub inner_zero: Radians,
 }
 
 /// Frame angles with one of the two frames turned by an angle, rad.
 type Turning = fn(FrameAngles, f64) -> FrameAngles;
 
 /// Turns the outer frame, about body x.
-const OUTER: Turning = |from, turn| FrameAngles { outer: from.outer + turn, ..from };
+const OUTER: Turning = |from, turn| FrameAngles { outer: Radians(from.outer.0 + turn), ..from };
 /// Turns the inner frame, across the outer one.
-const INNER: Turning = |from, turn| FrameAngles { inner: from.inner + turn, ..from };
+const INNER: Turning = |from, turn| FrameAngles { inner: Radians(from.inner.0 + turn), ..from };
 
 impl TwoFrame {
     /// Sensitive axis at these angles: a unit vector forward, right, down. The rotations are exact,
@@ -176,10 +176,10 @@ impl TwoFrame {
     /// the axis.
     #[must_use]
     pub fn sensitive_axis(&self, shown: FrameAngles) -> [f64; 3] {
-        let leaning = about_x([0.0, 0.0, 1.0], -self.gyro);
-        let in_outer = about_z(about_y(leaning, shown.inner - self.inner_zero), self.frames);
-        let in_case = about_x(in_outer, shown.outer - self.outer_zero);
-        about_z(about_y(in_case, self.pitch), self.azimuth)
+        let leaning = about_x([0.0, 0.0, 1.0], -self.gyro.0);
+        let in_outer = about_z(about_y(leaning, shown.inner.0 - self.inner_zero.0), self.frames.0);
+        let in_case = about_x(in_outer, shown.outer.0 - self.outer_zero.0);
+        about_z(about_y(in_case, self.pitch.0), self.azimuth.0)
     }
 
     /// Heading and elevation of the sensitive axis at these angles.
@@ -187,8 +187,8 @@ impl TwoFrame {
     pub fn pointing(&self, shown: FrameAngles) -> Pointing {
         let [forward, right, down] = self.sensitive_axis(shown);
         Pointing {
-            heading: wrapped(libm::atan2(right, forward)),
-            elevation: libm::atan2(-down, libm::hypot(forward, right)),
+            heading: Radians(wrapped(libm::atan2(right, forward))),
+            elevation: Radians(libm::atan2(-down, libm::hypot(forward, right))),
         }
     }
 
@@ -223,7 +223,8 @@ impl TwoFrame {
 
     /// Encoder readings at true frame angles.
     fn shown(&self, outer: f64, inner: f64) -> FrameAngles {
-        FrameAngles { outer: outer + self.outer_zero, inner: inner + self.inner_zero }
+        let [outer, inner] = [outer + self.outer_zero.0, inner + self.inner_zero.0].map(Radians);
+        FrameAngles { outer, inner }
     }
 
     /// Turns one frame to where the axis is perpendicular to a direction, the nearer of both such
@@ -256,11 +257,11 @@ impl Station {
     ///
     /// # Errors
     /// [`MountError::NoStation`] where no station is so near.
-    pub fn at_heading(heading: f64) -> Result<Self, MountError> {
+    pub fn at_heading(heading: Radians) -> Result<Self, MountError> {
         const ROUND: [Station; 4] =
             [Station::Forward, Station::Right, Station::Backward, Station::Left];
-        let quarters = libm::round(wrapped(heading) / QUARTER);
-        let is_near = signed(heading - quarters * QUARTER).abs() <= ARRIVAL;
+        let quarters = libm::round(wrapped(heading.0) / QUARTER);
+        let is_near = signed(heading.0 - quarters * QUARTER).abs() <= ARRIVAL.0;
         let station = ROUND.get(quarters as usize % ROUND.len()).filter(|_| is_near);
         station.copied().ok_or(MountError::NoStation(heading))
     }
@@ -290,21 +291,21 @@ fn case_force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
     [along, inner]
 }
 
-/// Azimuth error due to the mount, 1σ, rad, for 1σ of its non-orthogonalities after calibration and
+/// Azimuth error due to the mount, 1σ, for 1σ of its non-orthogonalities after calibration and
 /// of each encoder, both in rad.
 ///
 /// ε changes headings; δ and the encoders' errors raise the axis, and an elevation changes the
 /// azimuth by tan φ of itself. The result holds at the azimuths of the greatest effect: σ √(1 +
 /// tan² φ), and σ tan φ.
 #[must_use]
-pub fn azimuth_sigma(orthogonality: f64, encoder: f64, latitude: Latitude) -> f64 {
+pub fn azimuth_sigma(orthogonality: Radians, encoder: Radians, latitude: Latitude) -> Radians {
     let slope = libm::tan(latitude.rad());
-    libm::hypot(orthogonality * libm::hypot(1.0, slope), encoder * slope)
+    Radians(libm::hypot(orthogonality.0 * libm::hypot(1.0, slope), encoder.0 * slope))
 }
 
 /// Checks that both frames reach the angles.
 fn within_limits(angles: FrameAngles) -> Result<FrameAngles, MountError> {
-    let beyond = [angles.outer, angles.inner].into_iter().find(|angle| angle.abs() > LIMIT);
+    let beyond = [angles.outer, angles.inner].into_iter().find(|angle| angle.0.abs() > LIMIT.0);
     beyond.map_or(Ok(angles), |angle| Err(MountError::BeyondLimit(angle)))
 }
 

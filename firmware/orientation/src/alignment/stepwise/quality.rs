@@ -12,7 +12,10 @@ use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::BlockStatistics;
 use crate::signal::rest::{Criteria, Sensors};
 use crate::signal::{Dwell, SampleFault, SwayNoise};
-use crate::units::DEGREE_PER_HOUR;
+use crate::units::{
+    DegreesPerHour, ForceNoise, MetresPerSecondSquared, RadiansPerRootSecond, RadiansPerSecond,
+    Seconds,
+};
 use crate::words::Rounded;
 
 /// Reason for which a dwell is excluded from the fit. Numbers are in units of the expected standard
@@ -31,7 +34,7 @@ pub enum Disturbance {
     Moved(f64),
     /// The vehicle drove or turned: deviation of the gyro's rate beyond rest, °/h (Kryt1), and of
     /// the force from gravity, m/s² (Kryt2; Szymanowski 2003).
-    Driving(f64, f64),
+    Driving(DegreesPerHour, MetresPerSecondSquared),
     /// The mean rate does not fit the other dwells: studentised residual.
     Outlier(f64),
 }
@@ -46,7 +49,7 @@ crate::words! { Disturbance:
     Self::Moved(x) => "platform moved by {} σ", Rounded::<1>(x);
     Self::Driving(rate, force) =>
         "the vehicle does not stand: {} °/h beyond the Earth rate, {} m/s² from gravity",
-        Rounded::<1>(rate), Rounded::<3>(force);
+        Rounded::<1>(rate.0), Rounded::<3>(force.0);
     Self::Outlier(x) => "residual of {} σ", Rounded::<1>(x);
 }
 
@@ -91,17 +94,17 @@ impl ExpectedScatter {
     #[inline(never)]
     pub fn of(setting: &Setting, dwells: &[Dwell]) -> Self {
         let noise = setting.site.noise.model();
-        let known = noise.angle_random_walk * noise.angle_random_walk;
+        let known = noise.angle_random_walk.0 * noise.angle_random_walk.0;
         let estimated = || white_median(dwells);
         let white = if setting.site.noise.is_white_known() { known } else { estimated() };
         Self {
             white,
             sway: setting.sway,
             slope_variance: white * slope_density(dwells),
-            walk: noise.rate_random_walk * noise.rate_random_walk,
-            flicker: noise.bias_instability * noise.bias_instability / core::f64::consts::PI,
+            walk: noise.rate_random_walk.0 * noise.rate_random_walk.0,
+            flicker: noise.bias_instability.0 * noise.bias_instability.0 / core::f64::consts::PI,
             slope: slope_median(dwells),
-            rate: median_of(dwells.iter().map(|dwell| dwell.rate)),
+            rate: median_of(dwells.iter().map(|dwell| dwell.rate.0)),
             force: median_of(dwells.iter().filter_map(force_of)),
             sensors: sensors(setting, dwells, white),
         }
@@ -152,14 +155,15 @@ impl ExpectedScatter {
     /// Stop criteria (Szymanowski 2003) relative to the medians of the dwells, so that biases do
     /// not count as motion.
     fn driving(&self, dwell: &Dwell) -> Option<Disturbance> {
-        if dwell.seconds <= 0.0 {
+        if dwell.seconds.0 <= 0.0 {
             return None;
         }
         let force = force_of(dwell).unwrap_or(self.force);
-        let criteria = Criteria::of_axis(dwell.rate - self.rate, force, self.force);
+        let criteria = Criteria::of_axis(dwell.rate.0 - self.rate, force, self.force);
         let limits = self.sensors.limits(dwell.seconds);
-        let [rate, force] = [criteria.rate / DEGREE_PER_HOUR, criteria.force].map(f64::abs);
-        (!criteria.is_rest(&limits)).then_some(Disturbance::Driving(rate, force))
+        let [rate, force] = [criteria.rate.degrees_per_hour(), criteria.force.0].map(f64::abs);
+        let driving = Disturbance::Driving(DegreesPerHour(rate), MetresPerSecondSquared(force));
+        (!criteria.is_rest(&limits)).then_some(driving)
     }
 
     /// Chi-square test of the block means' scatter.
@@ -199,24 +203,26 @@ impl ExpectedScatter {
 /// of the forces.
 fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
     let noise = setting.site.noise.model();
-    let seconds = dwells.last().map_or(0.0, Dwell::end) - dwells.first().map_or(0.0, Dwell::start);
-    let walk = noise.rate_random_walk * libm::sqrt(seconds);
-    let drift = libm::hypot(walk, noise.rate_ramp * seconds);
+    let time = |time: Option<Seconds>| time.unwrap_or_default().0;
+    let seconds = time(dwells.last().map(Dwell::end)) - time(dwells.first().map(Dwell::start));
+    let walk = noise.rate_random_walk.0 * libm::sqrt(seconds);
+    let drift = libm::hypot(walk, noise.rate_ramp.0 * seconds);
     let usual = median_of(dwells.iter().filter_map(force_of));
     let deviations = dwells.iter().filter_map(force_of).map(|force| (force - usual).abs());
+    let bias = libm::hypot(drift, noise.bias_instability.0);
+    let sway = libm::sqrt(setting.sway.mean_variance(1.0));
     Sensors {
-        angle_random_walk: libm::sqrt(white),
-        bias_sigma: libm::hypot(drift, noise.bias_instability)
-            + libm::sqrt(setting.sway.mean_variance(1.0)),
-        force_noise: 0.0,
+        angle_random_walk: RadiansPerRootSecond(libm::sqrt(white)),
+        bias_sigma: RadiansPerSecond(bias + sway),
+        force_noise: ForceNoise(0.0),
         // The median of absolute deviations is 0.67 of their σ.
-        force_bias_sigma: 1.5 * median_of(deviations),
+        force_bias_sigma: MetresPerSecondSquared(1.5 * median_of(deviations)),
     }
 }
 
 /// Magnitude of a dwell's mean specific force, m/s².
 fn force_of(dwell: &Dwell) -> Option<f64> {
-    dwell.force.map(|force| length(&force))
+    dwell.force.map(|force| length(&force.map(|part| part.0)))
 }
 
 /// Median of one value for each dwell.
@@ -230,10 +236,8 @@ pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
 /// once affects at one place only, however many dwells stand on either side.
 #[inline(never)]
 pub fn moved(setting: &Setting, dwells: &[Dwell], tilt: &Tilt, mark: &mut [Option<Disturbance>]) {
-    let deviations: heapless::Vec<[f64; 2], CAPACITY> = dwells
-        .iter()
-        .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(setting, dwell, force, tilt)))
-        .collect();
+    let deviations: heapless::Vec<[f64; 2], CAPACITY> =
+        dwells.iter().map(|dwell| off_level(setting, dwell, tilt)).collect();
     let mut steps: heapless::Vec<f64, CAPACITY> = deviations
         .windows(2)
         .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
@@ -280,7 +284,7 @@ pub(super) fn lag(
     };
     let whole = || {
         let early = of(stood, SLOPE_BOUND, Other::After)?;
-        let spacing = dwells.windows(2).map(|pair| pair[1].start() - pair[0].start());
+        let spacing = dwells.windows(2).map(|pair| pair[1].start().0 - pair[0].start().0);
         Some(median_of(spacing) - early)
     };
     of(stood, SLOPE_BOUND, Other::Before)
@@ -379,7 +383,8 @@ fn slopes<'a>(
         if sigma <= 0.0 || !marks.iter().flatten().all(is_asked) {
             return None;
         }
-        let per_second = 6.0 * (pair[1].rate - pair[0].rate) / (dwell.seconds * dwell.seconds);
+        let per_second =
+            6.0 * (pair[1].rate.0 - pair[0].rate.0) / (dwell.seconds.0 * dwell.seconds.0);
         Some([per_second / sigma, (statistics.slope - norm.slope) / sigma])
     })
 }
@@ -391,11 +396,12 @@ fn is_moved(mark: &Disturbance) -> bool {
 }
 
 /// Deviation of a dwell's mean force from that of the tilt and the biases, g.
-fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &Tilt) -> [f64; 2] {
-    let gravity = setting.site.latitude.gravity();
-    let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
-    let bias = tilt.bias_at(dwell.middle);
-    [0, 1].map(|i| force[i] / gravity - expected[i] - bias[i])
+fn off_level(setting: &Setting, dwell: &Dwell, tilt: &Tilt) -> [f64; 2] {
+    let Some(force) = dwell.force else { return [0.0; 2] };
+    let gravity = setting.site.latitude.gravity().0;
+    let expected = tilt.at(dwell.middle.0).force(setting.mount.accelerometer_turn(dwell));
+    let bias = tilt.bias_at(dwell.middle.0);
+    [0, 1].map(|i| force[i].0 / gravity - expected[i] - bias[i])
 }
 
 /// Statistics of the dwells that have them.

@@ -1,6 +1,7 @@
 //! Refusals of a multi-position alignment, with the sentences that are printed for them.
 
 use crate::noise::fit::FitError;
+use crate::units::{Degrees, MilliG, Seconds};
 use crate::words::Rounded;
 
 /// Reason for which a multi-position alignment gives no azimuth, beside those that several methods have.
@@ -20,47 +21,47 @@ pub enum Refusal {
     AzimuthUnobservable,
     /// The required standard deviation cannot be reached in the time allowed.
     OutOfReach {
-        /// Least standard deviation that can be reached, 1σ, °.
-        sigma: f64,
-        /// Standard deviation that was required, 1σ, °.
-        required: f64,
-        /// Time allowed for the alignment, s.
-        seconds: f64,
+        /// Least standard deviation that can be reached, 1σ.
+        sigma: Degrees,
+        /// Standard deviation that was required, 1σ.
+        required: Degrees,
+        /// Time allowed for the alignment.
+        seconds: Seconds,
     },
     /// The survey (the recording at rest before the alignment) does not determine the gyro's noise.
     NoiseUnknown(FitError),
     /// No sequence of dwells and rotations fits into the time allowed.
     NoSchedule {
-        /// Time allowed for the alignment, s.
-        seconds: f64,
+        /// Time allowed for the alignment.
+        seconds: Seconds,
     },
     /// The uncertainty of the tilt alone exceeds the accepted standard deviation of the azimuth.
     TiltTooUncertain {
-        /// Contribution of the tilt's uncertainty to the azimuth, 1σ, °.
-        sigma: f64,
-        /// Greatest standard deviation of the azimuth that is accepted, 1σ, °.
-        required: f64,
+        /// Contribution of the tilt's uncertainty to the azimuth, 1σ.
+        sigma: Degrees,
+        /// Greatest standard deviation of the azimuth that is accepted, 1σ.
+        required: Degrees,
     },
     /// The gyro drifts, and these positions do not separate the drift from the Earth rate.
     TrendNotSeparable,
     /// The tilt measured by the accelerometer stepped between two dwells.
     TiltStepped {
-        /// Size of the tilt step, mg.
-        change: f64,
+        /// Size of the tilt step.
+        change: MilliG,
         /// Time at which the tilt stepped, s after the first dwell began.
-        after: f64,
+        after: Seconds,
     },
     /// Dwells at the beginning or at the end are inconsistent with the others.
     EndDisagrees {
         /// Number of inconsistent dwells.
         dwells: usize,
-        /// Time that separates the inconsistent dwells from the others, s.
-        after: f64,
+        /// Time that separates the inconsistent dwells from the others.
+        after: Seconds,
     },
     /// The measured rate lags behind the stage angle.
     GyroLags {
-        /// Lag of the rate, s.
-        seconds: f64,
+        /// Lag of the rate.
+        seconds: Seconds,
     },
     /// All dwells scatter alike, as white noise does, but with another power than the stated noise.
     NoiseNotAsStated {
@@ -79,10 +80,10 @@ pub enum Refusal {
     SwayUnmeasured,
     /// The stage came to rest away from its commanded angle.
     StageNotThere {
-        /// Commanded stage angle, °.
-        target: f64,
-        /// Stage angle at which it came to rest, °.
-        actual: f64,
+        /// Commanded stage angle.
+        target: Degrees,
+        /// Stage angle at which it came to rest.
+        actual: Degrees,
     },
     /// The criteria of Sokolov 2019 need equal steps that are a multiple of 10″.
     StepsUneven,
@@ -104,24 +105,24 @@ crate::words! { Refusal:
         reason.remedy();
     Self::OutOfReach { sigma, required, seconds } =>
         "σ of {}° is out of reach: {}° is the least that {} s can give",
-        Rounded::<3>(required), Rounded::<3>(sigma), Rounded::<0>(seconds);
+        Rounded::<3>(required.0), Rounded::<3>(sigma.0), Rounded::<0>(seconds.0);
     Self::NoiseUnknown(why) => "the gyro's noise cannot be learnt: {}", why;
-    Self::NoSchedule { seconds } => "no schedule fits into {} s", Rounded::<0>(seconds);
+    Self::NoSchedule { seconds } => "no schedule fits into {} s", Rounded::<0>(seconds.0);
     reason @ Self::TiltTooUncertain { sigma, required } =>
         "the tilt is known too badly: it alone costs {}° of {}°{}",
-        Rounded::<3>(sigma), Rounded::<3>(required),
+        Rounded::<3>(sigma.0), Rounded::<3>(required.0),
         reason.remedy();
     Self::TrendNotSeparable =>
         "the rate drifts, and these positions do not separate it from the Earth rate: turn a full circle";
     Self::TiltStepped { change, after } =>
         "the tilt steps by {} mg after {} s: the encoder slipped, or the platform was moved",
-        Rounded::<2>(change), Rounded::<1>(after);
+        Rounded::<2>(change.0), Rounded::<1>(after.0);
     Self::EndDisagrees { dwells, after } =>
         "{} dwell(s) at the beginning or the end do not fit the others: after {} s the encoder slipped, the base was turned, or the gyro settled",
-        dwells, Rounded::<1>(after);
+        dwells, Rounded::<1>(after.0);
     Self::GyroLags { seconds } =>
         "the gyro follows the stage {} s late: check its filter, and the times of its column",
-        Rounded::<2>(seconds);
+        Rounded::<2>(seconds.0);
     Self::NoiseNotAsStated { ratio } =>
         "all dwells scatter alike, with {} times the stated noise power: check N, and the unit of the rates",
         Rounded::<1>(ratio);
@@ -131,7 +132,7 @@ crate::words! { Refusal:
     Self::SwayUnmeasured =>
         "the dwells were disturbed, and the coarse IMU is missing that would measure the base's sway: check its wiring";
     Self::StageNotThere { target, actual } =>
-        "the stage was sent to {}° but stands at {}°", Rounded::<3>(target), Rounded::<3>(actual);
+        "the stage was sent to {}° but stands at {}°", Rounded::<3>(target.0), Rounded::<3>(actual.0);
     Self::StepsUneven =>
         "this criterion needs equal steps that are a multiple of 10″, none left out";
     Self::NothingAccepted => "no azimuth of the table lies within the bound";

@@ -4,6 +4,7 @@ use super::mount::Mount;
 use crate::alignment::site::Site;
 use crate::earth::Latitude;
 use crate::signal::SwayNoise;
+use crate::units::Radians;
 
 /// Half circle in which the azimuth is known to lie: the ambiguity that two opposite positions
 /// leave.
@@ -17,10 +18,10 @@ pub enum Half {
 }
 
 impl Half {
-    /// Whether an azimuth, rad, lies in this half.
+    /// Whether an azimuth, lies in this half.
     #[must_use]
-    pub fn contains(self, azimuth: f64) -> bool {
-        (libm::sin(azimuth) >= 0.0) == (self == Self::East)
+    pub fn contains(self, azimuth: Radians) -> bool {
+        (libm::sin(azimuth.0) >= 0.0) == (self == Self::East)
     }
 }
 

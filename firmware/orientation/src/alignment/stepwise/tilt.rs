@@ -1,5 +1,7 @@
 //! Tilt of the platform as a phasor, its rate of change, and the directions that follow from them.
 
+use crate::units::Radians;
+
 /// Tilt of the platform as a phasor in g: real part along body x, imaginary part in quadrature.
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,17 +64,17 @@ impl Tilt {
         libm::hypot(self.real, self.imaginary)
     }
 
-    /// Pitch of the body, rad; positive nose up.
+    /// Pitch of the body; positive nose up.
     #[must_use]
-    pub fn pitch(&self) -> f64 {
-        libm::asin(self.real.clamp(-1.0, 1.0))
+    pub fn pitch(&self) -> Radians {
+        Radians(libm::asin(self.real.clamp(-1.0, 1.0)))
     }
 
-    /// Roll of the body, rad; positive right side down.
+    /// Roll of the body; positive right side down.
     #[must_use]
-    pub fn roll(&self) -> f64 {
+    pub fn roll(&self) -> Radians {
         let cosine = libm::sqrt((1.0 - self.real * self.real).max(1e-12));
-        libm::asin((self.imaginary / cosine).clamp(-1.0, 1.0))
+        Radians(libm::asin((self.imaginary / cosine).clamp(-1.0, 1.0)))
     }
 
     /// Unit vector of the sensitive axis at stage angle `theta` (rad), in the levelled frame:
@@ -80,7 +82,7 @@ impl Tilt {
     #[must_use]
     pub fn sensitive_axis(&self, theta: f64) -> [f64; 3] {
         let (sine, cosine) = libm::sincos(theta);
-        let (sine_pitch, sine_roll) = (self.real, libm::sin(self.roll()));
+        let (sine_pitch, sine_roll) = (self.real, libm::sin(self.roll().0));
         let cosine_pitch = libm::sqrt((1.0 - sine_pitch * sine_pitch).max(0.0));
         let cosine_roll = libm::sqrt((1.0 - sine_roll * sine_roll).max(0.0));
         [
@@ -92,7 +94,7 @@ impl Tilt {
 
     /// Unit vector of the base's downward axis, in the levelled frame.
     pub(crate) fn down(&self) -> [f64; 3] {
-        let (sine_roll, cosine_roll) = libm::sincos(self.roll());
+        let (sine_roll, cosine_roll) = libm::sincos(self.roll().0);
         let cosine_pitch = libm::sqrt((1.0 - self.real * self.real).max(0.0));
         [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll]
     }

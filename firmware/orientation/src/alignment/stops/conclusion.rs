@@ -21,15 +21,18 @@ use crate::math::rotation::{
     IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
 };
 use crate::signal::rest::Criteria;
-use crate::units::{DEGREE_PER_HOUR, wrapped};
+use crate::units::{
+    DEGREE_PER_HOUR, DegreesPerHour, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
+    wrapped,
+};
 
 /// Least time at rest of a stop, s: the length of the stop criteria's average.
-const LEAST_REST: f64 = WINDOW as f64;
+const LEAST_REST: Seconds = Seconds(WINDOW as f64);
 /// Least time between the middles of the first and the last stop, and least length of a single
-/// rest, s: the Earth turns by a quarter of a degree.
-const LEAST_SECONDS: f64 = 60.0;
-/// Least length of a drive between two stops, s.
-const LEAST_DRIVE: f64 = 1.0;
+/// rest: the Earth turns by a quarter of a degree.
+const LEAST_SECONDS: Seconds = Seconds(60.0);
+/// Least length of a drive between two stops.
+const LEAST_DRIVE: Seconds = Seconds(1.0);
 /// Tolerance of the ratio of the Earth's rotation beyond five of its σ.
 const RATIO_TOLERANCE: f64 = 0.01;
 /// Difference that is not chance, in σ.
@@ -81,19 +84,19 @@ pub struct Found {
     pub start: Azimuth,
     /// Attitude at the start: rotation from body axes to north, east, down.
     pub start_attitude: Matrix,
-    /// Cramér–Rao bound of the azimuth at the end for the same unknowns, 1σ, rad.
-    pub limit: f64,
-    /// Azimuth of body x at the end from the first run, before outliers are excluded, rad; for
+    /// Cramér–Rao bound of the azimuth at the end for the same unknowns, 1σ.
+    pub limit: Radians,
+    /// Azimuth of body x at the end from the first run, before outliers are excluded; for
     /// simulation campaigns.
-    pub unchecked: f64,
+    pub unchecked: Radians,
     /// Error budget of the azimuth at the end.
     pub budget: Budget,
-    /// Pitch and roll at the end, rad.
-    pub level: [f64; 2],
-    /// Estimated biases of the gyros, rad/s.
-    pub biases: Vector,
-    /// Standard deviations of the biases, 1σ, rad/s.
-    pub bias_sigmas: Vector,
+    /// Pitch and roll at the end.
+    pub level: [Radians; 2],
+    /// Estimated biases of the gyros.
+    pub biases: [RadiansPerSecond; 3],
+    /// Standard deviations of the biases, 1σ.
+    pub bias_sigmas: [RadiansPerSecond; 3],
     /// Whether the stops determine all biases: the 1σ of each is at most half of the prior one.
     pub are_biases_observed: bool,
     /// Factor by which the prior 1σ of the biases had to be inflated; one where it was sufficient.
@@ -153,14 +156,14 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
     let (now, carried) = stop_detector.now();
     Path {
         place: Place::new(setting.site.latitude),
-        gravity: setting.site.latitude.gravity(),
+        gravity: setting.site.latitude.gravity().0,
         start: stop_detector.start(),
         stops: &stop_detector.stops,
         blocks: &stop_detector.blocks,
         drives: &stop_detector.drives,
         now,
         carried,
-        stated_density: 0.5 * setting.force_noise * setting.force_noise,
+        stated_density: 0.5 * setting.force_noise.0 * setting.force_noise.0,
     }
 }
 
@@ -171,7 +174,7 @@ fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
     stop_detector.state.loss.map_or(Ok(()), Err)?;
     let (stops, is_whole) = (&stop_detector.stops, stop_detector.rests == Rests::Whole);
     let is_fleeting = stop_detector.state.fleeting > 0.0 && stops.len() < 2;
-    refuse_if(is_fleeting, too_short(stops.len(), stop_detector.state.fleeting))?;
+    refuse_if(is_fleeting, too_short(stops.len(), Seconds(stop_detector.state.fleeting)))?;
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
         return Err(Refusal::NoStop.into());
     };
@@ -181,32 +184,34 @@ fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
         inspect_stop(setting, stop_detector, index)?;
     }
     for pair in stops.windows(2) {
-        let (seconds, least) = (pair[1].from - pair[0].to, LEAST_DRIVE);
+        let (seconds, least) = (Seconds(pair[1].from.0 - pair[0].to.0), LEAST_DRIVE);
         refuse_if(seconds < least, Refusal::DriveTooShort { seconds, least })?;
     }
-    let seconds = if is_whole { last.seconds() } else { last.middle() - first.middle() };
+    let seconds = if is_whole { last.seconds() } else { Seconds(last.middle() - first.middle()) };
     let least = LEAST_SECONDS;
     refuse_if(seconds < least, Refusal::DriveTooShort { seconds, least })
 }
 
-/// Refusal of the stop with this index, which has so much rest, s.
-fn too_short(index: usize, seconds: f64) -> Refusal {
+/// Refusal of the stop with this index, which has so much rest.
+fn too_short(index: usize, seconds: Seconds) -> Refusal {
     Refusal::StopTooShort { stop: index + 1, seconds, least: LEAST_REST }
 }
 
 /// Checks that a stop is long enough, and that the vehicle stood.
 fn inspect_stop(setting: &Setting, stop_detector: &StopDetector, index: usize) -> Passed {
     let stop = &stop_detector.stops[index];
-    let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
+    let lengths = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds));
+    let rest = Seconds(lengths.sum());
     refuse_if(rest < LEAST_REST, too_short(index, rest))?;
-    let gravity = setting.site.latitude.gravity();
+    let gravity = setting.site.latitude.gravity().0;
     let ratio = -stop.force.mean()[2] / gravity;
     refuse_if(ratio < UPRIGHT, alignment::Refusal::AccelerometerImplausible { ratio })?;
     let mut limits = setting.sensors().limits(stop.seconds());
-    limits.rate += SWAY / stop.seconds();
+    limits.rate.0 += SWAY / stop.seconds().0;
     let [rate, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| length(&mean));
     let criteria = Criteria::of(rate, force, gravity);
-    let (rate, force) = (criteria.rate.abs() / DEGREE_PER_HOUR, criteria.force.abs());
+    let rate = DegreesPerHour(criteria.rate.0.abs() / DEGREE_PER_HOUR);
+    let force = MetresPerSecondSquared(criteria.force.0.abs());
     let is_moving = !criteria.is_rest(&limits);
     refuse_if(is_moving, Refusal::VehicleMoves { stop: index + 1, rate, force })?;
     let ratio = stop.disagreement();
@@ -219,7 +224,7 @@ fn inspect_stop(setting: &Setting, stop_detector: &StopDetector, index: usize) -
 fn agree(found: &Tally, stops: u32) -> Passed {
     let drives = stops.saturating_sub(1);
     // A single rest has no other data: the vehicle may be rocked, but not carried round.
-    let is_carried = drives == 0 && found.turning_rate > CARRIED;
+    let is_carried = drives == 0 && found.turning_rate.0 > CARRIED;
     let is_turning = is_carried || drives > 0 && 2 * found.turning > stops;
     refuse_if(is_turning, Refusal::EarthNotFelt { stops: found.turning, of: stops })?;
     let is_unsteady = drives > 0 && 2 * found.unsteady >= drives;
@@ -254,7 +259,7 @@ impl Found {
         solution.run(setting, path, Belief::Ideal);
         // The uncertainty of the azimuth hardly depends on the azimuth itself.
         let end = End::of(path, &solution);
-        let limit = libm::sqrt(solution.filter.variance(&end.row(path)));
+        let limit = Radians(libm::sqrt(solution.filter.variance(&end.row(path))));
         let unchecked = azimuth_of(&end.attitude);
         solution.settle(setting, path);
         Self { limit, unchecked, ..Self::shown(setting, path, &plain, &solution) }
@@ -269,23 +274,23 @@ impl Found {
         let start_attitude = start_attitude(solution);
         let start = Azimuth {
             angle: azimuth_of(&start_attitude),
-            sigma: libm::sqrt(filter.variance(&start_row(solution))),
+            sigma: Radians(libm::sqrt(filter.variance(&start_row(solution)))),
         };
         let sigma = libm::sqrt(filter.variance(&row));
         let bias_sigmas: Vector =
             core::array::from_fn(|axis| libm::sqrt(filter.covariance[BIAS + axis][BIAS + axis]));
         let known = setting.bias_sigma();
         Self {
-            azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma },
+            azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma: Radians(sigma) },
             start,
             start_attitude,
-            limit: 0.0,
-            unchecked: 0.0,
+            limit: Radians(0.0),
+            unchecked: Radians(0.0),
             budget: budget(setting, path, &filter.covariances(&row), sigma, solution.widening),
             level: level_of(&end.attitude),
-            biases: filter.three(BIAS),
-            bias_sigmas,
-            are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
+            biases: filter.three(BIAS).map(RadiansPerSecond),
+            bias_sigmas: bias_sigmas.map(RadiansPerSecond),
+            are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known.0),
             widening: solution.widening,
             plain: *plain,
             tally: solution.tally,
@@ -354,15 +359,15 @@ fn gradient(navigation: &Matrix, axis: &Vector) -> Vector {
     })
 }
 
-/// Azimuth of body x for an attitude, rad, [0, 2π).
-fn azimuth_of(attitude: &Matrix) -> f64 {
-    wrapped(libm::atan2(attitude[1][0], attitude[0][0]))
+/// Azimuth of body x for an attitude, [0, 2π).
+fn azimuth_of(attitude: &Matrix) -> Radians {
+    Radians(wrapped(libm::atan2(attitude[1][0], attitude[0][0])))
 }
 
-/// Pitch and roll for an attitude, rad.
-fn level_of(attitude: &Matrix) -> [f64; 2] {
+/// Pitch and roll for an attitude.
+fn level_of(attitude: &Matrix) -> [Radians; 2] {
     let [x, y, z] = attitude[2];
-    [libm::atan2(-x, libm::hypot(y, z)), libm::atan2(y, z)]
+    [libm::atan2(-x, libm::hypot(y, z)), libm::atan2(y, z)].map(Radians)
 }
 
 /// Contributions to σ: each group of states with prior knowledge contributes (covariance with the
@@ -372,18 +377,18 @@ fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widenin
         let together = length(&core::array::from_fn(|axis| {
             states.clone().nth(axis).map_or(0.0, |state| covariances[state])
         }));
-        if sigma > 0.0 { together / sigma } else { 0.0 }
+        Radians(if sigma > 0.0 { together / sigma } else { 0.0 })
     };
     let site = &setting.site;
     let mut budget = Budget {
-        drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma()),
+        drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma().0),
         scale: part(SCALE..SCALE + 3, site.scale_sigma),
-        accelerometer: part(FORCE..FORCE + 3, site.accelerometer_bias_sigma),
-        latitude: part(LATITUDE..LATITUDE + 1, site.latitude_sigma),
+        accelerometer: part(FORCE..FORCE + 3, site.accelerometer_bias_sigma.0),
+        latitude: part(LATITUDE..LATITUDE + 1, site.latitude_sigma.0),
         displacement: part(PLACE..PLACE + 2, path.displacement_sigma(setting)),
         ..Budget::default()
     };
-    let beside = budget.beside_noise();
-    budget.noise = libm::sqrt((sigma * sigma - beside * beside).max(0.0));
+    let beside = budget.beside_noise().0;
+    budget.noise = Radians(libm::sqrt((sigma * sigma - beside * beside).max(0.0)));
     budget
 }

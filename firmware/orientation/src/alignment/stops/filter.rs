@@ -77,12 +77,12 @@ impl Filter {
                 }
             }
         }
-        for (first, sigma) in [(BIAS, bias), (SCALE, scale), (FORCE, force)] {
+        for (first, sigma) in [(BIAS, bias), (SCALE, scale), (FORCE, force.0)] {
             for state in first..first + 3 {
                 self.covariance[state][state] = sigma * sigma;
             }
         }
-        self.covariance[LATITUDE][LATITUDE] = site.latitude_sigma * site.latitude_sigma;
+        self.covariance[LATITUDE][LATITUDE] = site.latitude_sigma.0 * site.latitude_sigma.0;
     }
 
     /// Propagates φ over an interval: `bias` and `scale` are the changes of its sensitivities, and

@@ -10,7 +10,7 @@ use crate::math::brent::{self, Minimum};
 use crate::math::quick_root;
 use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned};
 use crate::math::turn::{high, sine_and_cosine};
-use crate::units::{TURN, wrapped};
+use crate::units::{Radians, TURN, wrapped};
 
 /// Chord up to which its angle is taken from two terms of a series: the next term is below 1e-9 of
 /// it.
@@ -87,7 +87,7 @@ impl Inclination {
         let carried = turned(&transposed(&about_down(azimuth)), &self.predicted);
         let [carried, levelled] =
             [carried, self.levelled].map(|up| pitch_and_roll(&turned(&self.body, &up)));
-        libm::hypot(carried[0] - levelled[0], apart(carried[1], levelled[1]))
+        libm::hypot(carried[0].0 - levelled[0].0, apart(carried[1].0, levelled[1].0))
     }
 
     /// Azimuth at the first stop of the least angle, rad, [0, 2π), in closed form: the horizontal
@@ -132,11 +132,11 @@ fn angle_of(chord: f64) -> f64 {
     chord + f64::from(2.0 * (libm::asinf(half.min(1.0)) - half))
 }
 
-/// Pitch and roll of a body with this up vector on its axes, rad.
+/// Pitch and roll of a body with this up vector on its axes.
 #[must_use]
-pub fn pitch_and_roll(up: &Vector) -> [f64; 2] {
+pub fn pitch_and_roll(up: &Vector) -> [Radians; 2] {
     let [x, y, z] = *up;
-    [libm::atan2(x, libm::hypot(y, z)), libm::atan2(-y, -z)]
+    [libm::atan2(x, libm::hypot(y, z)), libm::atan2(-y, -z)].map(Radians)
 }
 
 /// Signed angle from one roll to another, rad, the short way.

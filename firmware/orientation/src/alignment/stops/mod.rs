@@ -35,7 +35,7 @@ pub use session::Session;
 
 use super::site::Site;
 use crate::signal::rest::Sensors;
-use crate::units::DEGREE_PER_HOUR;
+use crate::units::{ForceNoise, Metres, MetresPerSecond, RadiansPerSecond};
 
 /// Configuration of an alignment by stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,24 +43,24 @@ use crate::units::DEGREE_PER_HOUR;
 pub struct Setting {
     /// Site of the first stop, the gyros' noise, the accelerometers' biases, and the requirements.
     pub site: Site,
-    /// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, rad/s; none where
+    /// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ; none where
     /// it is unknown.
-    pub bias_sigma: Option<f64>,
+    pub bias_sigma: Option<RadiansPerSecond>,
     /// Noise density of the accelerometers, one-sided, m/s²/√Hz.
-    pub force_noise: f64,
-    /// Standard deviation of a reported displacement, 1σ, m.
-    pub displacement_sigma: f64,
+    pub force_noise: ForceNoise,
+    /// Standard deviation of a reported displacement, 1σ.
+    pub displacement_sigma: Metres,
     /// Standard deviation of the mean speed north and east of a drive without reported
-    /// displacement, 1σ, m/s.
-    pub speed_sigma: f64,
+    /// displacement, 1σ.
+    pub speed_sigma: MetresPerSecond,
 }
 
-/// Prior 1σ of an unknown bias, rad/s: a worse gyro cannot find north by this method.
-const ANY_BIAS: f64 = 30.0 * DEGREE_PER_HOUR;
-/// Default of [`Setting::displacement_sigma`], m: that of a position fix.
-const DISPLACEMENT_SIGMA: f64 = 5.0;
-/// Default of [`Setting::speed_sigma`], m/s: most vehicles do not get farther in a straight line.
-const SPEED_SIGMA: f64 = 10.0;
+/// Prior 1σ of an unknown bias: a worse gyro cannot find north by this method.
+const ANY_BIAS: RadiansPerSecond = RadiansPerSecond::from_degrees_per_hour(30.0);
+/// Default of [`Setting::displacement_sigma`]: that of a position fix.
+const DISPLACEMENT_SIGMA: Metres = Metres(5.0);
+/// Default of [`Setting::speed_sigma`]: most vehicles do not get farther in a straight line.
+const SPEED_SIGMA: MetresPerSecond = MetresPerSecond(10.0);
 
 impl Setting {
     /// Configuration without knowledge of the gyros' biases, for noiseless accelerometers.
@@ -69,16 +69,17 @@ impl Setting {
         Self {
             site,
             bias_sigma: None,
-            force_noise: 0.0,
+            force_noise: ForceNoise(0.0),
             displacement_sigma: DISPLACEMENT_SIGMA,
             speed_sigma: SPEED_SIGMA,
         }
     }
 
-    /// Prior 1σ of the gyros' biases, rad/s, bias instability included.
+    /// Prior 1σ of the gyros' biases, bias instability included.
     #[must_use]
-    pub fn bias_sigma(&self) -> f64 {
-        libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS), self.site.noise.model().bias_instability)
+    pub fn bias_sigma(&self) -> RadiansPerSecond {
+        let instability = self.site.noise.model().bias_instability;
+        RadiansPerSecond(libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS).0, instability.0))
     }
 
     /// Sensor properties for the stop criteria.

@@ -40,7 +40,8 @@ pub struct Path<'a> {
 impl Path<'_> {
     /// Position of a stop, north and east of the first, m; zero where it was not reported.
     pub fn displaced(&self, stop: usize) -> [f64; 2] {
-        self.stops.get(stop).and_then(|stop| stop.displacement).unwrap_or_default()
+        let displacement = self.stops.get(stop).and_then(|stop| stop.displacement);
+        displacement.unwrap_or_default().map(|metres| metres.0)
     }
 
     /// Standard deviation of the last stop's position, 1σ, m; zero with a single stop.
@@ -49,8 +50,8 @@ impl Path<'_> {
         if self.stops.len() < 2 {
             return 0.0;
         }
-        let unknown = setting.speed_sigma * (last.from - first.to).max(0.0);
-        if last.displacement.is_some() { setting.displacement_sigma } else { unknown }
+        let unknown = setting.speed_sigma.0 * (last.from.0 - first.to.0).max(0.0);
+        if last.displacement.is_some() { setting.displacement_sigma.0 } else { unknown }
     }
 
     /// Position between two stops, m, for a straight drive at constant speed.
@@ -58,7 +59,7 @@ impl Path<'_> {
         let [Some(before), Some(after)] = [self.stops.get(stop), self.stops.get(stop + 1)] else {
             return self.displaced(stop);
         };
-        let part = (at - before.to) / (after.from - before.to).max(1.0);
+        let part = (at - before.to.0) / (after.from.0 - before.to.0).max(1.0);
         let [from, to] = [self.displaced(stop), self.displaced(stop + 1)];
         [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
     }
@@ -75,7 +76,7 @@ impl Path<'_> {
 
     /// Power of the force noise, (m/s²)²·s: the accelerometers' noise, and sway.
     pub fn density(&self) -> f64 {
-        let stood: f64 = self.stops.iter().map(Stop::seconds).sum();
+        let stood: f64 = self.stops.iter().map(|stop| stop.seconds().0).sum();
         let of_ends = OF_ENDS * self.blocks.swing / stood.max(1.0);
         self.blocks.scatter().max(of_ends).max(self.least_density())
     }

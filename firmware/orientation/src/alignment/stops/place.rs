@@ -29,7 +29,7 @@ impl Place {
         let [along, across] = latitude.radii();
         let latitude = latitude.rad() + by;
         let start = transposed(&navigation(latitude, 0.0));
-        Self { latitude, start, per_metre: [1.0 / along, 1.0 / (across * libm::cos(latitude))] }
+        Self { latitude, start, per_metre: [1.0 / along.0, 1.0 / (across.0 * libm::cos(latitude))] }
     }
 
     /// Rotation from north, east, down at a time, s from the start, and at a displacement north and

@@ -12,6 +12,7 @@ use crate::math::rotation::{
     turned, unit,
 };
 use crate::signal::strapdown::Rough;
+use crate::units::Radians;
 
 /// Part of a single stop that counts as its beginning, and as its end.
 const END: f64 = 1.0 / 3.0;
@@ -21,10 +22,10 @@ const END: f64 = 1.0 / 3.0;
 pub struct Plain {
     /// Function U for any azimuth.
     pub inclination: Inclination,
-    /// Azimuth of body x at the first stop by the closed form, rad.
-    pub azimuth: f64,
-    /// Standard deviation of that azimuth, 1σ, rad; it contains all errors of the gyros.
-    pub sigma: f64,
+    /// Azimuth of body x at the first stop by the closed form.
+    pub azimuth: Radians,
+    /// Standard deviation of that azimuth, 1σ; it contains all errors of the gyros.
+    pub sigma: Radians,
     /// Minimum of U as an angle, by bounded minimisation.
     pub angle: Minimum,
     /// Minimum of U in the paper's form, by bounded minimisation.
@@ -113,8 +114,8 @@ impl Plain {
         let [carried, predicted] = inclination.turns();
         let (sigma, ratio_sigma) = sigmas(setting, path, &first, &last, predicted);
         let plain = Self {
-            azimuth,
-            sigma,
+            azimuth: Radians(azimuth),
+            sigma: Radians(sigma),
             angle: inclination.minimised(Inclination::angle),
             euler: inclination.minimised(Inclination::euler),
             ratio: carried / predicted,
@@ -128,7 +129,7 @@ impl Plain {
 /// Averages of the first stop and of the last, or of both ends of a single one.
 fn ends(path: &Path) -> (End, End) {
     let last = path.stops.len().saturating_sub(1);
-    let whole = path.stops.first().map_or([0.0; 2], |stop| [stop.from, stop.to]);
+    let whole = path.stops.first().map_or([0.0; 2], |stop| [stop.from.0, stop.to.0]);
     let [early, late] = [END, 1.0 - END].map(|part| whole[0] + part * (whole[1] - whole[0]));
     let end = |stop: usize, is_in: &dyn Fn(f64) -> bool| {
         let blocks = path.blocks.of(stop).filter(|block| last > 0 || is_in(block.middle));
@@ -146,12 +147,12 @@ fn sigmas(setting: &Setting, path: &Path, first: &End, last: &End, turn: f64) ->
         // A rotation φ of the frame moves the up vector along a direction p by φ·(up × p).
         let about = cross(&last.up(), direction);
         let site = &setting.site;
-        let bias = setting.bias_sigma() * length(&weighted(&about, &last.bias, &first.bias));
+        let bias = setting.bias_sigma().0 * length(&weighted(&about, &last.bias, &first.bias));
         let scale = site.scale_sigma * length(&path.turned_about(&about));
-        let force = site.accelerometer_bias_sigma / path.gravity
+        let force = site.accelerometer_bias_sigma.0 / path.gravity
             * length(&weighted(direction, &last.attitude, &first.attitude));
         let walk = site.noise.model().angle_random_walk;
-        let noise = walk * walk * (last.middle - first.middle)
+        let noise = walk.0 * walk.0 * (last.middle - first.middle)
             + path.density() / (path.gravity * path.gravity)
                 * (1.0 / first.seconds + 1.0 / last.seconds);
         let place = path.displacement_sigma(setting) * path.place.per_metre()[0];

@@ -4,35 +4,36 @@
 use super::path::Path;
 use super::place::up;
 use super::plain::End;
-use crate::math::rotation::{Matrix, Vector, cross, difference, turned};
+use crate::math::rotation::{Matrix, cross, difference, turned};
+use crate::units::{Radians, RadiansPerRootSecond, RadiansPerSecond};
 
 /// Residual of the vertical at a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
-    /// Levelled less predicted vertical, along north and east of the start, rad. Gyro biases are
+    /// Levelled less predicted vertical, along north and east of the start. Gyro biases are
     /// compensated, accelerometer biases and scale errors are not.
-    pub tilt: [f64; 2],
-    /// Standard deviation of either from white noise alone, 1σ, rad.
-    pub sigma: f64,
+    pub tilt: [Radians; 2],
+    /// Standard deviation of either from white noise alone, 1σ.
+    pub sigma: Radians,
 }
 
 impl Residual {
     /// Residual of a stop on a path, for the rotation from body axes to north, east, down at the start,
-    /// the gyros' biases, rad/s, and their angle random walk, rad/√s.
+    /// the gyros' biases and their angle random walk.
     pub(crate) fn of(
         path: &Path,
         stop: usize,
-        (start, biases): (&Matrix, &Vector),
-        angle_random_walk: f64,
+        (start, biases): (&Matrix, &[RadiansPerSecond; 3]),
+        angle_random_walk: RadiansPerRootSecond,
     ) -> Self {
         let end = End::of(path.blocks.of(stop), path.displaced(stop));
-        let (carried, error) = (end.up(), turned(&end.bias, biases));
+        let (carried, error) = (end.up(), turned(&end.bias, &biases.map(|bias| bias.0)));
         let levelled = turned(start, &difference(&carried, &cross(&error, &carried)));
         let since = end.middle - path.start;
         let predicted = up(&path.place.navigation(since, end.displacement));
         let [north, east, _] = difference(&levelled, &predicted);
-        let walked = angle_random_walk * angle_random_walk * since.max(0.0);
+        let walked = angle_random_walk.0 * angle_random_walk.0 * since.max(0.0);
         let felt = path.density() / (path.gravity * path.gravity * end.seconds);
-        Self { tilt: [north, east], sigma: libm::sqrt(walked + felt) }
+        Self { tilt: [north, east].map(Radians), sigma: Radians(libm::sqrt(walked + felt)) }
     }
 }

@@ -21,7 +21,7 @@ use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, So
 use crate::device::TRIAD;
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};
-use crate::units::Instant;
+use crate::units::{Instant, Metres, Seconds};
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,27 +48,27 @@ pub struct Procedure {
     /// Number of stops after which the session concludes; zero to conclude at the end of the
     /// samples.
     pub stops: usize,
-    /// Time for which the vehicle is to stand at each stop, s.
-    pub stop_seconds: f64,
-    /// Longest time of the whole session, s.
-    pub longest_seconds: f64,
-    /// Sample period, s.
-    pub sample_seconds: f64,
+    /// Time for which the vehicle is to stand at each stop.
+    pub stop_seconds: Seconds,
+    /// Longest time of the whole session.
+    pub longest_seconds: Seconds,
+    /// Sample period.
+    pub sample_seconds: Seconds,
     /// Tolerance of the time stamps against that period, relative: angles between two samples are
     /// wrong by the same ratio.
     pub period_tolerance: f64,
-    /// Positions of the stops, north and east of the first, m, where they are known in advance.
-    pub displacements: Vec<[f64; 2], STOPS>,
+    /// Positions of the stops, north and east of the first, where they are known in advance.
+    pub displacements: Vec<[Metres; 2], STOPS>,
 }
 
-/// Default length of a stop, s: the short levelling of Szymanowski 2003.
-const STOP_SECONDS: f64 = 60.0;
-/// Default longest time of the whole session, s.
-const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
+/// Default length of a stop: the short levelling of Szymanowski 2003.
+const STOP_SECONDS: Seconds = Seconds(60.0);
+/// Default longest time of the whole session.
+const LONGEST_SECONDS: Seconds = Seconds(6.0 * 3600.0);
 
 impl Procedure {
     /// Procedure with this number of stops of a minute, which the stop criteria find.
-    pub fn new(stops: usize, sample_seconds: f64) -> Self {
+    pub fn new(stops: usize, sample_seconds: Seconds) -> Self {
         Self {
             rests: Rests::Found,
             stops,
@@ -81,10 +81,10 @@ impl Procedure {
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
-    pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
+    pub fn recorded(rests: Rests, sample_seconds: Seconds) -> Self {
         Self {
             rests,
-            longest_seconds: f64::INFINITY,
+            longest_seconds: Seconds(f64::INFINITY),
             period_tolerance: PERIOD_TOLERANCE,
             ..Self::new(0, sample_seconds)
         }
@@ -95,9 +95,9 @@ impl Procedure {
     /// # Errors
     /// [`SetupError::NoStops`], as for [`Session::new`].
     pub fn check(&self) -> Result<(), SetupError> {
-        let is_period = self.sample_seconds > 0.0 && self.sample_seconds.is_finite();
+        let is_period = self.sample_seconds.0 > 0.0 && self.sample_seconds.0.is_finite();
         let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
-        let is_possible = is_period && has_stops && self.stop_seconds > 0.0;
+        let is_possible = is_period && has_stops && self.stop_seconds.0 > 0.0;
         is_possible.then_some(()).ok_or(SetupError::NoStops)
     }
 }
@@ -114,9 +114,9 @@ pub struct Session {
     /// State of the session, and the time since when.
     phase: Phase,
     since: Instant,
-    /// Displacement of the first stop, north and east, m, from which others count; none while it is
+    /// Displacement of the first stop, north and east, from which others count; none while it is
     /// not known.
-    origin: Option<[f64; 2]>,
+    origin: Option<[Metres; 2]>,
     /// Number of the latest stop whose displacement is known, from zero.
     placed: usize,
     /// Time of the first complete second.
@@ -154,7 +154,7 @@ impl Session {
             procedure,
             phase: Phase::Waiting,
             since: Instant::default(),
-            origin: Some([0.0; 2]),
+            origin: Some([Metres(0.0); 2]),
             placed: 0,
             begun: None,
             samples: 0,
@@ -219,14 +219,14 @@ impl Session {
     }
 
     /// Takes the displacement of the present stop.
-    fn displace(&mut self, &[north, east]: &[f64; 2], listener: Listener) {
+    fn displace(&mut self, place: &[Metres; 2], listener: Listener) {
         let Phase::Standing(index) = self.phase else { return };
         if index == 0 {
-            self.origin = self.origin.or(Some([north, east]));
+            self.origin = self.origin.or(Some(*place));
             return;
         }
         if let Some(origin) = self.origin {
-            let place = [north - origin[0], east - origin[1]];
+            let place = [0, 1].map(|axis| Metres(place[axis].0 - origin[axis].0));
             self.placed = index;
             self.stop_detector.displace(place);
             listener(Stops(Progress::Displaced(index + 1, place)));
@@ -250,7 +250,7 @@ impl Session {
         if self.procedure.stops > 0 && self.stop_detector.state.loss.is_some() {
             return self.conclude();
         }
-        if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
+        if now.seconds() - begun.seconds() > self.procedure.longest_seconds.0 {
             return self.conclude();
         }
         self.stand(count, listener)
@@ -262,7 +262,7 @@ impl Session {
         match (self.phase, phase) {
             (Phase::Driving(_), Phase::Standing(index)) => {
                 let seconds = now.seconds() - self.since.seconds();
-                listener(Stops(Progress::Stopped(index + 1, seconds)));
+                listener(Stops(Progress::Stopped(index + 1, Seconds(seconds))));
             }
             (_, Phase::Standing(_)) => listener(Stops(Progress::Standing)),
             (_, Phase::Driving(_)) => listener(Stops(Progress::Driving)),
@@ -309,7 +309,7 @@ impl Session {
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // Missing samples are reported as such instead.
         let is_whole = self.samples > 0 && self.stop_detector.state.loss.is_none();
-        contradiction(stated, found, period_tolerance).filter(|_| is_whole)
+        contradiction(stated, Seconds(found), period_tolerance).filter(|_| is_whole)
     }
 
     /// Ends the session with a conclusion, and reports the biases that it shows.
@@ -377,7 +377,7 @@ impl Method<InertialSample> for Session {
 
     fn verdict(&self) -> Option<Verdict> {
         let Conclusion { verdict, found } = self.conclusion.as_ref()?;
-        let limit = found.as_ref().map_or(0.0, |found| found.limit);
+        let limit = found.as_ref().map(|found| found.limit).unwrap_or_default();
         Some(verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }

@@ -16,6 +16,7 @@ use crate::math::rotation::{
     turned,
 };
 use crate::signal::strapdown::{Carried, Rough};
+use crate::units::RadiansPerSecond;
 
 /// Prior 1σ of the start frame's level from the first stop, rad; far above the actual one.
 const LEVEL_SIGMA: f64 = 0.1;
@@ -115,8 +116,8 @@ pub struct Tally {
     pub left_out: u32,
     /// Number of stops at which the vehicle turned, whose rest rates are excluded.
     pub turning: u32,
-    /// Greatest rate at which it turned there relative to the Earth, rad/s.
-    pub turning_rate: f64,
+    /// Greatest rate at which it turned there relative to the Earth.
+    pub turning_rate: RadiansPerSecond,
     /// Number of drives that did not end at rest, whose velocity is excluded.
     pub unsteady: u32,
     /// Sum of products of successive blocks' innovations, and sum of their squares.
@@ -193,7 +194,7 @@ impl Solution {
     /// Inflates the prior 1σ of the biases where their estimates exceed it by more than chance. The
     /// component along east is not observable at rest. Returns whether the prior changed.
     fn widen(&mut self, setting: &Setting) -> bool {
-        let sigma = self.widening * setting.bias_sigma();
+        let sigma = self.widening * setting.bias_sigma().0;
         let before = sigma * sigma;
         let left =
             |axis: usize| (self.filter.covariance[BIAS + axis][BIAS + axis] / before).min(1.0);
@@ -209,7 +210,7 @@ impl Solution {
             chi_square_tail(ratio * degrees, degrees) > FALSE_BIAS
         };
         let wider = libm::sqrt(ratio);
-        let greatest = GREATEST_BIAS.max(GREATEST_WIDENING * setting.bias_sigma());
+        let greatest = GREATEST_BIAS.max(GREATEST_WIDENING * setting.bias_sigma().0);
         if is_chance || wider * sigma > greatest {
             return false;
         }
@@ -242,9 +243,9 @@ impl Solution {
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let site = &setting.site;
         (self.tally, self.steady) = (Tally::default(), 0.0);
-        let bias_sigma = self.widening * setting.bias_sigma();
+        let bias_sigma = self.widening * setting.bias_sigma().0;
         self.filter.begin(&start_covariance(&self.frame), bias_sigma, site);
-        let is_exact = site.latitude_sigma <= 0.0;
+        let is_exact = site.latitude_sigma.0 <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let own_density = || self.roughness * self.colour * path.density();
         let mut run = Run {
@@ -261,8 +262,8 @@ impl Solution {
             run.stop(index);
         }
         // The distance driven since the last stop is not known.
-        let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to - REMAINDER);
-        run.solution.filter.add_process_noise(setting.speed_sigma * driven.max(0.0));
+        let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to.0 - REMAINDER);
+        run.solution.filter.add_process_noise(setting.speed_sigma.0 * driven.max(0.0));
         run.carry(Moment::of(path.now, &path.carried));
     }
 }
@@ -272,15 +273,15 @@ impl Run<'_> {
     fn stop(&mut self, index: usize) {
         let stop = &self.path.stops[index];
         if index > 0 {
-            let driven = (stop.from - self.last.at).max(0.0);
+            let driven = (stop.from.0 - self.last.at).max(0.0);
             self.drive(index, driven);
             let (known, unknown) = (self.setting.displacement_sigma, self.setting.speed_sigma);
             match stop.displacement {
-                Some(_) => self.solution.filter.reset(PLACE..PLACE + 2, known),
-                None => self.solution.filter.add_process_noise(unknown * driven),
+                Some(_) => self.solution.filter.reset(PLACE..PLACE + 2, known.0),
+                None => self.solution.filter.add_process_noise(unknown.0 * driven),
             }
         }
-        self.carry(Moment::of(stop.from, &stop.begin));
+        self.carry(Moment::of(stop.from.0, &stop.begin));
         self.solution.filter.anchor();
         self.before = [0.0; 2];
         for block in self.path.blocks.of(index) {
@@ -288,7 +289,7 @@ impl Run<'_> {
             self.carry(Moment { at: block.middle, bias: block.bias, scale });
             self.block(block, self.path.displaced(index));
         }
-        self.carry(Moment::of(stop.to, &stop.end));
+        self.carry(Moment::of(stop.to.0, &stop.end));
         self.rest(stop);
     }
 
@@ -296,7 +297,7 @@ impl Run<'_> {
     fn carry(&mut self, to: Moment) {
         let seconds = (to.at - self.last.at).max(0.0);
         let noise = self.setting.site.noise.model();
-        let walk = noise.angle_random_walk.max(LEAST_WALK);
+        let walk = noise.angle_random_walk.0.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
         let has_scale = self.setting.site.scale_sigma > 0.0;
         let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
@@ -310,7 +311,7 @@ impl Run<'_> {
     /// of mean length, whose rates are compared with the drives.
     fn bias_walk(&self) -> f64 {
         let whole = (self.path.now - self.path.start).max(1.0);
-        let stood: f64 = self.path.stops.iter().map(Stop::seconds).sum();
+        let stood: f64 = self.path.stops.iter().map(|stop| stop.seconds().0).sum();
         let part = (stood / self.path.stops.len() as f64).max(1.0);
         let [_, _, b, k, r] = self.setting.site.noise.model().coefficients();
         k * k
@@ -339,7 +340,7 @@ impl Run<'_> {
             gained = sum(&gained, &scaled(&beyond, length));
             seconds += length;
         }
-        self.carry(Moment::of(path.stops[index].from, &path.stops[index].begin));
+        self.carry(Moment::of(path.stops[index].from.0, &path.stops[index].begin));
         if (seconds - driven).abs() <= COVERED * driven {
             self.come_to_rest(index, &gained, driven);
         }
@@ -348,7 +349,7 @@ impl Run<'_> {
     /// Updates the filter with the apparent velocity gained by a drive.
     fn come_to_rest(&mut self, index: usize, gained: &Vector, driven: f64) {
         let path = self.path;
-        let middle = path.stops[index].from - 0.5 * driven - path.start;
+        let middle = path.stops[index].from.0 - 0.5 * driven - path.start;
         let navigation =
             path.place.navigation(middle, path.underway(index - 1, middle + path.start));
         let along = transposed(&navigation);
@@ -385,9 +386,9 @@ impl Run<'_> {
         let is_known = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
         let speed = self.setting.speed_sigma;
         if is_known(index - 1) && is_known(index) {
-            return DETOUR * speed * driven;
+            return DETOUR * speed.0 * driven;
         }
-        speed * (stops[index].from - stops[0].to)
+        speed.0 * (stops[index].from.0 - stops[0].to.0)
     }
 
     /// Updates the filter with the force of a block.
@@ -429,7 +430,7 @@ impl Run<'_> {
     /// Updates the filter with the condition that the body turned with the Earth alone during a
     /// stop (zero angular rate).
     fn rest(&mut self, stop: &Stop) {
-        let turn = EARTH_RATE * stop.seconds();
+        let turn = EARTH_RATE * stop.seconds().0;
         let earth = by(&scaled(&turned(&self.solution.frame, &self.path.place.axis()), turn));
         let [begin, end] = [&stop.begin, &stop.end].map(|carried| carried.attitude.matrix());
         let shown = product(&end, &transposed(&begin));
@@ -452,11 +453,12 @@ impl Run<'_> {
         });
         if self.take(&measurements).is_none() {
             self.solution.tally.turning += 1;
-            let rate = length(&beyond) / stop.seconds();
-            self.solution.tally.turning_rate = self.solution.tally.turning_rate.max(rate);
+            let rate = length(&beyond) / stop.seconds().0;
+            self.solution.tally.turning_rate =
+                RadiansPerSecond(self.solution.tally.turning_rate.0.max(rate));
             // A rotation within a short time makes its seconds stand out of the others.
             let excess: f64 = self.excess(stop).iter().sum();
-            if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
+            if rate * rate * stop.seconds().0 > TURNED_BY_HAND * excess {
                 self.solution.steady = self.solution.steady.max(rate);
             }
         }
@@ -472,7 +474,7 @@ impl Run<'_> {
         let (excess, swinging) = (self.excess(stop), stop.swinging());
         let walk = self.setting.site.noise.model().angle_random_walk;
         core::array::from_fn(|axis| {
-            let swung = 0.25 * swinging[axis] - walk * walk;
+            let swung = 0.25 * swinging[axis] - walk.0 * walk.0;
             (SLOW_SWAY * excess[axis]).max(swung).max(0.0) + LEAST_SWAY
         })
     }
@@ -480,7 +482,7 @@ impl Run<'_> {
     /// Variance of the rotation in the seconds of a stop beyond the gyros' noise, (rad/s)².
     fn excess(&self, stop: &Stop) -> Vector {
         let walk = self.setting.site.noise.model().angle_random_walk;
-        stop.turned.variance().map(|variance| (variance - walk * walk).max(0.0))
+        stop.turned.variance().map(|variance| (variance - walk.0 * walk.0).max(0.0))
     }
 
     /// Updates the filter with measurements unless they are outliers; returns their normalised

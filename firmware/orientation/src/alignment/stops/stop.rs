@@ -3,7 +3,7 @@
 
 use crate::math::rotation::{Vector, dot, sum, transposed, turned};
 use crate::signal::strapdown::{Carried, Rough};
-use crate::units::AngleIncrement;
+use crate::units::{AngleIncrement, Metres, Seconds};
 
 /// Greatest number of stops of a session.
 pub const STOPS: usize = 8;
@@ -55,16 +55,16 @@ impl Scatter {
 /// Interval in which the vehicle stood.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stop {
-    /// Beginning of the stop, s.
-    pub from: f64,
-    /// End of the stop, or the present end while it lasts, s.
-    pub to: f64,
+    /// Beginning of the stop.
+    pub from: Seconds,
+    /// End of the stop, or the present end while it lasts.
+    pub to: Seconds,
     /// Attitude and sensitivities at the beginning.
     pub begin: Carried,
     /// Attitude and sensitivities at the end.
     pub end: Carried,
-    /// Displacement north and east from the first stop, m, where it was reported.
-    pub displacement: Option<[f64; 2]>,
+    /// Displacement north and east from the first stop, where it was reported.
+    pub displacement: Option<[Metres; 2]>,
     /// Mean rates of the seconds about the body's axes, rad/s.
     pub turned: Scatter,
     /// Sum of the squared angles of back-and-forth motion within each second, rad².
@@ -83,20 +83,20 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Length of the stop, s.
+    /// Length of the stop.
     #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.to - self.from
+    pub fn seconds(&self) -> Seconds {
+        Seconds(self.to.0 - self.from.0)
     }
 
     /// Middle of the stop, s.
     pub(crate) fn middle(&self) -> f64 {
-        0.5 * (self.from + self.to)
+        0.5 * (self.from.0 + self.to.0)
     }
 
     /// Adds a second to the stop, which then ends with that second.
     pub fn take(&mut self, second: &Second) {
-        self.to = second.to;
+        self.to = Seconds(second.to);
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
         self.turned.push(&rates);

@@ -16,7 +16,7 @@ use crate::math::rotation::{length, scaled, sum};
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits, Sensors};
 use crate::signal::strapdown::{Carried, Rough, Strapdown, Sums};
-use crate::units::{AngleIncrement, Instant};
+use crate::units::{AngleIncrement, Instant, Metres, MetresPerSecondSquared, Seconds};
 
 /// Length of the low-pass average for the criteria, s: at least ten (Szymanowski 2003).
 pub const WINDOW: usize = 10;
@@ -39,8 +39,8 @@ const GAP: f64 = 1.6;
 pub enum Rests {
     /// The stop criteria find them.
     Found,
-    /// They are configured as intervals of time, s.
-    Stated(Vec<[f64; 2], STOPS>),
+    /// They are configured as intervals of time.
+    Stated(Vec<[Seconds; 2], STOPS>),
     /// The whole recording is one stop.
     Whole,
 }
@@ -108,13 +108,18 @@ impl StopDetector {
     /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
     #[inline]
     #[must_use]
-    pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
+    pub fn new(
+        rests: Rests,
+        sensors: &Sensors,
+        gravity: MetresPerSecondSquared,
+        sample_seconds: Seconds,
+    ) -> Self {
         Self {
             rests,
-            limits: sensors.limits(WINDOW as f64),
-            gravity,
-            gap: libm::round(GAP * sample_seconds * 1e6) as u64,
-            period: libm::round(sample_seconds * 1e6) as u64,
+            limits: sensors.limits(Seconds(WINDOW as f64)),
+            gravity: gravity.0,
+            gap: libm::round(GAP * sample_seconds.0 * 1e6) as u64,
+            period: libm::round(sample_seconds.0 * 1e6) as u64,
             state: State::default(),
             window: Deque::new(),
             stops: Vec::new(),
@@ -143,7 +148,7 @@ impl StopDetector {
         if self.state.strapdown.push(sample)
             && sample.turned.iter().any(|turned| turned.is_saturated())
         {
-            self.lose(Refusal::RotationClipped { at: sample.time.seconds() });
+            self.lose(Refusal::RotationClipped { at: Seconds(sample.time.seconds()) });
         }
         let is_over = sample.time.0.saturating_sub(self.state.progress.since.0) >= SECOND
             || self.is_edge(sample.time);
@@ -168,7 +173,7 @@ impl StopDetector {
         let elapsed = now.0.saturating_sub(self.state.last.0);
         if elapsed > self.gap {
             let (at, seconds) = (self.state.last.seconds(), elapsed as f64 * 1e-6);
-            self.lose(Refusal::RotationMissing { at, seconds });
+            self.lose(Refusal::RotationMissing { at: Seconds(at), seconds: Seconds(seconds) });
         }
         self.state.last = now;
     }
@@ -183,8 +188,8 @@ impl StopDetector {
     fn is_edge(&self, now: Instant) -> bool {
         let Rests::Stated(stops) = &self.rests else { return false };
         let (now, half) = (now.0, self.period / 2);
-        let is_near = |edge: &f64| {
-            let edge = Instant::from_seconds(*edge).0;
+        let is_near = |edge: &Seconds| {
+            let edge = Instant::from_seconds(edge.0).0;
             now + half >= edge && now + half < edge + self.period
         };
         stops.iter().flatten().any(is_near)
@@ -211,8 +216,9 @@ impl StopDetector {
             Rests::Whole => self.stay(Some(0)),
             Rests::Stated(stops) => {
                 let half = 0.5e-6 * self.period as f64;
-                let is_in =
-                    |stop: &[f64; 2]| second.from >= stop[0] - half && second.to <= stop[1] + half;
+                let is_in = |[from, to]: &[Seconds; 2]| {
+                    second.from >= from.0 - half && second.to <= to.0 + half
+                };
                 let stop = stops.iter().position(is_in);
                 self.stay(stop);
             }
@@ -225,11 +231,11 @@ impl StopDetector {
     /// drive.
     fn leave(&mut self) {
         let Some(second) = self.window.pop_front() else { return };
-        let begun = self.stops.iter().take_while(|stop| stop.from <= second.from).count();
+        let begun = self.stops.iter().take_while(|stop| stop.from.0 <= second.from).count();
         let Some((index, stop)) = self.stops.iter().enumerate().take(begun).next_back() else {
             return;
         };
-        if !second.is_rest && second.force.is_some() && second.from >= stop.to {
+        if !second.is_rest && second.force.is_some() && second.from >= stop.to.0 {
             self.drives.push(block(&second, second.start_force, index as u8));
         }
     }
@@ -297,7 +303,7 @@ impl StopDetector {
     /// drive fails the criteria for at least their averaging time.
     fn stand(&mut self) {
         let now = self.window.back().map_or(0.0, |second| second.to);
-        let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
+        let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to.0);
         let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
         let stop = self.stops.len() - usize::from(goes_on);
         // Further seconds are added to the last stop, so there must be one for this.
@@ -315,10 +321,10 @@ impl StopDetector {
     fn set_off(&mut self) {
         self.state.is_at_rest = false;
         let Some(last) = self.stops.last().map(Stop::seconds) else { return };
-        if last < WINDOW as f64 {
+        if last.0 < WINDOW as f64 {
             self.stops.pop();
             self.blocks.discard(self.stops.len());
-            self.state.fleeting = self.state.fleeting.max(last);
+            self.state.fleeting = self.state.fleeting.max(last.0);
         }
     }
 
@@ -332,9 +338,9 @@ impl StopDetector {
         let mut second = *second;
         let is_relieved = self.state.lever.relieve(&mut second, begun);
         if stop >= self.stops.len() {
-            let displacement = self.stops.is_empty().then_some([0.0; 2]);
+            let displacement = self.stops.is_empty().then_some([Metres(0.0); 2]);
             let (from, begin) = (second.from, second.begin);
-            let begun = Stop { from, begin, displacement, ..Stop::default() };
+            let begun = Stop { from: Seconds(from), begin, displacement, ..Stop::default() };
             if self.stops.push(begun).is_err() {
                 return;
             }
@@ -351,8 +357,8 @@ impl StopDetector {
         self.state.criteria.map(|criteria| (criteria, self.limits))
     }
 
-    /// Sets the position of the last stop, north and east of the first, m.
-    pub(super) fn displace(&mut self, displacement: [f64; 2]) {
+    /// Sets the position of the last stop, north and east of the first.
+    pub(super) fn displace(&mut self, displacement: [Metres; 2]) {
         if let Some(stop) = self.stops.last_mut() {
             stop.displacement = Some(displacement);
         }

@@ -80,7 +80,7 @@ impl Expected {
     pub(super) fn of(setting: &Setting) -> Self {
         let squared = |part: f32| part * part;
         Self {
-            walk: setting.gyros.map(|gyro| squared(gyro.noise.angle_random_walk as f32)),
+            walk: setting.gyros.map(|gyro| squared(gyro.noise.angle_random_walk.0 as f32)),
             drift: setting.gyros.map(|gyro| gyro.drift() as f32),
             scale: setting.gyros.map(|gyro| squared(gyro.scale_sigma as f32)),
         }

@@ -33,7 +33,7 @@ use super::setting::Setting;
 use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
-use crate::units::{Instant, SpecificForce};
+use crate::units::{Instant, RadiansPerSecond, SpecificForce};
 
 /// Time between attitude updates, µs: 50 Hz.
 const TICK: u64 = 20_000;
@@ -128,17 +128,18 @@ impl Vertical {
     /// Begins with these gyros at this site.
     pub fn new(setting: &Setting) -> Self {
         // While north is unknown, a level axis may contain the Earth rate in addition to its bias.
-        let unknown = 0.5 * setting.latitude.horizontal_rate() * setting.latitude.horizontal_rate();
-        let priors = setting.gyros.map(|gyro| gyro.bias_sigma * gyro.bias_sigma);
+        let rate = setting.latitude.horizontal_rate().0;
+        let unknown = 0.5 * rate * rate;
+        let priors = setting.gyros.map(|gyro| gyro.bias_sigma.0 * gyro.bias_sigma.0);
         let sigmas = priors.map(|prior| libm::sqrt(prior + unknown) as f32);
         let expected = Expected::of(setting);
-        let period = setting.sample_seconds as f32;
+        let period = setting.sample_seconds.0 as f32;
         Self {
             priors: priors.map(|prior| prior as f32),
             unknown: unknown as f32,
-            force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
+            force_tilt: setting.force_bias_sigma.0 as f32 / GRAVITY,
             period,
-            frame: [0.0, 0.0, -(setting.latitude.vertical_rate() as f32)],
+            frame: [0.0, 0.0, -(setting.latitude.vertical_rate().0 as f32)],
             matrix: Attitude::default().matrix(),
             filter: Filter::new(sigmas, &expected),
             expected,
@@ -281,10 +282,11 @@ impl Vertical {
         self.filter.variance(TURN)
     }
 
-    /// Mean rates about the body's axes at rest, rad/s, including the Earth rate; `None` in motion.
-    pub fn rest_rates(&self) -> Option<[f64; 3]> {
+    /// Mean rates about the body's axes at rest, including the Earth rate; `None` in motion.
+    pub fn rest_rates(&self) -> Option<[RadiansPerSecond; 3]> {
         let frame = turned(&transposed(&self.matrix), &self.frame);
-        self.is_at_rest().then(|| sum(&self.bias, &frame).map(f64::from))
+        let rate = |rate: f32| RadiansPerSecond(rate.into());
+        self.is_at_rest().then(|| sum(&self.bias, &frame).map(rate))
     }
 
     /// Replaces the gyro of the down axis by another one, whose bias is unknown.
@@ -292,7 +294,7 @@ impl Vertical {
         self.finish();
         self.expected = Expected::of(setting);
         let [.., down] = &setting.gyros;
-        let sigma = down.bias_sigma as f32;
+        let sigma = down.bias_sigma.0 as f32;
         self.priors[2] = sigma * sigma;
         self.bias[2] = 0.0;
         self.axes[2] = [0.0; 3];

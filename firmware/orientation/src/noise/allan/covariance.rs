@@ -14,6 +14,7 @@ use core::num::NonZeroU32;
 use super::kernel::Kernel;
 use super::{Point, variance};
 use crate::noise::GyroNoise;
+use crate::units::RateRamp;
 
 /// How far beyond the corners the flicker covariance is followed, in spans of the longer terms: the
 /// tail falls as the fourth power, and the neglected part is below 0.1 %.
@@ -42,12 +43,12 @@ impl Window {
     /// Window of a point under a noise model; spans and strides are rounded to whole samples.
     #[must_use]
     pub fn new(point: &Point, noise: &GyroNoise, sample_seconds: f64) -> Self {
-        let still = GyroNoise { rate_ramp: 0.0, ..*noise };
-        let sigma = libm::sqrt(variance(&still, point.seconds));
-        let ramp = noise.rate_ramp * point.seconds * core::f64::consts::FRAC_1_SQRT_2;
+        let still = GyroNoise { rate_ramp: RateRamp(0.0), ..*noise };
+        let sigma = libm::sqrt(variance(&still, point.seconds.0));
+        let ramp = noise.rate_ramp.0 * point.seconds.0 * core::f64::consts::FRAC_1_SQRT_2;
         Self {
-            span: libm::round(point.seconds / sample_seconds) as u32,
-            stride: libm::round(point.stride / sample_seconds) as u32,
+            span: libm::round(point.seconds.0 / sample_seconds) as u32,
+            stride: libm::round(point.stride.0 / sample_seconds) as u32,
             terms: u32::try_from(point.terms).unwrap_or(u32::MAX),
             sigma,
             ramp: (ramp / sigma) as f32,
@@ -69,10 +70,10 @@ impl Law {
         let power = |coefficient: f64| coefficient * coefficient;
         Self {
             powers: [
-                power(noise.quantisation / sample_seconds),
-                power(noise.angle_random_walk) / sample_seconds,
-                power(noise.bias_instability) / core::f64::consts::TAU,
-                power(noise.rate_random_walk) * sample_seconds,
+                power(noise.quantisation.0 / sample_seconds),
+                power(noise.angle_random_walk.0) / sample_seconds,
+                power(noise.bias_instability.0) / core::f64::consts::TAU,
+                power(noise.rate_random_walk.0) * sample_seconds,
             ],
         }
     }
@@ -112,7 +113,7 @@ impl Law {
 pub fn degrees_of_freedom(point: &Point, noise: &GyroNoise, sample_seconds: f64) -> f64 {
     let window = Window::new(point, noise, sample_seconds);
     let spread = Law::new(noise, sample_seconds).covariance(&window, &window);
-    let expected = variance(noise, point.seconds);
+    let expected = variance(noise, point.seconds.0);
     2.0 * expected * expected / spread
 }
 

@@ -15,7 +15,7 @@ pub mod covariance;
 mod kernel;
 
 use super::model::GyroNoise;
-use crate::units::AngularRate;
+use crate::units::{AngularRate, RadiansPerSecond, Seconds};
 
 /// Number of levels: the last reaches τ = 6·2²³ samples, half of a record of 10⁸.
 const LEVELS: usize = 24;
@@ -55,12 +55,12 @@ pub fn variance(noise: &GyroNoise, seconds: f64) -> f64 {
 /// One estimate of the Allan variance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Averaging time τ, s.
-    pub seconds: f64,
+    /// Averaging time τ.
+    pub seconds: Seconds,
     /// Allan variance, (rad/s)².
     pub variance: f64,
-    /// Time between the starts of successive terms, s.
-    pub stride: f64,
+    /// Time between the starts of successive terms.
+    pub stride: Seconds,
     /// Number of terms averaged, ≥ 1.
     pub terms: u64,
 }
@@ -175,23 +175,23 @@ impl Allan {
         self.change == u32::MAX
     }
 
-    /// Smallest change between neighbouring samples, rad/s: in a noisy record this is the step of
+    /// Smallest change between neighbouring samples: in a noisy record this is the step of
     /// the coarsest number format on the way. Zero for a constant record.
     #[must_use]
-    pub fn resolution(&self) -> f64 {
-        f64::from(self.change.wrapping_add(1)) * 1e-9
+    pub fn resolution(&self) -> RadiansPerSecond {
+        RadiansPerSecond(f64::from(self.change.wrapping_add(1)) * 1e-9)
     }
 
     /// Allan variances at every τ that the record reaches, in rising order; `sample_seconds` is the
     /// sample period, s.
-    pub fn points(&self, sample_seconds: f64) -> impl Iterator<Item = Point> {
+    pub fn points(&self, sample_seconds: Seconds) -> impl Iterator<Item = Point> {
         let short = SHORT.into_iter().zip(self.short).map(|(step, sum)| (0, step, sum));
         let levels = (0..).zip(&self.levels).flat_map(|(shift, level)| {
             FACTORS.into_iter().zip(level.sums).map(move |(step, sum)| (shift, step, sum))
         });
         short
             .chain(levels)
-            .filter_map(move |(shift, step, sum)| self.point(sample_seconds, shift, step, sum))
+            .filter_map(move |(shift, step, sum)| self.point(sample_seconds.0, shift, step, sum))
     }
 
     /// Estimate from a sum over `step` steps of 2^`shift` samples; `None` without a complete term.
@@ -200,9 +200,9 @@ impl Allan {
         let stride = f64::from(1_u32 << shift);
         let m = stride * f64::from(step);
         Some(Point {
-            seconds: m * sample_seconds,
+            seconds: Seconds(m * sample_seconds),
             variance: sum as f64 * 1e-18 / (2.0 * m * m * f64::from(terms)),
-            stride: stride * sample_seconds,
+            stride: Seconds(stride * sample_seconds),
             terms: u64::from(terms),
         })
     }

@@ -31,6 +31,7 @@ mod spread;
 
 pub use coefficients::{Coefficient, Estimate, NoiseFit};
 
+use crate::units::{RateRamp, Seconds};
 use heapless::Vec;
 
 use self::search::Search;
@@ -49,7 +50,7 @@ impl NoiseFit {
     /// # Errors
     /// [`FitError`] if a sample was saturated, all samples are equal, the record is too short, or
     /// its noise is below the resolution of the samples (a variance of step²/12).
-    pub fn of(allan: &Allan, sample_seconds: f64) -> Result<Self, FitError> {
+    pub fn of(allan: &Allan, sample_seconds: Seconds) -> Result<Self, FitError> {
         if allan.is_saturated {
             return Err(FitError::Saturated);
         }
@@ -58,7 +59,7 @@ impl NoiseFit {
         }
         let points: Vec<Point, MOST_POINTS> = allan.points(sample_seconds).collect();
         let fit = Self::of_points(&points, sample_seconds)?;
-        let step = allan.resolution();
+        let step = allan.resolution().0;
         if points[0].variance < step * step / 12.0 {
             return Err(FitError::Unresolved);
         }
@@ -70,16 +71,16 @@ impl NoiseFit {
     /// # Errors
     /// [`FitError`] for a sample period that is not positive, for a short record, and for variances
     /// that no noise model fits.
-    pub fn of_points(points: &[Point], sample_seconds: f64) -> Result<Self, FitError> {
-        if !(sample_seconds > 0.0 && sample_seconds.is_finite()) {
+    pub fn of_points(points: &[Point], sample_seconds: Seconds) -> Result<Self, FitError> {
+        if !(sample_seconds.0 > 0.0 && sample_seconds.0.is_finite()) {
             return Err(FitError::Period);
         }
         let samples = points.first().map_or(0, |point| point.terms + 1);
         if samples < LEAST_SAMPLES {
             return Err(FitError::TooShort { samples, needed: LEAST_SAMPLES });
         }
-        let fit = Search::begin(points, sample_seconds).finish();
-        let fit = fit.with_slope_of_walk(samples as f64 * sample_seconds);
+        let fit = Search::begin(points, sample_seconds.0).finish();
+        let fit = fit.with_slope_of_walk(samples as f64 * sample_seconds.0);
         if fit.is_finite() { Ok(fit) } else { Err(FitError::NotNoise) }
     }
 
@@ -102,9 +103,9 @@ impl NoiseFit {
     /// Slope over `seconds`, 1σ, rad/s², that a random walk at its upper limit would show; `None`
     /// where the walk was found, and its slope is part of the ramp's σ.
     #[must_use]
-    pub fn hidden_slope(&self, seconds: f64) -> Option<f64> {
+    pub fn hidden_slope(&self, seconds: Seconds) -> Option<RateRamp> {
         let [.., Estimate::NotObservable { at_most }, _] = self.estimates else { return None };
-        Some(at_most * libm::sqrt(WALK_SLOPE / seconds))
+        Some(RateRamp(at_most * libm::sqrt(WALK_SLOPE / seconds.0)))
     }
 }
 

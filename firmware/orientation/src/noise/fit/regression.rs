@@ -67,7 +67,7 @@ impl Sums {
         let mut sums = Self { columns, ..Self::default() };
         for (point, sigma) in points.iter().zip(sigmas) {
             let weight = 1.0 / sigma;
-            sums.add(&terms(point.seconds), point.variance * weight, weight);
+            sums.add(&terms(point.seconds.0), point.variance * weight, weight);
         }
         sums.scale();
         sums
@@ -162,6 +162,6 @@ pub fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
 /// inverse.
 pub fn row(inverse: &[f64; COLUMNS], points: &[Point], sigmas: &[f64]) -> Vec<f64, MOST_POINTS> {
     let count =
-        |(point, sigma): (&Point, &f64)| sum(inverse, &terms(point.seconds)) / (sigma * sigma);
+        |(point, sigma): (&Point, &f64)| sum(inverse, &terms(point.seconds.0)) / (sigma * sigma);
     points.iter().zip(sigmas).map(count).collect()
 }

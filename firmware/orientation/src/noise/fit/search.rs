@@ -71,7 +71,7 @@ impl<'p> Search<'p> {
     /// Begins with the points that average over a τ more than once, and takes their own values as
     /// the expected variances.
     pub fn begin(points: &'p [Point], sample_seconds: f64) -> Self {
-        let advance = |point: &Point| point.terms as f64 * point.stride / point.seconds;
+        let advance = |point: &Point| point.terms as f64 * point.stride.0 / point.seconds.0;
         let count = points.iter().take_while(|point| advance(point) >= 1.0).count();
         let points = &points[..count.min(MOST_POINTS)];
         Self {
@@ -133,7 +133,7 @@ impl<'p> Search<'p> {
     /// Takes the expected variances from a noise model.
     fn expect(&mut self, noise: &GyroNoise) {
         for (expected, point) in self.variances.iter_mut().zip(self.points) {
-            *expected = variance(noise, point.seconds);
+            *expected = variance(noise, point.seconds.0);
         }
     }
 
@@ -147,7 +147,7 @@ impl<'p> Search<'p> {
             let sums = Sums::new(self.points, &self.sigmas(&variances), columns);
             (model.columns, model.squares) = sums.positive();
             for (variance, point) in variances.iter_mut().zip(self.points) {
-                *variance = sum(&model.squares, &terms(point.seconds));
+                *variance = sum(&model.squares, &terms(point.seconds.0));
             }
             let moved = |(now, then): (f64, f64)| (now - then).abs() > SETTLED * now;
             if !model.squares.into_iter().zip(before).any(moved) {

@@ -34,7 +34,7 @@ mod noise;
 pub use noise::SwayNoise;
 
 use crate::math::rotation::cross;
-use crate::units::{AngularRate, DEGREE, SpecificForce};
+use crate::units::{AngularRate, DEGREE, Seconds, SpecificForce};
 
 /// Gravity, m/s²: the unit of the estimated vector. Its error only changes τ slightly.
 const GRAVITY: f32 = 9.806_65;
@@ -276,7 +276,7 @@ impl Sway {
     fn swaying(&self, size: Size, own: f32, left: f32) -> Decision {
         let noise = SwayNoise {
             angle_variance: RAISED * f64::from(own),
-            correlation: f64::from(self.sensors.memory),
+            correlation: Seconds(f64::from(self.sensors.memory)),
             residual_variance: f64::from(left),
         };
         Decision::Swaying(size, noise)

@@ -1,6 +1,8 @@
 //! Noise that remains after compensation of the base's sway: an angle error, of which a dwell sees
 //! the change.
 
+use crate::units::{Radians, Seconds};
+
 /// Error of an estimated sway angle along the sensitive axis: a first-order Gauss–Markov process
 /// and an error that is uncorrelated between both ends of a dwell. All zero where no compensation
 /// is applied.
@@ -9,23 +11,24 @@
 pub struct SwayNoise {
     /// Variance σ² of the Gauss–Markov part, rad².
     pub angle_variance: f64,
-    /// Correlation time τ of the Gauss–Markov part, s.
-    pub correlation: f64,
+    /// Correlation time τ of the Gauss–Markov part.
+    pub correlation: Seconds,
     /// Variance of the uncorrelated part σᵣ², rad².
     pub residual_variance: f64,
 }
 
 impl SwayNoise {
     /// Noise without compensation: zero.
-    pub const NONE: Self = Self { angle_variance: 0.0, correlation: 0.0, residual_variance: 0.0 };
+    pub const NONE: Self =
+        Self { angle_variance: 0.0, correlation: Seconds(0.0), residual_variance: 0.0 };
 
     /// Noise without compensation, zero, of a base whose sensors failed before they had observed
     /// its sway. The greatest correlation time distinguishes it from [`Self::NONE`].
-    pub const UNMEASURED: Self = Self { correlation: f64::MAX, ..Self::NONE };
+    pub const UNMEASURED: Self = Self { correlation: Seconds(f64::MAX), ..Self::NONE };
 
     /// Whether the sensors failed that would have observed the sway.
     pub(crate) fn is_unmeasured(&self) -> bool {
-        self.correlation >= f64::MAX
+        self.correlation.0 >= f64::MAX
     }
 
     /// Variance that the error adds to a mean rate over `seconds` (> 0), (rad/s)²: that of the
@@ -40,7 +43,7 @@ impl SwayNoise {
         if self.angle_variance <= 0.0 {
             return 0.0;
         }
-        let decorrelated = -libm::expm1(-seconds / self.correlation);
+        let decorrelated = -libm::expm1(-seconds / self.correlation.0);
         2.0 * self.angle_variance * decorrelated / (seconds * seconds)
     }
 
@@ -50,9 +53,9 @@ impl SwayNoise {
         2.0 * self.residual_variance / (seconds * seconds)
     }
 
-    /// Standard deviation of the angle error, both parts, rad.
+    /// Standard deviation of the angle error, both parts.
     #[must_use]
-    pub fn angle_sigma(&self) -> f64 {
-        libm::sqrt(self.angle_variance + self.residual_variance)
+    pub fn angle_sigma(&self) -> Radians {
+        Radians(libm::sqrt(self.angle_variance + self.residual_variance))
     }
 }

@@ -174,7 +174,7 @@ fn plain_deg(session: &Session) -> Option<f64> {
     let mut regression = Regression::<3>::default();
     for dwell in dwells {
         let axis = tilt.sensitive_axis(dwell.stage.rad());
-        let left = dwell.rate + setting.site.latitude.vertical_rate() * axis[2];
+        let left = dwell.rate.0 + setting.site.latitude.vertical_rate().0 * axis[2];
         regression.push(&[axis[0], -axis[1], 1.0], left);
     }
     let [north, east, _] = regression.solve(&[Coefficient::Free; 3])?.coefficients;

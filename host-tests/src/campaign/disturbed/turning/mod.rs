@@ -12,6 +12,7 @@ use hal_mock::stage::{Ripple, Unevenness};
 use hal_mock::turntable::{Segment, Turntable, TurntableConfiguration};
 use orientation::alignment::rotating::Session;
 use orientation::alignment::{Method, Solution};
+use orientation::units::Radians;
 
 use super::Platform;
 use super::axes::shown;
@@ -218,10 +219,10 @@ impl Rig for Instrument {
 fn aligned(session: &Session, truth_deg: f64) -> Aligned {
     // Where the noise is not stated, what its estimate leaves stands for the limit.
     let noise =
-        session.conclusion().and_then(|found| found.fit).map_or(0.0, |fit| fit.budget.noise);
+        session.conclusion().and_then(|found| found.fit).map_or(0.0, |fit| fit.budget.noise.0);
     let limited = |Solution { azimuth, limit }: Solution| Solution {
         azimuth,
-        limit: if limit > 0.0 { limit } else { noise },
+        limit: if limit.0 > 0.0 { limit } else { Radians(noise) },
     };
     let verdict = session.verdict().map(|verdict| verdict.map(limited));
     let plain_deg = plain::azimuth_deg(session);

@@ -23,8 +23,8 @@ pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
     let pairs = pairs(&session.turn_accumulator.stretches)?;
     let first = *pairs.first()?;
     let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
-    let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity());
-    let felt = tilt.scaled(latitude.vertical_rate());
+    let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity().0);
+    let felt = tilt.scaled(latitude.vertical_rate().0);
     let misalignments = &session.conclusion()?.misalignments;
     let sensor = session.setting().sensor;
     let azimuth = if sensor.is_flat {
@@ -36,8 +36,8 @@ pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
             Halves::of(pair[0].speed(), phasors, [VARIANCE; 2], 0.0)
         };
         let halves: Vec<Halves> = pairs.iter().map(half).collect();
-        let angle = molecular::freed(&halves, sensor.molecular_sigma)?.angle;
-        let felt = felt.scaled(1.0 / latitude.horizontal_rate());
+        let angle = molecular::freed(&halves, sensor.molecular_sigma.0)?.angle;
+        let felt = felt.scaled(1.0 / latitude.horizontal_rate().0);
         Lean::of(tilt).azimuth_towards(angle, felt)?.0
     };
     Some(degrees(azimuth))

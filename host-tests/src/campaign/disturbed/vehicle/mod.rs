@@ -16,7 +16,6 @@ use crate::campaign::chance::Chance;
 use crate::campaign::szymanowski::parked::standing;
 use crate::methods::asked::Asked;
 use crate::methods::stops::{Replay, SIAP, STATIC, replay};
-use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
 
 /// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
@@ -186,7 +185,7 @@ fn aligned(replay: &Replay, truth_deg: f64) -> Aligned {
     let found = replay.session.conclusion().and_then(|conclusion| conclusion.found.as_ref());
     Aligned::of(
         replay.session.verdict(),
-        found.map(|found| degrees(found.unchecked)),
+        found.map(|found| found.unchecked.degrees()),
         &[],
         truth_deg,
     )

@@ -9,6 +9,7 @@ use orientation::alignment::rotating::conclusion::Conclusion;
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
 use orientation::alignment::rotating::solution::{Fit, Stages};
 use orientation::alignment::rotating::turn::{Stretch, Turn};
+use orientation::units::Radians;
 use serde::Serialize;
 
 use crate::cause;
@@ -46,10 +47,10 @@ const DISTURBED: &str = "disturbed: too far from the other turns";
 fn stages(fit: &Fit) -> [(&'static str, &'static str, f64); 4] {
     let Stages { raw, misalignment, senses, full } = fit.stages;
     [
-        ("raw_deg", "raw, clockwise", raw),
-        ("without_unevenness_deg", "without the unevenness", misalignment),
-        ("both_senses_deg", "both senses", senses),
-        ("full_deg", "everything", full),
+        ("raw_deg", "raw, clockwise", raw.0),
+        ("without_unevenness_deg", "without the unevenness", misalignment.0),
+        ("both_senses_deg", "both senses", senses.0),
+        ("full_deg", "everything", full.0),
     ]
 }
 
@@ -72,7 +73,7 @@ impl Replay {
 
     /// Whether the sensor may have a g-sensitivity that integrates acceleration.
     fn is_molecular(&self) -> bool {
-        self.session.setting().sensor.molecular_sigma > 0.0
+        self.session.setting().sensor.molecular_sigma.0 > 0.0
     }
 
     /// The names of the columns that the fits used.
@@ -93,7 +94,7 @@ impl Replay {
         let stretches = self.session.turn_accumulator.stretches.iter();
         let walk = conclusion.angle_random_walk;
         stretches
-            .flat_map(|stretch| of_stretch(stretch, conclusion.misalignments.first(), walk))
+            .flat_map(|stretch| of_stretch(stretch, conclusion.misalignments.first(), walk.0))
             .collect()
     }
 
@@ -103,14 +104,14 @@ impl Replay {
         let fit = conclusion.fit.as_ref().filter(|_| self.is_molecular())?;
         let has_two = conclusion.pairs.len() > 1;
         let bias = if has_two { fit.one_speed } else { fit.budget.g_sensitivity };
-        Some([fit.molecular.size(), bias])
+        Some([fit.molecular.size(), bias.0])
     }
 
     /// Cramér–Rao bounds where the noise was stated, °: of the sensor, and of one whose gain, lag and g-sensitivity are known.
     fn limits_deg(&self, conclusion: &Conclusion) -> Option<[f64; 2]> {
         let is_known = self.session.setting().site.noise.is_white_known();
         let fit = conclusion.fit.as_ref().filter(|_| is_known);
-        fit.map(|fit| [fit.limit, fit.plain_limit].map(degrees))
+        fit.map(|fit| [fit.limit, fit.plain_limit].map(Radians::degrees))
     }
 
     fn details(&self, conclusion: &Conclusion) -> Keys {
@@ -156,16 +157,16 @@ impl Replay {
 /// How the sensitive axis stands, as rate-modulated turns at a speed showed it.
 fn misalignment(found: &AxisMisalignment) -> Keys {
     Keys::default()
-        .with("coupling_deg", degrees(found.angle()))
+        .with("coupling_deg", found.angle().degrees())
         .with("coupling_sigma_deg", degrees(found.sine_sigma))
         .with("lag_s", found.lag())
-        .with("speed_hz", found.frequency / TAU)
+        .with("speed_hz", found.frequency.0 / TAU)
 }
 
 /// The axis misalignment with its lag, in words.
 fn words(found: &AxisMisalignment) -> String {
-    let [angle, sigma] = [found.angle(), found.sine_sigma].map(degrees);
-    let (lag, speed) = (1e3 * found.lag(), found.frequency / TAU);
+    let [angle, sigma] = [found.angle(), Radians(found.sine_sigma)].map(Radians::degrees);
+    let (lag, speed) = (1e3 * found.lag().0, found.frequency.0 / TAU);
     format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed:.3} Hz")
 }
 
@@ -219,7 +220,7 @@ fn of_stretch<'a>(
 /// and acceleration.
 fn compensated(turn: &Turn, misalignment: Option<&AxisMisalignment>) -> [f64; 2] {
     let [rate, turning] = [turn.rate, turn.turning].map(|phasor| phasor.map(f64::from));
-    let parts = |found: &AxisMisalignment| (found.sine, found.quadrature);
+    let parts = |found: &AxisMisalignment| (found.sine, found.quadrature.0);
     let (sine, quadrature) = misalignment.map_or((0.0, 0.0), parts);
     let speed = f64::from(turn.speed);
     let quickening = [speed * turning[1], -speed * turning[0]];
@@ -296,7 +297,7 @@ fn of_g_sensitivity(lines: Lines, is_one: bool, ratio: f64, bias: f64) -> Lines 
 
 fn table_of_stages(fit: &Fit) -> Part {
     let stages = stages(fit).map(|(_, name, azimuth)| (name, degrees(azimuth)));
-    let off = |azimuth| azimuth_error(azimuth, degrees(fit.stages.full));
+    let off = |azimuth| azimuth_error(azimuth, fit.stages.full.degrees());
     Columns::of("Azimuth after each stage of compensation", &stages)
         .column("stage", |(stage, _)| stage)
         .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
@@ -318,7 +319,7 @@ fn table_of_stretches(conclusion: &Conclusion) -> Part {
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
 fn figures(replay: &Replay, conclusion: &Conclusion, rows: &[RotatingRow]) -> Vec<Figure> {
     let without = match conclusion.misalignments.first() {
-        Some(found) => freed(rows, found.sine, found.quadrature),
+        Some(found) => freed(rows, found.sine, found.quadrature.0),
         None => rows.to_vec(),
     };
     let (parts, freed) = (replay.parts(rows), replay.parts(&without));

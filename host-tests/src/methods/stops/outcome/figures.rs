@@ -5,7 +5,7 @@ use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::plain::Plain;
 use orientation::earth::Latitude;
 use orientation::signal::rest::{Criteria, Limits};
-use orientation::units::wrapped;
+use orientation::units::{Seconds, wrapped};
 
 use super::plain_azimuths;
 use crate::methods::stops::Replay;
@@ -22,7 +22,7 @@ const LEAST_REACH_DEG: f64 = 0.02;
 /// The azimuths at the end by both methods; none where there is neither.
 pub(crate) fn azimuths(outcome: &Outcome, found: Option<&Found>) -> Option<Figure> {
     let full = outcome.azimuth_deg.zip(outcome.sigma_deg);
-    let plain = found.map(|found| (plain_azimuths(found)[0], degrees(found.plain.sigma)));
+    let plain = found.map(|found| (plain_azimuths(found)[0], found.plain.sigma.degrees()));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {
@@ -35,8 +35,8 @@ pub(crate) fn azimuths(outcome: &Outcome, found: Option<&Found>) -> Option<Figur
 
 /// U over the whole circle, and near its minimum.
 pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
-    let reach = (REACH_SIGMAS * degrees(plain.sigma)).clamp(LEAST_REACH_DEG, 90.0);
-    let minimum = degrees(plain.azimuth);
+    let reach = (REACH_SIGMAS * plain.sigma.degrees()).clamp(LEAST_REACH_DEG, 90.0);
+    let minimum = plain.azimuth.degrees();
     let part = |i| f64::from(i) / f64::from(PLACES);
     let near: Vec<f64> = (-PLACES..=PLACES).map(|i| minimum + reach * part(i)).collect();
     let circle: Vec<f64> = (0..=PLACES).map(|i| 360.0 * part(i)).collect();
@@ -52,7 +52,7 @@ fn inclination(plain: &Plain, title: &str, azimuths_deg: &[f64]) -> Figure {
         azimuths_deg.iter().map(at).collect::<Vec<_>>()
     };
     let inclination = &plain.inclination;
-    let least = (degrees(plain.azimuth), degrees(inclination.angle(plain.azimuth)));
+    let least = (plain.azimuth.degrees(), degrees(inclination.angle(plain.azimuth.0)));
     let series = [
         Series::new("angle between the verticals", Style::Line, curve(&|a| inclination.angle(a))),
         Series::new("√(ΔΘ² + ΔΦ²)", Style::Dashed, curve(&|a| inclination.euler(a))),
@@ -66,9 +66,10 @@ pub(crate) fn criteria(replay: &Replay) -> Vec<Figure> {
     if replay.criteria.is_empty() {
         return Vec::new();
     }
-    let rate =
-        |criteria: &Criteria, limits: &Limits| [criteria.rate, limits.rate].map(degrees_per_hour);
-    let force = |criteria: &Criteria, limits: &Limits| [criteria.force, limits.force];
+    let rate = |criteria: &Criteria, limits: &Limits| {
+        [criteria.rate.0, limits.rate.0].map(degrees_per_hour)
+    };
+    let force = |criteria: &Criteria, limits: &Limits| [criteria.force.0, limits.force.0];
     vec![
         criterion(replay, ["Kryt1 = Ω − |ω| (Fig. 6)", "|Kryt1|", "°/h"], rate),
         criterion(replay, ["Kryt2 = g − |f| (Fig. 7)", "|Kryt2|", "m/s²"], force),
@@ -98,7 +99,8 @@ fn criterion(
         ),
     ];
     series.extend(replay.session.stops().iter().enumerate().map(|(index, stop)| {
-        let edge = |time| Point { x: replay.zero_s + time, y: high, limits: Some([low, high]) };
+        let edge =
+            |time: Seconds| Point { x: replay.zero_s + time.0, y: high, limits: Some([low, high]) };
         let name = format!("stop {}", index + 1);
         Series::new(&name, Style::Band, [edge(stop.from), edge(stop.to)])
     }));
@@ -108,7 +110,7 @@ fn criterion(
 /// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
 /// `W = 2 Ω_h |sin(δ/2)|`; beside it U of a drive over its seconds.
 pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
-    let horizontal = degrees_per_hour(latitude.horizontal_rate());
+    let horizontal = degrees_per_hour(latitude.horizontal_rate().0);
     let over = |of: &dyn Fn(f64) -> f64| {
         let at = |i| 180.0 * f64::from(i) / f64::from(PLACES);
         (-PLACES..=PLACES).map(at).map(|error| (error, of(error.to_radians()))).collect::<Vec<_>>()
@@ -120,7 +122,7 @@ pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) ->
         line("W = 2 Ω_h |sin(δ/2)|", &|error| 2.0 * horizontal * (0.5 * error).sin().abs()),
     ];
     series.extend(drive.map(|(plain, seconds)| {
-        let at = |error: f64| plain.inclination.angle(wrapped(plain.azimuth + error));
+        let at = |error: f64| plain.inclination.angle(wrapped(plain.azimuth.0 + error));
         let of = |error: f64| degrees_per_hour(at(error) / seconds);
         Series::new("U of this drive over its time", Style::Dashed, over(&of))
     }));

@@ -6,7 +6,7 @@ use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::inclination::pitch_and_roll;
 use orientation::alignment::stops::residual::Residual;
 use orientation::alignment::stops::stop;
-use orientation::units::wrapped;
+use orientation::units::{Radians, wrapped};
 use serde::Serialize;
 
 use crate::cause;
@@ -14,15 +14,16 @@ use crate::methods::asked::Asked;
 use crate::methods::stops::Replay;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases};
-use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
+use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
 
 /// Azimuths of the least inclination U between the first stop and the last, as the method of Szymanowski 2003 finds
 /// them, °: at the end, to which what the gyros turned leads, and at the first stop.
 fn plain_azimuths(found: &Found) -> [f64; 2] {
-    let turned = found.azimuth.angle - found.start.angle;
-    [wrapped(found.plain.azimuth + turned), found.plain.azimuth].map(degrees)
+    let turned = found.azimuth.angle.0 - found.start.angle.0;
+    let plain = found.plain.azimuth.0;
+    [wrapped(plain + turned), plain].map(degrees)
 }
 
 /// What the method of Szymanowski 2003 makes of the first and the last stop: in closed form, and where Brent's search
@@ -31,7 +32,7 @@ fn plain(found: &Found) -> Keys {
     let (plain, [azimuth_deg, start_azimuth_deg]) = (&found.plain, plain_azimuths(found));
     Keys::default()
         .with("azimuth_deg", azimuth_deg)
-        .with("sigma_deg", degrees(plain.sigma))
+        .with("sigma_deg", plain.sigma.degrees())
         .with("start_azimuth_deg", start_azimuth_deg)
         .with("brent_deg", degrees(plain.angle.at))
         .with("euler_deg", degrees(plain.euler.at))
@@ -66,16 +67,17 @@ impl StopDetails {
         let [pitch, roll] = pitch_and_roll(&stop.force.mean());
         let gravity = stop.force.mean().iter().map(|part| part * part).sum::<f64>().sqrt();
         let [forward, right, _] = stop.force.variance();
-        let sigma = |variance: f64| degrees((variance / stop.seconds().max(1.0)).sqrt() / gravity);
+        let sigma =
+            |variance: f64| degrees((variance / stop.seconds().0.max(1.0)).sqrt() / gravity);
         Self {
-            from_s: zero_s + stop.from,
-            to_s: zero_s + stop.to,
-            pitch_deg: degrees(pitch),
-            roll_deg: degrees(roll),
+            from_s: zero_s + stop.from.0,
+            to_s: zero_s + stop.to.0,
+            pitch_deg: pitch.degrees(),
+            roll_deg: roll.degrees(),
             level_sigma_deg: [sigma(forward), sigma(right)],
-            displacement_m: stop.displacement,
-            residual_deg: residual.map(|residual| residual.tilt.map(degrees)),
-            residual_sigma_deg: residual.map(|residual| degrees(residual.sigma)),
+            displacement_m: stop.displacement.map(|place| place.map(|part| part.0)),
+            residual_deg: residual.map(|residual| residual.tilt.map(Radians::degrees)),
+            residual_sigma_deg: residual.map(|residual| residual.sigma.degrees()),
         }
     }
 
@@ -94,10 +96,10 @@ impl Replay {
         let parts = [
             (true, "azimuth"),
             (true, "level"),
-            (setting.bias_sigma() > 0.0, "gyro biases"),
+            (setting.bias_sigma().0 > 0.0, "gyro biases"),
             (site.scale_sigma > 0.0, "gyro scale factors"),
-            (site.accelerometer_bias_sigma > 0.0, "accelerometer biases"),
-            (site.latitude_sigma > 0.0, "latitude"),
+            (site.accelerometer_bias_sigma.0 > 0.0, "accelerometer biases"),
+            (site.latitude_sigma.0 > 0.0, "latitude"),
             (self.session.stops().len() > 1, "displacement"),
         ];
         parts.into_iter().filter_map(|(is_there, name)| is_there.then_some(name)).collect()
@@ -137,12 +139,12 @@ impl Replay {
     /// alignment from stops adds.
     fn details(&self, found: Option<&Found>, is_ok: bool, truth: &Truth) -> (Keys, Lines) {
         let start = found.filter(|_| is_ok).map(|found| found.start);
-        let start = start.map(|azimuth| [azimuth.angle, azimuth.sigma].map(degrees));
+        let start = start.map(|azimuth| [azimuth.angle, azimuth.sigma].map(Radians::degrees));
         let error = start.zip(truth.start_azimuth_deg);
         let error = error.map(|([azimuth, _], truth)| azimuth_error(azimuth, truth));
         let observed = found.filter(|found| found.are_biases_observed);
-        let biases = observed
-            .map(|found| [found.biases, found.bias_sigmas].map(|each| each.map(degrees_per_hour)));
+        let biases =
+            observed.map(|found| [found.biases, found.bias_sigmas].map(in_degrees_per_hour));
         let keys = Keys::default()
             .with_found("start_azimuth_deg", start.map(|[azimuth, _]| azimuth))
             .with_found("start_sigma_deg", start.map(|[_, sigma]| sigma))
@@ -172,10 +174,10 @@ impl Finished for Replay {
         let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
         let parts = lines.chain([table(&self.stops())]).collect();
         Outcome {
-            limit_deg: found.filter(|_| is_noise_known).map(|found| degrees(found.limit)),
-            pitch_deg: found.map(|found| degrees(found.level[0])),
-            roll_deg: found.map(|found| degrees(found.level[1])),
-            seconds: stops.iter().map(stop::Stop::seconds).sum(),
+            limit_deg: found.filter(|_| is_noise_known).map(|found| found.limit.degrees()),
+            pitch_deg: found.map(|found| found.level[0].degrees()),
+            roll_deg: found.map(|found| found.level[1].degrees()),
+            seconds: stops.iter().map(|stop| stop.seconds().0).sum(),
             fit: Some(FitDetails {
                 earth_rate_ratio: found.map(|found| found.plain.ratio),
                 earth_rate_ratio_sigma: found.map(|found| found.plain.ratio_sigma),
@@ -238,7 +240,7 @@ fn of_plain(found: &Found) -> Lines {
         [plain.angle, plain.euler].map(|least| azimuth_error(degrees(least.at), start));
     let title = "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias";
     Lines::new(title)
-        .with("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", degrees(plain.sigma)))
+        .with("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", plain.sigma.degrees()))
         .with("at the start", format!("{start:.7}° in closed form"))
         .with("least angle", format!("{brent:+.2e}° from that, by Brent's search"))
         .with("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"))

@@ -20,7 +20,9 @@ use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
 use crate::alignment::progress::Progress::Rotating;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::signal::Sample;
-use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
+use crate::units::{
+    Angle, Instant, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds, TURN,
+};
 
 /// State of the session; speeds are given by their index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,10 +121,10 @@ impl Session {
             setting,
             turn_accumulator: TurnAccumulator::new(procedure.periods(), mode),
             phase: if is_recorded { Phase::Recorded } else { Phase::Level },
-            now: Now { end: microseconds(procedure.level_seconds), ..Now::default() },
+            now: Now { end: microseconds(procedure.level_seconds.0), ..Now::default() },
             commanded: Instant::default(),
             last: None,
-            gap: microseconds(GAP * procedure.sample_seconds),
+            gap: microseconds(GAP * procedure.sample_seconds.0),
             level: Level::default(),
             conclusion: None,
             procedure,
@@ -156,10 +158,11 @@ impl Session {
         (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
 
-    /// Mean force at rest, m/s²; none without force readings.
-    pub(crate) fn force(&self) -> Option<[f64; 3]> {
+    /// Mean force at rest; none without force readings.
+    pub(crate) fn force(&self) -> Option<[MetresPerSecondSquared; 3]> {
         let count = f64::from(self.level.count);
-        (count > 0.0).then(|| self.level.sums.map(|sum| sum as f64 * 1e-6 / count))
+        let mean = |sum| MetresPerSecondSquared(sum as f64 * 1e-6 / count);
+        (count > 0.0).then(|| self.level.sums.map(mean))
     }
 
     /// Axis misalignments that were measured, with date and temperature, to be stored.
@@ -213,7 +216,7 @@ impl Session {
         let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
         let found = elapsed / f64::from(self.now.samples.max(2) - 1);
         let stated = self.procedure.sample_seconds;
-        contradiction(stated, found, PERIOD_TOLERANCE)
+        contradiction(stated, Seconds(found), PERIOD_TOLERANCE)
     }
 
     /// Measures the tilt at rest.
@@ -232,7 +235,7 @@ impl Session {
             listener(alignment::Progress::levelled(force));
         }
         let [x, y, _] = force.unwrap_or_default();
-        match site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
+        match site.check_tilt(libm::hypot(x.0, y.0) / site.latitude.gravity().0) {
             Ok(()) => self.begin_speed(0, listener),
             Err(reason) => self.conclude(Some(reason)),
         }
@@ -273,20 +276,21 @@ impl Session {
             self.turn_accumulator.follow_modulated(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.now.settled as f64) * 1e-6;
-        Request::Turn(self.procedure.modulated_rate(self.speed(index), self.now.rate, time))
+        let rate = self.procedure.modulated_rate(self.speed(index).0, self.now.rate, time);
+        Request::Turn(RadiansPerSecond(rate))
     }
 
     /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
     /// off by some per cent, and the modulation must stay synchronous with the turns.
     fn measure(&mut self, index: usize, sample: &Sample, elapsed: u64) {
         let Some((since, stage)) = self.now.measured else {
-            if elapsed >= microseconds(self.procedure.ramp_seconds) {
+            if elapsed >= microseconds(self.procedure.ramp_seconds.0) {
                 self.now.measured = Some((sample.time, sample.stage));
             }
             return;
         };
         let seconds = sample.time.0.saturating_sub(since.0) as f64 * 1e-6;
-        if seconds < TURN / self.speed(index) {
+        if seconds < TURN / self.speed(index).0 {
             return;
         }
         self.now.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
@@ -298,10 +302,10 @@ impl Session {
     /// Ends the session where the axis misalignment is too large, or the platform did not turn.
     fn end_modulated(&mut self, index: usize, listener: Listener) -> Request {
         let Some(misalignment) = self.misalignments().nth(index) else {
-            let wanted = self.speed(index) * DEGREES;
+            let wanted = self.speed(index).into();
             return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         };
-        let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
+        let [angle, sigma] = [misalignment.angle(), Radians(misalignment.sine_sigma)];
         listener(Rotating(Progress::Misalignment(angle, sigma)));
         match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
@@ -312,7 +316,7 @@ impl Session {
     /// Begins a sense of rotation at a speed.
     fn begin_sense(&mut self, index: usize, sense: Sense) -> Request {
         self.enter(Phase::Settle(index, sense), Mode::Ignore);
-        Request::Turn(sense.signed(self.speed(index)))
+        Request::Turn(RadiansPerSecond(sense.signed(self.speed(index).0)))
     }
 
     /// Waits until platform and sensor have settled.
@@ -343,7 +347,7 @@ impl Session {
             }
         }
         if elapsed >= self.now.end {
-            let wanted = sense.signed(self.speed(index)) * DEGREES;
+            let wanted = RadiansPerSecond(sense.signed(self.speed(index).0)).into();
             return self.conclude(Some(Refusal::PlatformStopped { wanted }.into()));
         }
         Request::Continue
@@ -368,8 +372,8 @@ impl Session {
         self.turn_accumulator.follow(mode);
     }
 
-    /// Speed with this index, rad/s; zero beyond the last.
-    fn speed(&self, index: usize) -> f64 {
+    /// Speed with this index; zero beyond the last.
+    fn speed(&self, index: usize) -> RadiansPerSecond {
         self.procedure.speeds.get(index).copied().unwrap_or_default()
     }
 
@@ -379,7 +383,7 @@ impl Session {
             Phase::Settle(..) => self.settle_seconds(),
             Phase::Even(index, _) => {
                 let turned = f64::from(self.procedure.turns_at(index)) * TURN;
-                ALLOWANCE.0 * turned / self.speed(index) + ALLOWANCE.1
+                ALLOWANCE.0 * turned / self.speed(index).0 + ALLOWANCE.1
             }
             // The end of a rate-modulated stretch follows from the speed that it measures.
             _ => 0.0,
@@ -388,7 +392,7 @@ impl Session {
 
     /// Time after a change of speed that is not used, s.
     fn settle_seconds(&self) -> f64 {
-        self.procedure.ramp_seconds + self.setting.sensor.settle_seconds
+        self.procedure.ramp_seconds.0 + self.setting.sensor.settle_seconds.0
     }
 
     /// Ends the session with the turns so far, or at once with a reason.
@@ -415,7 +419,7 @@ impl Session {
         self.phase = Phase::Level;
         self.turn_accumulator.clear();
         self.level = Level::default();
-        self.now = Now { end: microseconds(self.procedure.level_seconds), ..Now::default() };
+        self.now = Now { end: microseconds(self.procedure.level_seconds.0), ..Now::default() };
         (self.commanded, self.last, self.conclusion) = (Instant::default(), None, None);
     }
 }
@@ -467,7 +471,7 @@ impl Method<Sample> for Session {
 
     fn verdict(&self) -> Option<Verdict> {
         let conclusion = self.conclusion.as_ref().filter(|_| self.phase == Phase::Done)?;
-        let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+        let limit = conclusion.fit.as_ref().map(|fit| fit.limit).unwrap_or_default();
         Some(conclusion.verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }

@@ -5,7 +5,7 @@ use heapless::Vec;
 use crate::alignment::rotating::turn::SPEEDS;
 use crate::alignment::setup::SetupError;
 use crate::math::Table;
-use crate::units::TURN;
+use crate::units::{RadiansPerSecond, Seconds, TURN};
 
 /// Fewest turns in each sense: a single one cannot be distinguished from a disturbed one.
 const LEAST_TURNS: f64 = 2.0;
@@ -22,8 +22,8 @@ const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
-    /// Speeds of the platform, rad/s, > 0, one or two; none for a recording.
-    pub speeds: Vec<f64, SPEEDS>,
+    /// Speeds of the platform, > 0, one or two; none for a recording.
+    pub speeds: Vec<RadiansPerSecond, SPEEDS>,
     /// Turns at constant rate in each sense at the slower speed, two at least; see
     /// [`Self::turns_at`].
     pub turns: u32,
@@ -31,14 +31,14 @@ pub struct Procedure {
     pub modulated_turns: u32,
     /// Greatest amplitude of their modulation over the speed, 0 to 1.
     pub modulation: f64,
-    /// Sample period, s.
-    pub sample_seconds: f64,
-    /// Length of the blocks to which samples are averaged, s.
-    pub block_seconds: f64,
-    /// Time for which the platform is levelled at rest, s.
-    pub level_seconds: f64,
-    /// Time that the platform needs to reach any speed, s.
-    pub ramp_seconds: f64,
+    /// Sample period.
+    pub sample_seconds: Seconds,
+    /// Length of the blocks to which samples are averaged.
+    pub block_seconds: Seconds,
+    /// Time for which the platform is levelled at rest.
+    pub level_seconds: Seconds,
+    /// Time that the platform needs to reach any speed.
+    pub ramp_seconds: Seconds,
     /// Date with which an axis misalignment is stored, s since 1970; zero where it is unknown.
     pub date: u64,
 }
@@ -47,24 +47,24 @@ impl Procedure {
     /// Procedure with a default number of turns: three minutes in each sense for each speed, and
     /// twelve turns rate-modulated by a quarter, or twice as many with two speeds, where a lag has
     /// more effect.
-    pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
-        let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
+    pub fn new(speeds: &[RadiansPerSecond], sample_seconds: Seconds) -> Self {
+        let slowest = speeds.iter().map(|speed| speed.0).fold(f64::INFINITY, f64::min);
         Self {
             speeds: speeds.iter().copied().take(SPEEDS).collect(),
             turns: default_turns(speeds, slowest),
             modulated_turns: if speeds.len() > 1 { 24 } else { 12 },
             modulation: 0.25,
             sample_seconds,
-            block_seconds: BLOCK_SECONDS.max(BLOCK_ANGLE / slowest),
-            level_seconds: 2.0,
-            ramp_seconds: 3.0,
+            block_seconds: Seconds(BLOCK_SECONDS.max(BLOCK_ANGLE / slowest)),
+            level_seconds: Seconds(2.0),
+            ramp_seconds: Seconds(3.0),
             date: 0,
         }
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
-    pub fn recorded(sample_seconds: f64) -> Self {
-        Self { block_seconds: BLOCK_SECONDS, ..Self::new(&[], sample_seconds) }
+    pub fn recorded(sample_seconds: Seconds) -> Self {
+        Self { block_seconds: Seconds(BLOCK_SECONDS), ..Self::new(&[], sample_seconds) }
     }
 
     /// Turns at constant rate in each sense at a speed. Two speeds a < b give the azimuth as (b² B
@@ -73,14 +73,14 @@ impl Procedure {
     /// (MET 2018).
     #[must_use]
     pub fn turns_at(&self, index: usize) -> u32 {
-        let slowest = self.speeds.iter().copied().fold(f64::INFINITY, f64::min);
-        let faster = self.speeds.get(index).map_or(1.0, |speed| speed / slowest);
+        let slowest = self.speeds.iter().map(|speed| speed.0).fold(f64::INFINITY, f64::min);
+        let faster = self.speeds.get(index).map_or(1.0, |speed| speed.0 / slowest);
         libm::round(f64::from(self.turns) * faster * faster * faster).min(1e6) as u32
     }
 
     /// Number of sample periods in a block.
     pub(super) fn periods(&self) -> u32 {
-        libm::round(self.block_seconds / self.sample_seconds).clamp(1.0, 1e6) as u32
+        libm::round(self.block_seconds.0 / self.sample_seconds.0).clamp(1.0, 1e6) as u32
     }
 
     /// Half width of the modulation's spectral line over its frequency: the modulation reverses its
@@ -100,9 +100,9 @@ impl Procedure {
     }
 }
 
-/// Turns in each sense at the slowest of some speeds, for the default time.
-fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
-    let squares: f64 = speeds.iter().map(|speed| speed * speed).sum();
+/// Turns in each sense at the slowest of some speeds, rad/s, for the default time.
+fn default_turns(speeds: &[RadiansPerSecond], slowest: f64) -> u32 {
+    let squares: f64 = speeds.iter().map(|speed| speed.0 * speed.0).sum();
     let share = speeds.len() as f64 * slowest * slowest / squares;
     let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN);
     if turns > LEAST_TURNS { turns.min(1e6) as u32 } else { LEAST_TURNS as u32 }
@@ -115,11 +115,12 @@ fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
 /// turns or no modulation.
 pub fn check(procedure: &Procedure) -> Result<(), SetupError> {
     Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
-    let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
+    let are_speeds = procedure.speeds.iter().all(|speed| speed.0 > 0.0 && speed.0.is_finite());
     let is_modulation_possible = procedure.modulated_turns == 0
         || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
     let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
-    let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
+    let period = procedure.sample_seconds.0;
+    let has_period = period > 0.0 && period.is_finite();
     let is_possible = are_speeds && is_modulation_possible && has_turns && has_period;
     is_possible.then_some(()).ok_or(SetupError::NoSpeed)
 }

@@ -11,6 +11,7 @@ use crate::alignment::stepwise::different_positions;
 use crate::alignment::stepwise::setting::Amplitude;
 use crate::math::{Column, chi_square_tail};
 use crate::signal::Dwell;
+use crate::units::{Radians, Seconds};
 
 /// Motion or error in addition to the steps of the stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,10 +38,10 @@ pub enum Hypothesis {
 /// Heading step between two dwells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadingStep {
-    /// Time of the step, s.
-    pub after: f64,
-    /// Size of the step, rad: azimuth of the later dwells less that of the earlier ones.
-    pub angle: f64,
+    /// Time of the step.
+    pub after: Seconds,
+    /// Size of the step: azimuth of the later dwells less that of the earlier ones.
+    pub angle: Radians,
     /// Reduction of chi-square by the step.
     pub explained: f64,
     /// Reduction of chi-square in units of the scatter that remains.
@@ -114,13 +115,14 @@ impl Hypothesis {
         match self {
             Self::Steady => [0.0; 2],
             Self::Yawing => {
-                let vertical = axis[2] / (3600.0 * problem.setting.site.latitude.horizontal_rate());
+                let vertical =
+                    axis[2] / (3600.0 * problem.setting.site.latitude.horizontal_rate().0);
                 [problem.hours_to_end(dwell) * turning + vertical, 0.0]
             }
             Self::Curved | Self::Winding => {
-                let begin = problem.dwells.first().map_or(0.0, |first| first.middle);
+                let begin = problem.dwells.first().map_or(0.0, |first| first.middle.0);
                 let (hours, to_end) =
-                    ((dwell.middle - begin) / 3600.0, problem.hours_to_end(dwell));
+                    ((dwell.middle.0 - begin) / 3600.0, problem.hours_to_end(dwell));
                 let curve = hours * to_end;
                 [curve, curve * (hours + to_end)]
             }
@@ -128,7 +130,7 @@ impl Hypothesis {
                 let (sine, cosine) = libm::sincos(2.0 * dwell.stage.rad());
                 [sine * turning, cosine * turning]
             }
-            Self::Stepped { after } => [if dwell.middle < after { -turning } else { 0.0 }, 0.0],
+            Self::Stepped { after } => [if dwell.middle.0 < after { -turning } else { 0.0 }, 0.0],
         }
     }
 
@@ -167,9 +169,9 @@ impl Hypothesis {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Protection {
     /// Level under the alternatives that may remain hidden in any session.
-    pub always: f64,
+    pub always: Radians,
     /// Level that also includes the alternatives that matter only where an anomaly shows.
-    pub anomalous: f64,
+    pub anomalous: Radians,
 }
 
 /// Comparison of a hypothesis with the steady fit.
@@ -232,7 +234,8 @@ impl Weighed {
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
         let Self { coefficient: angle, explained, belief, .. } = *self;
-        Some(HeadingStep { after, angle, explained, gain: self.gain(), is_believed: belief >= 1.0 })
+        let (after, angle, is_believed) = (Seconds(after), Radians(angle), belief >= 1.0);
+        Some(HeadingStep { after, angle, explained, gain: self.gain(), is_believed })
     }
 }
 
@@ -269,7 +272,7 @@ impl Problem<'_> {
         let used = best.map_or(Hypothesis::Steady, |best| best.model.hypothesis);
         let beyond = winding.as_ref().filter(|_| !is_winding);
         let beyond = beyond.map_or(0.0, |winding| winding.protection(azimuth, sigma));
-        fit.protection = Protection { always: beyond, anomalous: beyond };
+        fit.protection = Protection { always: Radians(beyond), anomalous: Radians(beyond) };
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
             let is_lost = one.is_lost(steady);
@@ -277,10 +280,10 @@ impl Problem<'_> {
             let is_covered =
                 one.gain() >= one.model.hypothesis.least_covered(self.dwells.len(), is_far);
             if is_covered || !is_lost {
-                fit.protection.anomalous = fit.protection.anomalous.max(level);
+                fit.protection.anomalous = Radians(fit.protection.anomalous.0.max(level));
             }
             if is_covered {
-                fit.protection.always = fit.protection.always.max(level);
+                fit.protection.always = Radians(fit.protection.always.0.max(level));
             }
         }
         best.map(|best| Model { amplitude: fit.model.amplitude, ..best.model })
@@ -407,7 +410,7 @@ impl Problem<'_> {
             let information = power - super::leverage(&shared, &solution.covariance);
             let gain = score * score / information.max(LEAST_INFORMATION * power);
             if gain > best.0 {
-                best = (gain, 0.5 * (pair[0].middle + pair[1].middle));
+                best = (gain, 0.5 * (pair[0].middle.0 + pair[1].middle.0));
             }
         }
         (best.0 > 0.0).then_some(best.1)

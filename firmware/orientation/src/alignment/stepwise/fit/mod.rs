@@ -25,6 +25,7 @@ use crate::math::{COLUMNS, Regression, Solution};
 use crate::noise::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::{Dwell, SwayNoise};
+use crate::units::{Radians, RadiansPerSecond, RateRandomWalk};
 
 /// Row of a dwell in the regression: north and east part of the sensitive axis, constant, time
 /// since the first dwell (h), temperature above that of the first dwell (°C), two columns of a
@@ -46,10 +47,10 @@ pub struct Fit {
     pub direction: Direction,
     /// Error budget of the azimuth.
     pub budget: Budget,
-    /// Cramér–Rao bound for these columns and all stationary time of these dwells, 1σ, rad.
-    pub limit: f64,
-    /// Cramér–Rao bound with the Earth rate free, 1σ, rad.
-    pub limit_free: f64,
+    /// Cramér–Rao bound for these columns and all stationary time of these dwells, 1σ.
+    pub limit: Radians,
+    /// Cramér–Rao bound with the Earth rate free, 1σ.
+    pub limit_free: Radians,
     /// Earth-rate ratio `Ω̂_h/Ω_h` with the Earth rate free; not meaningful for two positions,
     /// which do not determine it.
     pub ratio: f64,
@@ -97,7 +98,7 @@ impl Bent {
     /// Heading of the last dwell less that of this dwell due to the step, rad.
     fn turn_before(&self, dwell: &Dwell) -> f64 {
         match self.hypothesis {
-            Hypothesis::Stepped { after } if dwell.middle < after => self.turn,
+            Hypothesis::Stepped { after } if dwell.middle.0 < after => self.turn,
             _ => 0.0,
         }
     }
@@ -124,8 +125,8 @@ pub type Found = (Fit, [[f64; COLUMNS]; COLUMNS]);
 /// Residual of one dwell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
-    /// Measured less fitted rate, including the correlated drift, rad/s.
-    pub rate: f64,
+    /// Measured less fitted rate, including the correlated drift.
+    pub rate: RadiansPerSecond,
     /// Innovation of the whitening filter, normalised by its standard deviation.
     pub normalised: f64,
     /// Innovation normalised with the dwell's own influence on the fit (leverage) taken into
@@ -227,8 +228,8 @@ impl Problem<'_> {
             model: *model,
             direction,
             budget: self.budget(regression, model, &direction, bent)?,
-            limit,
-            limit_free,
+            limit: Radians(limit),
+            limit_free: Radians(limit_free),
             ratio: free.amplitude,
             ratio_sigma: self.ratio_sigma(&free),
             chi_square: 0.0,
@@ -254,11 +255,11 @@ impl Problem<'_> {
         let horizontal = self.setting.site.latitude.horizontal_rate();
         let bent = fit.bent(fit.model.hypothesis);
         self.whiten(self.setting.site.noise.model(), taper_of, &bent, &mut |row, white| {
-            let rate = remainder(row, &fit.coefficients) * horizontal;
+            let rate = remainder(row, &fit.coefficients) * horizontal.0;
             let normalised = remainder(white, &fit.coefficients);
             let leverage = leverage(white, covariance);
             let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
-            each(Residual { rate, normalised, studentised });
+            each(Residual { rate: RadiansPerSecond(rate), normalised, studentised });
         });
     }
 
@@ -266,32 +267,32 @@ impl Problem<'_> {
     /// derivative of the rate with respect to azimuth, ∂/∂A, in these units.
     fn row(&self, dwell: &Dwell, bent: &Bent) -> (Row, f64) {
         let mount = &self.setting.mount;
-        let tilt = self.tilt.at(dwell.middle);
+        let tilt = self.tilt.at(dwell.middle.0);
         let axis = (mount.axis)(&tilt, dwell);
         let force = (mount.force)(&tilt, dwell);
         let latitude = self.setting.site.latitude;
         let first = self.dwells[0];
         let [forward, right] = tilt.turning(tilt.rate.value);
-        let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
-            - dot(self.setting.site.g_sensitivity, force)
+        let left = dwell.rate.0 - first.rate.0 + latitude.vertical_rate().0 * axis[2]
+            - dot(self.setting.site.g_sensitivity.map(|part| part.0), force)
             - (axis[0] * forward + axis[1] * right);
         let yaw = bent.rate * self.hours_to_end(dwell) - bent.turn_before(dwell);
         let left = left - bent.rate / 3600.0 * axis[2];
         let axis = turned(axis, yaw);
         let celsius = |dwell: &Dwell| dwell.temperature.get().unwrap_or(0.0);
         let warmer = celsius(dwell) - celsius(first);
-        let hours = (dwell.middle - first.middle) / 3600.0;
+        let hours = (dwell.middle.0 - first.middle.0) / 3600.0;
         let [north, east] = bent.along;
         let turning = -east * axis[0] - north * axis[1];
         let [one, other] = bent.hypothesis.row(self, dwell, axis, turning);
-        let left = left / latitude.horizontal_rate();
+        let left = left / latitude.horizontal_rate().0;
         ([axis[0], -axis[1], 1.0, hours, warmer, one, other, left], turning)
     }
 
     /// Time from the end of the last dwell to the middle of a dwell, h; negative.
     fn hours_to_end(&self, dwell: &Dwell) -> f64 {
-        let end = self.dwells.last().map_or(0.0, |last| last.end());
-        (dwell.middle - end) / 3600.0
+        let end = self.dwells.last().map_or(0.0, |last| last.end().0);
+        (dwell.middle.0 - end) / 3600.0
     }
 
     /// Components of the horizontal Earth rate in a solution, with the covariance from noise alone,
@@ -317,8 +318,8 @@ impl Problem<'_> {
     /// Variance of a dwell's mean without drift, in units of `Ω_h`².
     pub(super) fn white_variance(&self, dwell: &Dwell) -> f64 {
         let rate = self.setting.site.latitude.horizontal_rate();
-        let sway = self.setting.sway.angle_mean_variance(dwell.seconds);
-        (self.own_variance(dwell) * dwell.taper + sway) / (rate * rate)
+        let sway = self.setting.sway.angle_mean_variance(dwell.seconds.0);
+        (self.own_variance(dwell) * dwell.taper + sway) / (rate.0 * rate.0)
     }
 
     /// Rate that the dwell would have measured on a level stage without the fit's trends, in units
@@ -336,19 +337,20 @@ impl Problem<'_> {
     fn own_variance(&self, dwell: &Dwell) -> f64 {
         let seconds = dwell.seconds;
         let noise = || {
-            let rounding = self.setting.site.noise.model().rounding_variance(seconds);
-            self.white / seconds + rounding + self.setting.sway.residual_mean_variance(seconds)
+            let rounding = self.setting.site.noise.model().rounding_variance(seconds.0);
+            self.white / seconds.0 + rounding + self.setting.sway.residual_mean_variance(seconds.0)
         };
         dwell.stated_variance.get().unwrap_or_else(noise)
     }
 
     /// Whitening filter for this noise, in units of `Ω_h`.
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
-        let scale = 1.0 / self.setting.site.latitude.horizontal_rate();
-        let shortest = self.dwells.iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min);
+        let scale = 1.0 / self.setting.site.latitude.horizontal_rate().0;
+        let shortest =
+            self.dwells.iter().map(|dwell| dwell.seconds.0).fold(f64::INFINITY, f64::min);
         let relative = GyroNoise {
-            bias_instability: noise.bias_instability * scale,
-            rate_random_walk: noise.rate_random_walk * scale,
+            bias_instability: RadiansPerSecond(noise.bias_instability.0 * scale),
+            rate_random_walk: RateRandomWalk(noise.rate_random_walk.0 * scale),
             ..GyroNoise::default()
         };
         let sway = SwayNoise {
@@ -373,7 +375,7 @@ impl Problem<'_> {
             let own = self.own_variance(dwell) * taper(dwell);
             let (row, _) = self.row(dwell, bent);
             let mut white = row;
-            whitener.whiten(dwell.start(), dwell.end(), own / (rate * rate), &mut white);
+            whitener.whiten(dwell.start().0, dwell.end().0, own / (rate.0 * rate.0), &mut white);
             each(&row, &white);
         }
     }
@@ -394,9 +396,9 @@ impl Fit {
         Bent { hypothesis, ..self.bent }
     }
 
-    /// Standard deviation of the azimuth, rad.
+    /// Standard deviation of the azimuth.
     #[must_use]
-    pub fn sigma(&self) -> f64 {
+    pub fn sigma(&self) -> Radians {
         self.budget.sigma()
     }
 

@@ -104,8 +104,8 @@ impl Problem<'_> {
     /// Model without trends that the data would have to show: a configured ramp enters with its
     /// prior.
     pub(super) fn base(&self) -> Model {
-        let ramp = self.setting.site.noise.model().rate_ramp * 3600.0
-            / self.setting.site.latitude.horizontal_rate();
+        let ramp = self.setting.site.noise.model().rate_ramp.0 * 3600.0
+            / self.setting.site.latitude.horizontal_rate().0;
         Model {
             time: if ramp > LEAST_RAMP { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,

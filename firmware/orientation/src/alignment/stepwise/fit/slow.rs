@@ -6,6 +6,7 @@ use crate::alignment::stepwise::direction::quadratic;
 use crate::alignment::stepwise::level;
 use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::COLUMNS;
+use crate::units::{RadiansPerSecond, Seconds};
 
 /// Rotation rate so slow that the azimuth follows it linearly, rad/h.
 const SLOW: f64 = 1e-4;
@@ -26,7 +27,8 @@ impl Problem<'_> {
         let is_shown =
             self.dwells.len() >= FEWEST && self.is_circle(&self.coloured(&Bent::default()));
         let sigma = if is_shown { self.rate_sigma(fit) } else { None };
-        Some(SlowMotion { sigma: sigma.unwrap_or(f64::INFINITY), lever })
+        let sigma = RadiansPerSecond(sigma.unwrap_or(f64::INFINITY));
+        Some(SlowMotion { sigma, lever: Seconds(lever) })
     }
 
     /// Standard deviation of the base's rate with the Earth rate free, 1σ, rad/s; `None` where the
@@ -48,12 +50,13 @@ impl Problem<'_> {
         }
         let shown = level::tilting(self.setting, self.dwells.iter().copied());
         let Some(shown) = shown.filter(|_| self.tilt.measured) else {
-            let lever = 1.0 / self.setting.site.latitude.horizontal_rate();
-            return Some(SlowMotion { sigma: f64::INFINITY, lever });
+            let lever = Seconds(1.0 / self.setting.site.latitude.horizontal_rate().0);
+            return Some(SlowMotion { sigma: RadiansPerSecond(f64::INFINITY), lever });
         };
         let [[a, _], [_, b]] = shown.covariance;
         let sigma = libm::sqrt(a.max(b)) / self.tilt.upward();
         let shift = quadratic(&self.tilting(&shown.covariance), fit.direction.gain).max(0.0);
-        Some(SlowMotion { sigma, lever: libm::sqrt(shift) / sigma })
+        let lever = Seconds(libm::sqrt(shift) / sigma);
+        Some(SlowMotion { sigma: RadiansPerSecond(sigma), lever })
     }
 }

@@ -11,6 +11,7 @@ use crate::alignment::stepwise::setting::Amplitude;
 use crate::alignment::stepwise::tilt::TiltRate;
 use crate::math::{Column, chi_square_tail};
 use crate::noise::GyroNoise;
+use crate::units::{Radians, RadiansPerRootSecond, RateRandomWalk};
 
 /// Probability of the residuals below which their excess over the stated noise raises σ: with few
 /// degrees of freedom, where the factor would be large, and with more.
@@ -57,14 +58,14 @@ impl Problem<'_> {
         let amplitude = (direction.variance - all - kappa - tilt - base).max(0.0);
         let share = self.scale_share();
         Some(Budget {
-            noise: libm::sqrt(noise),
-            drift: libm::sqrt(drifting - noise + base),
-            temperature: libm::sqrt(all - drifting),
-            displacement: 0.0,
-            scale: libm::sqrt(amplitude * share),
-            latitude: libm::sqrt(amplitude * (1.0 - share)),
-            g_sensitivity: libm::sqrt(kappa),
-            accelerometer: libm::sqrt(tilt),
+            noise: Radians(libm::sqrt(noise)),
+            drift: Radians(libm::sqrt(drifting - noise + base)),
+            temperature: Radians(libm::sqrt(all - drifting)),
+            displacement: Radians(0.0),
+            scale: Radians(libm::sqrt(amplitude * share)),
+            latitude: Radians(libm::sqrt(amplitude * (1.0 - share))),
+            g_sensitivity: Radians(libm::sqrt(kappa)),
+            accelerometer: Radians(libm::sqrt(tilt)),
             encoder: self.setting.site.encoder_sigma,
         })
     }
@@ -82,15 +83,16 @@ impl Problem<'_> {
     /// two-frame mount it acts through `k_s` alone; the other parts of κ act on the vertical force
     /// ([`crate::alignment::stepwise::mount`]).
     pub(super) fn component_errors(&self) -> [Covariance; 3] {
-        let rate = self.setting.site.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let (force, across) = if self.setting.mount.is_on_base {
             (1.0, 0.0)
         } else {
-            (self.tilt.magnitude(), self.setting.site.g_sensitivity[1])
+            (self.tilt.magnitude(), self.setting.site.g_sensitivity[1].0)
         };
-        let kappa = self.setting.site.kappa_sigma(libm::sqrt(self.white)) * force / rate;
-        let real = (self.setting.site.latitude.vertical_rate()
-            + self.setting.site.g_sensitivity[0])
+        let walk = RadiansPerRootSecond(libm::sqrt(self.white));
+        let kappa = self.setting.site.kappa_sigma(walk).0 * force / rate;
+        let real = (self.setting.site.latitude.vertical_rate().0
+            + self.setting.site.g_sensitivity[0].0)
             / rate;
         let imaginary = across / rate;
         let rows = [[real, -imaginary], [imaginary, real]];
@@ -106,7 +108,7 @@ impl Problem<'_> {
     /// by the imaginary part of F′ and about right by its real part, which is opposite to the sign
     /// of the east column.
     pub(super) fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
-        let rate = self.setting.site.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let scale = 1.0 / (rate * rate * self.tilt.upward() * self.tilt.upward());
         [[d * scale, -b * scale], [-b * scale, a * scale]]
     }
@@ -136,7 +138,7 @@ impl Problem<'_> {
         let Protection { always, anomalous } = fit.protection;
         let is_anomalous = has_outliers || fit.is_anomalous();
         let mut level =
-            self.tilting_protection(fit).max(if is_anomalous { anomalous } else { always });
+            self.tilting_protection(fit).max(if is_anomalous { anomalous.0 } else { always.0 });
         if is_anomalous && self.dwells.len() >= FEWEST {
             let most = OBSERVABLE * fit.direction.variance;
             let trials = [self.drifting(fit), self.with_any_earth_rate(fit)].into_iter().flatten();
@@ -146,9 +148,9 @@ impl Problem<'_> {
             }
         }
         let (least, sigma) = (level / WRONG, fit.sigma());
-        if least > sigma {
-            let more = least * least - sigma * sigma;
-            fit.budget.drift = libm::sqrt(fit.budget.drift * fit.budget.drift + more);
+        if least > sigma.0 {
+            let more = least * least - sigma.0 * sigma.0;
+            fit.budget.drift = Radians(libm::sqrt(fit.budget.drift.0 * fit.budget.drift.0 + more));
         }
     }
 
@@ -156,7 +158,7 @@ impl Problem<'_> {
     /// rad.
     fn tilting_protection(&self, fit: &Fit) -> f64 {
         let TiltRate { value: [real, imaginary], covariance } = self.tilt.unproven;
-        let rate = self.setting.site.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let scale = 1.0 / (rate * self.tilt.upward());
         let apart = dot(fit.direction.gain, [imaginary * scale, -real * scale]).abs();
         let variance = quadratic(&self.tilting(&covariance), fit.direction.gain).max(0.0);
@@ -188,15 +190,15 @@ impl Problem<'_> {
             let model = Model { amplitude: fit.model.amplitude, ..self.base() };
             (model, Bent { along: fit.bent.along, ..Bent::default() })
         };
-        let span = self.dwells.last()?.end() - self.dwells.first()?.start();
-        let rate = self.setting.site.latitude.horizontal_rate();
+        let span = self.dwells.last()?.end().0 - self.dwells.first()?.start().0;
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let own = self.white_variance(self.dwells.first()?) * rate * rate / span;
         let stated = *self.setting.site.noise.model();
         let (mut power, mut factor) = (own, 4.0);
         let mut found = None;
         for _ in 0..DRIFT_ROUNDS {
-            let walk = libm::sqrt(stated.rate_random_walk * stated.rate_random_walk + power);
-            let noise = GyroNoise { rate_random_walk: walk, ..stated };
+            let walk = libm::sqrt(stated.rate_random_walk.0 * stated.rate_random_walk.0 + power);
+            let noise = GyroNoise { rate_random_walk: RateRandomWalk(walk), ..stated };
             let trial = self.trial(&self.regression(&noise, taper_of, &bent), &model)?;
             let is_enough = trial.chi_square <= trial.degrees as f64;
             if is_enough {
@@ -239,8 +241,8 @@ impl Fit {
     pub fn allow_for(&mut self, excess: f64) {
         let more = (excess / self.excess).max(1.0);
         self.excess *= more;
-        self.budget.noise *= more;
-        self.budget.drift *= more;
+        self.budget.noise.0 *= more;
+        self.budget.drift.0 *= more;
     }
 
     /// Whether the horizontal Earth rate was left free.

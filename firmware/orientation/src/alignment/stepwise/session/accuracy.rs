@@ -11,12 +11,12 @@ use crate::noise::GyroNoise;
 use crate::planner::POSITIONS;
 use crate::planner::prediction::{Visit, rate_sigma};
 use crate::signal::Dwell;
-use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
+use crate::units::{Angle, Degrees, Instant, Radians, RadiansPerRootSecond, Seconds};
 
 impl Session {
     /// Sends the stage to the next position, or concludes: with an azimuth, or because the time
     /// allowed, `seconds`, is over or cannot suffice.
-    pub(super) fn go_on_until(&mut self, seconds: f64, now: Instant) -> Request {
+    pub(super) fn go_on_until(&mut self, seconds: Seconds, now: Instant) -> Request {
         if self.procedure.schedule.is_balanced(self.dwells().len()) {
             return self.compute_later(Task::Weigh(seconds, now));
         }
@@ -24,16 +24,16 @@ impl Session {
     }
 
     /// Time left, s.
-    fn left(&self, seconds: f64, now: Instant) -> f64 {
+    fn left(&self, seconds: Seconds, now: Instant) -> f64 {
         let begun = self.begun.map_or(0.0, Instant::seconds);
-        seconds - (now.seconds() - begun)
+        seconds.0 - (now.seconds() - begun)
     }
 
     /// Sends the stage to the next position while there is time left, s, or else concludes.
     fn go_on_for(&mut self, left: f64, now: Instant) -> Request {
         let next = self.procedure.schedule.position(self.dwells().len());
         match next {
-            Some(next) if next.seconds <= left && self.dwells().len() < POSITIONS => {
+            Some(next) if next.seconds.0 <= left && self.dwells().len() < POSITIONS => {
                 self.go_to(next, now)
             }
             _ => self.conclude(None),
@@ -42,7 +42,7 @@ impl Session {
 
     /// Concludes where the accuracy is reached or out of reach, and goes on otherwise.
     #[inline(never)]
-    pub(super) fn weigh(&mut self, seconds: f64, now: Instant, listener: Listener) -> Request {
+    pub(super) fn weigh(&mut self, seconds: Seconds, now: Instant, listener: Listener) -> Request {
         let left = self.left(seconds, now);
         let is_final = match self.judge(seconds, left) {
             Some(Ok(())) => self.try_to_conclude(left),
@@ -61,24 +61,23 @@ impl Session {
         }
     }
 
-    /// Whether the accuracy that noise predicts is reached, or out of reach in the time left of
-    /// that allowed, both in s; [`None`] where the time left may suffice, and without a prediction.
-    fn judge(&self, seconds: f64, left: f64) -> Option<Passed> {
-        let rate = self.setting.site.latitude.horizontal_rate();
+    /// Whether the accuracy that noise predicts is reached, or out of reach in the time left, s, of
+    /// that allowed; [`None`] where the time left may suffice, and without a prediction.
+    fn judge(&self, seconds: Seconds, left: f64) -> Option<Passed> {
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let noise = self.noise();
         let required = self.setting.site.required_sigma;
         let visits = self.dwells().iter().map(Visit::from);
-        if rate_sigma(&noise, self.shortest(), visits)? / rate <= required {
+        if rate_sigma(&noise, self.shortest(), visits)? / rate <= required.0 {
             return Some(Ok(()));
         }
-        let least = self.least_rate_sigma(&noise, left)? / rate;
+        let least = Radians(self.least_rate_sigma(&noise, left)? / rate);
         (least > required).then(|| Err(self.out_of_reach(least, seconds).into()))
     }
 
-    /// Refusal of the required σ, where this one, rad, is the least that the time allowed, s, gives.
-    pub(super) fn out_of_reach(&self, sigma: f64, seconds: f64) -> Refusal {
-        let required = self.setting.site.required_sigma;
-        let [sigma, required] = [sigma, required].map(|angle| angle * DEGREES_PER_RADIAN);
+    /// Refusal of the required σ, where this one is the least that the time allowed gives.
+    pub(super) fn out_of_reach(&self, sigma: Radians, seconds: Seconds) -> Refusal {
+        let [sigma, required] = [sigma, self.setting.site.required_sigma].map(Degrees::from);
         Refusal::OutOfReach { sigma, required, seconds }
     }
 
@@ -90,7 +89,7 @@ impl Session {
         let noise = [Source::Noise, Source::Drift, Source::Temperature];
         match verdict {
             Some(Err(alignment::Refusal::BudgetNotMet { source, .. }))
-                if noise.contains(&source) && self.procedure.schedule.shortest() <= left =>
+                if noise.contains(&source) && self.procedure.schedule.shortest().0 <= left =>
             {
                 self.conclusion = None;
                 false
@@ -104,19 +103,20 @@ impl Session {
     fn noise(&self) -> GyroNoise {
         let norm = ExpectedScatter::of(&self.setting, self.dwells());
         let white = norm.white.max(norm.observed_white(self.dwells()));
-        GyroNoise { angle_random_walk: libm::sqrt(white), ..*self.setting.site.noise.model() }
+        let angle_random_walk = RadiansPerRootSecond(libm::sqrt(white));
+        GyroNoise { angle_random_walk, ..*self.setting.site.noise.model() }
     }
 
     /// Rate uncertainty after all positions that still fit into the time left, 1σ, rad/s.
     fn least_rate_sigma(&self, noise: &GyroNoise, left: f64) -> Option<f64> {
         let (schedule, done) = (&self.procedure.schedule, self.dwells().len());
         let seconds = schedule.shortest();
-        let period = self.period().max(seconds);
-        let begin = self.dwells().last().map_or(0.0, Dwell::end);
+        let period = self.period().max(seconds.0);
+        let begin = self.dwells().last().map_or(0.0, |dwell| dwell.end().0);
         let more = ((left / period) as usize).min(POSITIONS - done);
         let to_come = (0..more).filter_map(|index| {
-            let stage = Angle::from_rad(schedule.position(done + index)?.angle);
-            let middle = begin + (index + 1) as f64 * period - 0.5 * seconds;
+            let stage = Angle::from_rad(schedule.position(done + index)?.angle.0);
+            let middle = Seconds(begin + (index + 1) as f64 * period - 0.5 * seconds.0);
             Some(Visit::from(&Dwell { stage, middle, seconds, ..Dwell::default() }))
         });
         rate_sigma(noise, self.shortest(), self.dwells().iter().map(Visit::from).chain(to_come))
@@ -124,12 +124,12 @@ impl Session {
 
     /// Length of the shortest dwell, s.
     fn shortest(&self) -> f64 {
-        self.dwells().iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min)
+        self.dwells().iter().map(|dwell| dwell.seconds.0).fold(f64::INFINITY, f64::min)
     }
 
     /// Mean time from one dwell to the next so far, s.
     fn period(&self) -> f64 {
         let [first, .., last] = self.dwells() else { return 0.0 };
-        (last.middle - first.middle) / (self.dwells().len() - 1) as f64
+        (last.middle.0 - first.middle.0) / (self.dwells().len() - 1) as f64
     }
 }

@@ -35,7 +35,7 @@ use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
 use crate::signal::dwell::DwellAverage;
 use crate::signal::{Dwell, Sample};
-use crate::units::{Instant, TURN};
+use crate::units::{Degrees, Instant, RadiansPerSecond, Seconds, TURN};
 
 /// Fraction of the planned dwell above which a dwell counts as complete.
 const WHOLE: f64 = 0.99;
@@ -65,9 +65,9 @@ pub enum Phase {
 pub enum Task {
     /// The noise that the survey shows, and the plan that follows; the time of its last sample.
     Learn(Instant),
-    /// Whether the accuracy is reached or out of reach, with the time allowed, s, and that of the
+    /// Whether the accuracy is reached or out of reach, with the time allowed, and that of the
     /// latest sample.
-    Weigh(f64, Instant),
+    Weigh(Seconds, Instant),
     /// The conclusion, refused where there is a reason that further dwells cannot remove.
     Conclude(Option<alignment::Refusal>),
 }
@@ -212,7 +212,7 @@ impl Session {
         };
         listener(alignment::Progress::levelled(force));
         let ([x, y, _], site) = (force, &self.setting.site);
-        if let Err(reason) = site.check_tilt(libm::hypot(x, y) / site.latitude.gravity()) {
+        if let Err(reason) = site.check_tilt(libm::hypot(x.0, y.0) / site.latitude.gravity().0) {
             return self.conclude(Some(reason));
         }
         if let Some(survey) = self.procedure.survey.filter(|_| self.surveyed.is_none()) {
@@ -254,7 +254,7 @@ impl Session {
             self.phase = Phase::Dwell;
         } else if sample.time.0.saturating_sub(since.0) > self.timing.longest_rotation {
             let [target, actual] =
-                [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
+                [self.target.stage, sample.stage].map(|a| Degrees(a.rad() / TURN * 360.0));
             return self.conclude(Some(Refusal::StageNotThere { target, actual }.into()));
         }
         Request::Continue
@@ -304,7 +304,7 @@ impl Session {
     /// Reports a completed dwell, and whether it was shorter than planned.
     fn report(&self, dwell: &Dwell, listener: Listener) {
         listener(Stepwise(Progress::Dwelled(self.dwells().len(), self.planned(), dwell.rate)));
-        if dwell.seconds < WHOLE * self.procedure.schedule.shortest() {
+        if dwell.seconds.0 < WHOLE * self.procedure.schedule.shortest().0 {
             listener(Stepwise(Progress::CutShort(dwell.seconds)));
         }
     }
@@ -333,10 +333,10 @@ impl Session {
         self.send(now)
     }
 
-    /// Standard deviation of the difference of two dwells, 1σ, rad/s.
-    fn difference_sigma(&self) -> f64 {
+    /// Standard deviation of the difference of two dwells, 1σ.
+    fn difference_sigma(&self) -> RadiansPerSecond {
         let white = ExpectedScatter::of(&self.setting, self.dwells()).white;
-        libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
+        RadiansPerSecond(libm::sqrt(2.0 * white / self.procedure.schedule.shortest().0))
     }
 
     /// Ends the session with the dwells so far, or with a reason that further dwells cannot remove.
@@ -416,7 +416,7 @@ impl Method<Sample> for Session {
 
     fn verdict(&self) -> Option<Verdict> {
         let conclusion = self.conclusion.as_ref().filter(|_| matches!(self.phase, Phase::Done))?;
-        let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+        let limit = conclusion.fit.as_ref().map(|fit| fit.limit).unwrap_or_default();
         Some(conclusion.verdict.map(|azimuth| Solution { azimuth, limit }))
     }
 }

@@ -10,6 +10,7 @@ use crate::alignment::setup::SetupError;
 use crate::alignment::stepwise::setting::Setting;
 use crate::filter::Coefficients;
 use crate::math::Table;
+use crate::units::RadiansPerSecond;
 
 /// Prerequisites of a session. They are small, so that the session itself can be built at its final
 /// place in memory.
@@ -68,7 +69,7 @@ impl Session {
             self.procedure.survey = None;
         }
         self.timing = Timing::of(&self.procedure);
-        if let Some(first) = self.procedure.schedule.next(&[], 0.0) {
+        if let Some(first) = self.procedure.schedule.next(&[], RadiansPerSecond(0.0)) {
             self.target = Target::new(first, self.procedure.sample_seconds);
         }
         self.store.begin_dwells();

@@ -7,15 +7,16 @@ use crate::alignment::stepwise::CAPACITY;
 use crate::planner::order::Order;
 use crate::planner::{FEWEST, POSITIONS, Plan};
 use crate::signal::Dwell;
+use crate::units::{Radians, RadiansPerSecond, Seconds};
 
 /// One position: stage angle and length of the dwell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Position {
-    /// Stage angle, rad, not wrapped to one turn: cables are not.
-    pub angle: f64,
-    /// Length of the dwell, s.
-    pub seconds: f64,
+    /// Stage angle, not wrapped to one turn: cables are not.
+    pub angle: Radians,
+    /// Length of the dwell.
+    pub seconds: Seconds,
 }
 
 /// Sequence of positions to visit.
@@ -35,14 +36,14 @@ pub enum Schedule {
     /// first steps go clockwise until the rate has changed significantly; if it fell, the rest
     /// continue from `start` in the other direction.
     TowardMaximum {
-        /// Angle of the first position, rad.
-        start: f64,
-        /// Step Δ, rad, positive.
-        step: f64,
+        /// Angle of the first position.
+        start: Radians,
+        /// Step Δ, positive.
+        step: Radians,
         /// Number of positions n.
         positions: usize,
-        /// Length of each dwell, s.
-        seconds: f64,
+        /// Length of each dwell.
+        seconds: Seconds,
     },
 }
 
@@ -62,21 +63,19 @@ pub enum StopRule {
     /// dwells, is the required one. The session continues beyond its schedule until then, and gives
     /// up as soon as the time cannot suffice.
     Accuracy {
-        /// Time allowed from the beginning of the session or, with a survey, from the survey's end,
-        /// s.
-        seconds: f64,
+        /// Time allowed from the beginning of the session or, with a survey, from the survey's end.
+        seconds: Seconds,
     },
 }
 
 impl StopRule {
-    /// Whether the rule stops the session, for the last difference δ and its standard deviation,
-    /// both in rad/s.
+    /// Whether the rule stops the session, for the last difference δ and its standard deviation.
     #[must_use]
-    pub fn stops(self, difference: f64, sigma: f64) -> bool {
+    pub fn stops(self, difference: RadiansPerSecond, sigma: RadiansPerSecond) -> bool {
         match self {
             Self::AllPositions | Self::Accuracy { .. } => false,
-            Self::SignChange => difference < 0.0,
-            Self::Significant(bound) => difference < -bound * sigma,
+            Self::SignChange => difference.0 < 0.0,
+            Self::Significant(bound) => difference.0 < -bound * sigma.0,
         }
     }
 }
@@ -93,10 +92,10 @@ impl Schedule {
 
     /// Schedule of equal steps over the full circle from zero, the last one a step before a whole
     /// turn; at most [`POSITIONS`].
-    pub fn circle(positions: usize, seconds: f64) -> Self {
+    pub fn circle(positions: usize, seconds: Seconds) -> Self {
         let step = core::f64::consts::TAU / positions.max(1) as f64;
         let list = (0..positions.min(POSITIONS))
-            .map(|index| Position { angle: index as f64 * step, seconds })
+            .map(|index| Position { angle: Radians(index as f64 * step), seconds })
             .collect();
         Self::Listed(list)
     }
@@ -104,13 +103,13 @@ impl Schedule {
     /// Schedule of [`Self::circle`] with the first position repeated at the end, a whole turn on: a
     /// drift synchronous with the stage shows as the difference of the two. The repeat is omitted
     /// where there is no room.
-    pub fn closed_circle(positions: usize, seconds: f64) -> Self {
+    pub fn closed_circle(positions: usize, seconds: Seconds) -> Self {
         let mut schedule = Self::circle(positions, seconds);
         if let Self::Listed(list) = &mut schedule
             && list.len() < POSITIONS
         {
             // The list has room for at least one more position.
-            let _ = list.push(Position { angle: core::f64::consts::TAU, seconds });
+            let _ = list.push(Position { angle: Radians(core::f64::consts::TAU), seconds });
         }
         schedule
     }
@@ -173,58 +172,62 @@ impl Schedule {
         self.len() == 0
     }
 
-    /// Length of the shortest dwell, s.
-    pub(crate) fn shortest(&self) -> f64 {
-        match self {
-            Self::Listed(list) => list.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min),
-            Self::Planned(plan) => plan.dwell,
-            Self::TowardMaximum { seconds, .. } => *seconds,
-        }
+    /// Length of the shortest dwell.
+    pub(crate) fn shortest(&self) -> Seconds {
+        Seconds(match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds.0).fold(f64::INFINITY, f64::min),
+            Self::Planned(plan) => plan.dwell.0,
+            Self::TowardMaximum { seconds, .. } => seconds.0,
+        })
     }
 
-    /// Sum of all dwell lengths, s.
+    /// Sum of all dwell lengths.
     #[must_use]
-    pub fn seconds(&self) -> f64 {
-        match self {
-            Self::Listed(list) => list.iter().map(|p| p.seconds).sum(),
-            Self::Planned(plan) => plan.positions() as f64 * plan.dwell,
-            Self::TowardMaximum { seconds, positions, .. } => *positions as f64 * seconds,
-        }
+    pub fn seconds(&self) -> Seconds {
+        Seconds(match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds.0).sum(),
+            Self::Planned(plan) => plan.positions() as f64 * plan.dwell.0,
+            Self::TowardMaximum { seconds, positions, .. } => *positions as f64 * seconds.0,
+        })
     }
 
-    /// Position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
+    /// Position after these dwells; `sigma` is the standard deviation of a difference.
     /// `None` at the end.
-    pub(crate) fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
+    pub(crate) fn next(&self, dwells: &[Dwell], sigma: RadiansPerSecond) -> Option<Position> {
         match self {
             Self::Listed(_) | Self::Planned(_) => {
                 self.position(dwells.len()).filter(|_| dwells.len() < self.len())
             }
             Self::TowardMaximum { start, step, positions, seconds } => {
                 let steps = steps_towards(dwells, sigma);
-                let angle = start + steps * step;
+                let angle = Radians(start.0 + steps * step.0);
                 (dwells.len() < *positions).then_some(Position { angle, seconds: *seconds })
             }
         }
     }
 
-    /// Latest difference δ in the direction of motion, rad/s; `None` where the last two dwells are
+    /// Latest difference δ in the direction of motion; `None` where the last two dwells are
     /// not neighbours.
-    pub(super) fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
+    pub(super) fn last_difference(
+        &self,
+        dwells: &[Dwell],
+        sigma: RadiansPerSecond,
+    ) -> Option<RadiansPerSecond> {
         let [.., before, last] = dwells else { return None };
         let turned_back = matches!(self, Self::TowardMaximum { .. })
             && turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2);
-        (!turned_back).then_some(last.rate - before.rate)
+        (!turned_back).then_some(RadiansPerSecond(last.rate.0 - before.rate.0))
     }
 }
 
 /// Index of the first dwell whose rate differs significantly from that of the first one.
-fn turning_point(dwells: &[Dwell], sigma: f64) -> Option<usize> {
-    let first = dwells.first()?.rate;
-    dwells.iter().position(|dwell| (dwell.rate - first).abs() > DIRECTION_BOUND * sigma)
+fn turning_point(dwells: &[Dwell], sigma: RadiansPerSecond) -> Option<usize> {
+    let first = dwells.first()?.rate.0;
+    dwells.iter().position(|dwell| (dwell.rate.0 - first).abs() > DIRECTION_BOUND * sigma.0)
 }
 
 /// Next position, in steps from the start.
-fn steps_towards(dwells: &[Dwell], sigma: f64) -> f64 {
+fn steps_towards(dwells: &[Dwell], sigma: RadiansPerSecond) -> f64 {
     let visited = dwells.len() as f64;
     match turning_point(dwells, sigma) {
         Some(turn) if dwells[turn].rate < dwells[0].rate => turn as f64 - visited,

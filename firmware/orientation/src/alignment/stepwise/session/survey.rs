@@ -14,7 +14,7 @@ use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::{GyroNoise, StatedNoise};
 use crate::planner::{Conditions, FEWEST, PlanError, for_sigma, for_time};
 use crate::signal::{Dwell, Sample, SampleFault};
-use crate::units::{AngularRate, Instant};
+use crate::units::{AngularRate, Instant, Radians, RadiansPerSecond, Seconds};
 
 /// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
 const RESERVE: f64 = 0.95;
@@ -69,7 +69,7 @@ impl Store {
     /// Noise of a gyro that was sampled every `seconds`, as the survey shows it; `None` without a
     /// survey.
     #[inline(never)]
-    fn fit(&self, seconds: f64) -> Option<Result<NoiseFit, FitError>> {
+    fn fit(&self, seconds: Seconds) -> Option<Result<NoiseFit, FitError>> {
         match self {
             Self::Survey(allan) => Some(NoiseFit::of(allan, seconds)),
             Self::Dwells(_) => None,
@@ -155,11 +155,11 @@ impl Session {
             fewest: FEWEST,
             orders: survey.orders,
         };
-        let rate = self.setting.site.latitude.horizontal_rate();
+        let rate = self.setting.site.latitude.horizontal_rate().0;
         let (plan, allowed) = match self.procedure.stop {
             StopRule::Accuracy { seconds } => {
-                let wanted = RESERVE * self.setting.site.required_sigma * rate;
-                (for_sigma(&conditions, wanted, seconds), seconds)
+                let wanted = RESERVE * self.setting.site.required_sigma.0 * rate;
+                (for_sigma(&conditions, RadiansPerSecond(wanted), seconds), seconds)
             }
             _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
         };
@@ -179,11 +179,11 @@ impl Session {
         }
     }
 
-    /// Refusal for a planning error in the time allowed, s.
-    fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
+    /// Refusal for a planning error in the time allowed.
+    fn unplanned(&self, error: PlanError, seconds: Seconds) -> Refusal {
         match error {
             PlanError::OutOfReach(rate) => {
-                let sigma = rate / self.setting.site.latitude.horizontal_rate();
+                let sigma = Radians(rate.0 / self.setting.site.latitude.horizontal_rate().0);
                 self.out_of_reach(sigma, seconds)
             }
             PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },

@@ -6,7 +6,7 @@ use super::schedule::Position;
 use crate::alignment::setup::SetupError;
 use crate::filter::Coefficients;
 use crate::signal::dwell;
-use crate::units::{Angle, Instant};
+use crate::units::{Angle, Instant, RadiansPerSecond, Seconds};
 
 /// Number of second-order sections of the stage filter: order six (Sokolov 2019).
 pub(super) const SECTIONS: usize = 3;
@@ -23,10 +23,10 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// Target for a position and a sample period, s.
-    pub(super) fn new(position: Position, sample_seconds: f64) -> Self {
+    /// Target for a position and a sample period.
+    pub(super) fn new(position: Position, sample_seconds: Seconds) -> Self {
         let samples = samples(position.seconds, sample_seconds);
-        Self { position, stage: Angle::from_rad(position.angle), samples }
+        Self { position, stage: Angle::from_rad(position.angle.0), samples }
     }
 }
 
@@ -54,13 +54,13 @@ impl Timing {
     pub(super) fn of(procedure: &Procedure) -> Self {
         let samples = |seconds| samples(seconds, procedure.sample_seconds);
         Self {
-            still: Angle::from_rad(procedure.still),
-            arrival: Angle::from_rad(procedure.arrival),
+            still: Angle::from_rad(procedure.still.0),
+            arrival: Angle::from_rad(procedure.arrival.0),
             level: samples(procedure.level_seconds),
             survey: procedure.survey.map_or(0, |survey| samples(survey.seconds)),
             settle: samples(procedure.settle_seconds),
-            longest: Instant::from_seconds(procedure.longest_seconds).0,
-            longest_rotation: Instant::from_seconds(procedure.longest_rotation).0,
+            longest: Instant::from_seconds(procedure.longest_seconds.0).0,
+            longest_rotation: Instant::from_seconds(procedure.longest_rotation.0).0,
         }
     }
 }
@@ -69,7 +69,7 @@ impl Timing {
 pub(super) fn designed(
     procedure: &Procedure,
 ) -> Result<(Coefficients<SECTIONS>, Target), SetupError> {
-    let rate = 1.0 / procedure.sample_seconds;
+    let rate = 1.0 / procedure.sample_seconds.0;
     let coefficients =
         Coefficients::low_pass(procedure.cutoff(), rate).map_err(SetupError::Filter)?;
     let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
@@ -80,11 +80,12 @@ pub(super) fn designed(
     if let Some(angle) = procedure.beyond_travel() {
         return Err(SetupError::BeyondTravel(angle));
     }
-    let first = procedure.schedule.next(&[], 0.0).ok_or(SetupError::NoPosition)?;
+    let first =
+        procedure.schedule.next(&[], RadiansPerSecond(0.0)).ok_or(SetupError::NoPosition)?;
     Ok((coefficients, Target::new(first, procedure.sample_seconds)))
 }
 
 /// Converts a time to samples, rounded to nearest.
-fn samples(seconds: f64, sample_seconds: f64) -> u32 {
-    libm::round(seconds / sample_seconds) as u32
+fn samples(seconds: Seconds, sample_seconds: Seconds) -> u32 {
+    libm::round(seconds.0 / sample_seconds.0) as u32
 }

@@ -1,42 +1,13 @@
-//! Units and conventions of the stage path.
-//!
-//! Navigation frame: north, east, down. Body frame: x forward, y right, z down. The azimuth is that
-//! of body x from true north, clockwise from above. The stage angle is clockwise from above; the
-//! gyro's sensitive axis lies along body x at zero.
-//!
-//! Samples flow as integers in newtypes; values that are computed once per dwell or per result are
-//! `f64` in SI units. Every conversion from `f64` rounds to nearest (ties away from zero) and
-//! saturates; NaN becomes zero, so readers of external data must refuse NaN before they convert.
+//! Integers of the sample path, each with the size of its step. Every conversion from `f64` rounds to
+//! nearest (ties away from zero) and saturates; NaN becomes zero, so readers of external data must
+//! refuse NaN before they convert.
 
 use core::ops::Sub;
 
-/// Radians in one turn.
-pub const TURN: f64 = 2.0 * core::f64::consts::PI;
-
-/// One degree, in radians.
-pub const DEGREE: f64 = TURN / 360.0;
-
-/// Degrees in one radian.
-pub const DEGREES_PER_RADIAN: f64 = 360.0 / TURN;
-
-/// One second of arc, in radians.
-pub const ARCSECOND: f64 = TURN / 1_296_000.0;
-
-/// One degree per hour, in rad/s.
-pub const DEGREE_PER_HOUR: f64 = TURN / 360.0 / 3600.0;
-
-/// One degree per square root of an hour (angle random walk), in rad/√s.
-pub const DEGREE_PER_SQRT_HOUR: f64 = TURN / 360.0 / 60.0;
+use super::TURN;
 
 /// Steps of the 32-bit fraction in one turn, 2³².
 const STEPS_PER_TURN: f64 = 4_294_967_296.0;
-
-/// Wraps an angle, rad, to [0, 2π).
-#[must_use]
-pub fn wrapped(angle: f64) -> f64 {
-    let wrapped = angle - TURN * libm::floor(angle / TURN);
-    if wrapped < TURN { wrapped } else { 0.0 }
-}
 
 /// Rounds to the nearest integer and saturates at the limits of `i32`; NaN becomes zero.
 fn to_i32(value: f64) -> i32 {
@@ -174,47 +145,6 @@ impl Temperature {
     #[must_use]
     pub fn celsius(self) -> f64 {
         f64::from(self.0) * 1e-3
-    }
-}
-
-/// Reads a number that text holds as a missing one where it is infinite.
-#[cfg(feature = "serde")]
-pub(crate) fn or_infinite<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f64, D::Error> {
-    let number: Option<f64> = serde::Deserialize::deserialize(text)?;
-    Ok(number.unwrap_or(f64::INFINITY))
-}
-
-/// A number that may be missing, in the memory of one number: `Option<f64>` takes twice as much.
-#[derive(Clone, Copy, Debug)]
-pub struct Optional(f64);
-
-impl Optional {
-    /// The missing number, stored as NaN.
-    pub const NONE: Self = Self(f64::NAN);
-
-    /// The number; `None` where it is missing.
-    #[must_use]
-    pub fn get(self) -> Option<f64> {
-        (!self.0.is_nan()).then_some(self.0)
-    }
-}
-
-impl Default for Optional {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
-impl From<Option<f64>> for Optional {
-    /// Conversion in which NaN becomes a missing number.
-    fn from(number: Option<f64>) -> Self {
-        number.map_or(Self::NONE, Self)
-    }
-}
-
-impl PartialEq for Optional {
-    fn eq(&self, other: &Self) -> bool {
-        self.get() == other.get()
     }
 }
 
