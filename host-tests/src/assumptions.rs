@@ -13,7 +13,6 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stepwise::tilt::Tilt;
 use orientation::math::Complex;
-use orientation::units::RadiansPerSecond;
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;
@@ -165,8 +164,9 @@ struct Shown {
 fn felt(site: &Site, tilt: Complex) -> [Complex; 2] {
     let [along, across] = site.g_sensitivity;
     let latitude = site.latitude;
-    [latitude.vertical_rate(), RadiansPerSecond(-latitude.vertical_rate().0)].map(|vertical| {
-        let per_tilt = Complex::new(vertical.0 + along.0, across.0);
+    let vertical = latitude.vertical_rate().0;
+    [vertical, -vertical].map(|vertical| {
+        let per_tilt = Complex::new(vertical + along.0, across.0);
         (per_tilt * tilt).scaled(1.0 / latitude.horizontal_rate().0)
     })
 }

@@ -13,8 +13,8 @@ use thiserror::Error;
 
 /// Shortest dwell that is planned, s.
 pub const SHORTEST: f64 = 1.0;
-/// Longest time that is planned for a wanted σ, s.
-const LONGEST: f64 = burov::LONGEST.0;
+/// Longest time that is planned for a wanted σ.
+const LONGEST: Seconds = burov::LONGEST;
 
 /// What is asked of a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,7 +158,7 @@ impl Request {
             Wanted::Seconds(seconds) => for_time(&conditions, Seconds(seconds)),
             Wanted::Sigma(sigma) => {
                 let wanted = RadiansPerSecond(sigma * self.latitude.horizontal_rate().0);
-                for_sigma(&conditions, wanted, Seconds(LONGEST))
+                for_sigma(&conditions, wanted, LONGEST)
             }
         };
         plan.map_err(|error| match error {

@@ -68,7 +68,7 @@ impl Latitude {
         let sine = libm::sin(self.0);
         let part = 1.0 - ECCENTRICITY_SQUARED * sine * sine;
         let across = SEMI_MAJOR_AXIS / libm::sqrt(part);
-        [across * (1.0 - ECCENTRICITY_SQUARED) / part, across].map(Metres)
+        [Metres(across * (1.0 - ECCENTRICITY_SQUARED) / part), Metres(across)]
     }
 
     /// Whether an azimuth can be determined here: |φ| ≤ 85°.

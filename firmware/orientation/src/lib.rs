@@ -96,11 +96,11 @@
 //! that of body x from true north, clockwise from above. Angles are in rad and rates in rad/s
 //! unless a name or a doc line says otherwise; `1σ` is one standard deviation.
 //!
-//! Quantities that are stated and read have types that are named after their unit, as
+//! Quantities that are stated and read have types that are named after their unit, such as
 //! [`units::Radians`] and [`units::Seconds`]; `.0` is their number. Samples are integers, such as
-//! [`units::AngularRate`]. Ratios, variances and densities, and everything within the kernels of
-//! [`math`], [`filter`] and the fits, are plain `f64` in SI units. Every conversion between integers
-//! and SI units is in [`units`].
+//! [`units::AngularRate`]. Ratios, variances and densities, and what the kernels of [`math`],
+//! [`filter`] and the fits compute with, are plain `f64` in SI units. Every conversion between
+//! integers and SI units is in [`units`].
 //!
 //! # Glossary
 //! The methods, and the terms of this crate, under their names in inertial navigation:

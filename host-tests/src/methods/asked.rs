@@ -68,6 +68,6 @@ impl Asked {
     /// Puts what the user states in the place of what a session was given.
     pub(crate) fn change(&self, site: &mut Site) {
         site.latitude = self.latitude.unwrap_or(site.latitude);
-        site.required_sigma = Radians(self.required_sigma.unwrap_or(site.required_sigma.0));
+        site.required_sigma = self.required_sigma.map_or(site.required_sigma, Radians);
     }
 }

@@ -14,6 +14,6 @@ pub const CONVERTER_TOLERANCE: f64 = 0.02;
 /// beyond a relative tolerance.
 pub(crate) fn contradiction(stated: Seconds, found: Seconds, tolerance: f64) -> Option<Refusal> {
     let is_off = (found.0 / stated.0 - 1.0).abs() > tolerance;
-    let [stated, found] = [stated, found].map(|period| Milliseconds(1e3 * period.0));
+    let (stated, found) = (Milliseconds(1e3 * stated.0), Milliseconds(1e3 * found.0));
     is_off.then_some(Refusal::PeriodContradicted { stated, found })
 }

@@ -102,11 +102,11 @@ pub(super) fn frame_rate(
 ) -> [f32; 3] {
     let down = -latitude.vertical_rate().0;
     let Some(frame) = north else { return [0.0, 0.0, down as f32] };
-    let [to_north, to_east] = speed.unwrap_or_default().map(|part| part.0);
-    let [along, across] = latitude.radii().map(|radius| radius.0);
-    let about_north = latitude.horizontal_rate().0 + to_east / across;
-    let about_east = -to_north / along;
-    let about_down = down - to_east / across * libm::tan(latitude.rad());
+    let [to_north, to_east] = speed.unwrap_or_default();
+    let [along, across] = latitude.radii();
+    let about_north = latitude.horizontal_rate().0 + to_east.0 / across.0;
+    let about_east = -to_north.0 / along.0;
+    let about_down = down - to_east.0 / across.0 * libm::tan(latitude.rad());
     let (sine, cosine) = libm::sincos(frame);
     let x = about_north * cosine + about_east * sine;
     let y = about_east * cosine - about_north * sine;

@@ -6,9 +6,9 @@ use super::quaternion as attitude;
 use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
-use super::vertical::{Trust, Vertical};
+use super::vertical::{Trust, Vertical, rates};
 use crate::signal::InertialSample;
-use crate::units::{Instant, MetresPerSecond, Radians, RadiansPerSecond, Seconds};
+use crate::units::{Instant, MetresPerSecond, Radians, Seconds};
 
 use crate::alignment::Azimuth;
 
@@ -148,8 +148,8 @@ impl Keeper {
             attitude: attitude::quaternion([course, pitch, roll]),
             state: State { trust: self.trust, seconds: since },
             is_at_rest: vertical.is_at_rest(),
-            biases: vertical.bias.map(|bias| RadiansPerSecond(bias.into())),
-            bias_sigmas: vertical.bias_sigmas().map(|sigma| RadiansPerSecond(sigma.into())),
+            biases: rates(vertical.bias),
+            bias_sigmas: rates(vertical.bias_sigmas()),
             is_bias_beyond_stated: vertical.is_bias_beyond_stated,
             seconds: Seconds(seconds),
         }

@@ -270,7 +270,8 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     /// Mean specific force so far; `None` while no sample brought one.
     #[must_use]
     pub fn force(&self) -> Option<[MetresPerSecondSquared; 3]> {
-        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [x, y, z].map(MetresPerSecondSquared))
+        let part = MetresPerSecondSquared;
+        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [part(x), part(y), part(z)])
     }
 
     /// Mean elevation so far, rad; zero while no sample brought one.

@@ -4,9 +4,9 @@
 //! of body x from true north, clockwise from above. The stage angle is clockwise from above; the
 //! gyro's sensitive axis lies along body x at zero.
 //!
-//! Samples flow as integers in newtypes. What a user states and reads is an `f64` in a newtype that is
-//! named after its unit; arithmetic takes the number out of it and is done in `f64`. Ratios, variances
-//! and spectral densities are plain numbers.
+//! Samples flow as integers in newtypes. What a user states and reads is an `f64` in a newtype that
+//! is named after its unit, or after the noise coefficient that it is; arithmetic takes the number
+//! out of it and is done in `f64`. Ratios, variances and spectral densities are plain numbers.
 
 mod quantity;
 mod sample;

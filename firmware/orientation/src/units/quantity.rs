@@ -1,4 +1,5 @@
-//! Quantities that a user states and reads: an `f64` in a newtype that is named after its unit.
+//! Quantities that a user states and reads: an `f64` in a newtype that is named after its unit, or
+//! after the coefficient of a sensor that it is.
 
 use super::{DEGREE, DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 
@@ -7,7 +8,8 @@ macro_rules! quantities {
     ($($(#[$meaning:meta])+ $name:ident;)+) => {$(
         $(#[$meaning])+
         #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(transparent))]
         pub struct $name(pub f64);
     )+};
 }

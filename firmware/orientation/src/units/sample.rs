@@ -1,6 +1,6 @@
-//! Integers of the sample path, each with the size of its step. Every conversion from `f64` rounds to
-//! nearest (ties away from zero) and saturates; NaN becomes zero, so readers of external data must
-//! refuse NaN before they convert.
+//! Integers of the sample path, each with the size of its step. Every conversion from `f64` rounds
+//! to nearest (ties away from zero) and saturates; NaN becomes zero, so readers of external data
+//! must refuse NaN before they convert.
 
 use core::ops::Sub;
 

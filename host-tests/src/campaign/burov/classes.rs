@@ -17,7 +17,6 @@ use crate::campaign::keep::limit::stored_sigma;
 use crate::campaign::statistics::{Answer, Precision};
 use crate::campaign::{Tick, over};
 use crate::methods::stops::samples::Converter;
-use crate::output::degrees;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
 const STAGE: Rotation =
@@ -174,7 +173,7 @@ impl Class {
 
     /// 1σ of the azimuth that it finds, as planned, °.
     pub(crate) fn planned_sigma_deg(&self) -> Option<f64> {
-        self.plan().map(|plan| degrees(plan.sigma(latitude()).0))
+        self.plan().map(|plan| plan.sigma(latitude()).degrees())
     }
 
     /// North by that schedule.

@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::{Grade, Trial, latitude};
 use crate::campaign::statistics::Precision;
 use crate::campaign::{Tick, over};
-use crate::output::degrees;
 
 /// Total time, s.
 const SECONDS: f64 = 300.0;
@@ -72,7 +71,7 @@ fn row(trial: &Trial, runs: usize, tick: Tick<'_>) -> Row {
         order: plan.order.name(),
         positions: plan.positions(),
         dwell_s: plan.dwell.0,
-        predicted_deg: degrees(plan.sigma(latitude()).0),
+        predicted_deg: plan.sigma(latitude()).degrees(),
         precision: Precision::of(&answers),
     }
 }

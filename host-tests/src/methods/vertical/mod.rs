@@ -131,7 +131,7 @@ fn known(header: &Header, gyro: Gyro) -> Gyro {
     let bias = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
     Gyro {
         noise: known_noise(header, gyro.noise),
-        bias_sigma: RadiansPerSecond(bias.unwrap_or(gyro.bias_sigma.0)),
+        bias_sigma: bias.map_or(gyro.bias_sigma, RadiansPerSecond),
         scale_sigma: header.gyro_scale_sigma.unwrap_or(gyro.scale_sigma),
     }
 }

@@ -1,7 +1,6 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
 use orientation::attitude::quaternion::angles;
-use orientation::units::Radians;
 
 use crate::cause;
 use crate::methods::asked::Asked;
@@ -67,8 +66,8 @@ impl Finished for Replay {
 impl Replay {
     fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
         let (last, is_found) = (&self.last, self.refusal.is_none());
-        let [pitch, roll, turned] = [last.pitch, last.roll, Radians(self.turned)]
-            .map(|angle| positive_zero(angle.degrees(), 5e-5));
+        let [pitch, roll, turned] = [last.pitch.0, last.roll.0, self.turned]
+            .map(|angle| positive_zero(degrees(angle), 5e-5));
         let sigma = last.level_sigma.degrees();
         let level = is_found.then(|| format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
         let beyond = "five of the 1σ stated or assumed, which are not believed any more";

@@ -89,13 +89,15 @@ proptest! {
         seconds in 30.0..2000.0_f64,
     ) {
         let noise = GyroNoise::from_field_units(n, 0.0, k, r);
-        let wanted = burov::best(&noise, Seconds(seconds), Seconds(rotation)).expect("there is time").rate_error;
-        let found = burov::least_time(&noise, wanted, Seconds(rotation)).expect("it is within reach");
+        let rotation = Seconds(rotation);
+        let best = burov::best(&noise, Seconds(seconds), rotation);
+        let wanted = best.expect("there is time").rate_error;
+        let found = burov::least_time(&noise, wanted, rotation).expect("it is within reach");
         prop_assert!(found.rate_error <= wanted);
         prop_assert!(found.seconds.0 <= seconds * (1.0 + 1e-9));
         // No shorter time does.
         for part in [0.999, 0.99, 0.95, 0.9, 0.8, 0.6, 0.4] {
-            let shorter = burov::best(&noise, Seconds(part * found.seconds.0), Seconds(rotation));
+            let shorter = burov::best(&noise, Seconds(part * found.seconds.0), rotation);
             prop_assert!(shorter.is_none_or(|best| best.rate_error > wanted));
         }
     }
@@ -106,9 +108,12 @@ proptest! {
         seconds in 10.0..400.0_f64,
     ) {
         let noise = GyroNoise::from_field_units(n, 0.0, k, r).with_quantisation(q);
-        let of = |n| burov::rate_error(&noise, n, Seconds(seconds), Seconds(1.0)).map_or(f64::INFINITY, |error| error.0);
+        let (seconds, rotation) = (Seconds(seconds), Seconds(1.0));
+        let error = |n| burov::rate_error(&noise, n, seconds, rotation);
+        let of = |n| error(n).map_or(f64::INFINITY, |error| error.0);
         let least = (2..410).map(of).fold(f64::INFINITY, f64::min);
-        prop_assert_eq!(burov::best(&noise, Seconds(seconds), Seconds(1.0)).expect("there is time").rate_error.0, least);
+        let best = burov::best(&noise, seconds, rotation).expect("there is time");
+        prop_assert_eq!(best.rate_error.0, least);
     }
 
     #[test]
@@ -119,8 +124,8 @@ proptest! {
         let noise = GyroNoise::from_field_units(n, b * n, k * n, r * n);
         let order = Order::COMPARED[order];
         let rotation = Rotation { rest: Seconds(0.5), speed: RadiansPerSecond(0.35), wraps: false };
-        let plan =
-            Plan { order, passes, dwell: Seconds(dwell), seconds: Seconds(0.0), rate_sigma: RadiansPerSecond(0.0) };
+        let (seconds, none) = (Seconds(0.0), RadiansPerSecond(0.0));
+        let plan = Plan { order, passes, dwell: Seconds(dwell), seconds, rate_sigma: none };
         let visits: Vec<Visit> = plan.visits(&rotation).collect();
         let found = prediction::rate_sigma(&noise, dwell, visits.iter().copied()).expect("it is determined");
         let expected = rate_sigma(&noise, &visits);

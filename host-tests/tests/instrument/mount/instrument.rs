@@ -13,7 +13,7 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise;
 use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
-use orientation::units::{DEGREE, Radians};
+use orientation::units::{DEGREE, Degrees, Radians};
 use rayon::prelude::*;
 use simulated::fault::Injection;
 use simulated::mount::FramesScenario;
@@ -192,7 +192,9 @@ fn a_frame_that_stays_blocked_is_refused_by_its_name() {
 fn an_encoder_that_slips_is_refused_by_the_frame_that_disagrees_with_it() {
     for (seed, by_deg) in [(1, 0.5), (2, -0.5), (3, 0.15)] {
         let slip = StageFault::Slip { at: MIDDLE, by_rad: by_deg * DEGREE };
-        let disagrees = |trouble: Trouble| matches!(trouble, Trouble::Disagrees(apart) if (apart.0 - by_deg).abs() < 0.06);
+        let is_near = |apart: Degrees| (apart.0 - by_deg).abs() < 0.06;
+        let disagrees =
+            |trouble: Trouble| matches!(trouble, Trouble::Disagrees(apart) if is_near(apart));
         assert_refused(&short(seed), &of_inner(slip), Device::InnerFrame, disagrees);
         assert_refused(&short(seed), &of_outer(slip), Device::OuterFrame, disagrees);
     }

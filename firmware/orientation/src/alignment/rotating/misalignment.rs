@@ -149,7 +149,7 @@ impl AxisMisalignment {
         let [sine, quadrature, sine_sigma, quadrature_sigma, frequency] =
             numbers.map(f64::from_bits);
         let temperature = f32::from_bits(temperature as u32);
-        let [quadrature, quadrature_sigma] = [quadrature, quadrature_sigma].map(Seconds);
+        let (quadrature, quadrature_sigma) = (Seconds(quadrature), Seconds(quadrature_sigma));
         let frequency = RadiansPerSecond(frequency);
         let misalignment =
             Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, date, temperature };

@@ -223,7 +223,8 @@ impl TwoFrame {
 
     /// Encoder readings at true frame angles.
     fn shown(&self, outer: f64, inner: f64) -> FrameAngles {
-        let [outer, inner] = [outer + self.outer_zero.0, inner + self.inner_zero.0].map(Radians);
+        let outer = Radians(outer + self.outer_zero.0);
+        let inner = Radians(inner + self.inner_zero.0);
         FrameAngles { outer, inner }
     }
 

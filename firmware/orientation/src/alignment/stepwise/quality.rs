@@ -222,7 +222,7 @@ fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
 
 /// Magnitude of a dwell's mean specific force, m/s².
 fn force_of(dwell: &Dwell) -> Option<f64> {
-    dwell.force.map(|force| length(&force.map(|part| part.0)))
+    dwell.force.map(|[x, y, z]| length(&[x.0, y.0, z.0]))
 }
 
 /// Median of one value for each dwell.

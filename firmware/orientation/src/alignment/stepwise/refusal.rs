@@ -132,7 +132,8 @@ crate::words! { Refusal:
     Self::SwayUnmeasured =>
         "the dwells were disturbed, and the coarse IMU is missing that would measure the base's sway: check its wiring";
     Self::StageNotThere { target, actual } =>
-        "the stage was sent to {}° but stands at {}°", Rounded::<3>(target.0), Rounded::<3>(actual.0);
+        "the stage was sent to {}° but stands at {}°",
+        Rounded::<3>(target.0), Rounded::<3>(actual.0);
     Self::StepsUneven =>
         "this criterion needs equal steps that are a multiple of 10″, none left out";
     Self::NothingAccepted => "no azimuth of the table lies within the bound";

@@ -277,8 +277,9 @@ impl Found {
             sigma: Radians(libm::sqrt(filter.variance(&start_row(solution)))),
         };
         let sigma = libm::sqrt(filter.variance(&row));
-        let bias_sigmas: Vector =
-            core::array::from_fn(|axis| libm::sqrt(filter.covariance[BIAS + axis][BIAS + axis]));
+        let variance = |axis: usize| filter.covariance[BIAS + axis][BIAS + axis];
+        let bias_sigmas: [RadiansPerSecond; 3] =
+            core::array::from_fn(|axis| RadiansPerSecond(libm::sqrt(variance(axis))));
         let known = setting.bias_sigma();
         Self {
             azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma: Radians(sigma) },
@@ -288,9 +289,9 @@ impl Found {
             unchecked: Radians(0.0),
             budget: budget(setting, path, &filter.covariances(&row), sigma, solution.widening),
             level: level_of(&end.attitude),
-            biases: filter.three(BIAS).map(RadiansPerSecond),
-            bias_sigmas: bias_sigmas.map(RadiansPerSecond),
-            are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known.0),
+            biases: core::array::from_fn(|axis| RadiansPerSecond(filter.state[BIAS + axis])),
+            bias_sigmas,
+            are_biases_observed: bias_sigmas.iter().all(|sigma| sigma.0 <= OBSERVED * known.0),
             widening: solution.widening,
             plain: *plain,
             tally: solution.tally,
@@ -367,7 +368,7 @@ fn azimuth_of(attitude: &Matrix) -> Radians {
 /// Pitch and roll for an attitude.
 fn level_of(attitude: &Matrix) -> [Radians; 2] {
     let [x, y, z] = attitude[2];
-    [libm::atan2(-x, libm::hypot(y, z)), libm::atan2(y, z)].map(Radians)
+    [Radians(libm::atan2(-x, libm::hypot(y, z))), Radians(libm::atan2(y, z))]
 }
 
 /// Contributions to σ: each group of states with prior knowledge contributes (covariance with the

@@ -136,7 +136,7 @@ fn angle_of(chord: f64) -> f64 {
 #[must_use]
 pub fn pitch_and_roll(up: &Vector) -> [Radians; 2] {
     let [x, y, z] = *up;
-    [libm::atan2(x, libm::hypot(y, z)), libm::atan2(-y, -z)].map(Radians)
+    [Radians(libm::atan2(x, libm::hypot(y, z))), Radians(libm::atan2(-y, -z))]
 }
 
 /// Signed angle from one roll to another, rad, the short way.

@@ -41,7 +41,8 @@ impl Path<'_> {
     /// Position of a stop, north and east of the first, m; zero where it was not reported.
     pub fn displaced(&self, stop: usize) -> [f64; 2] {
         let displacement = self.stops.get(stop).and_then(|stop| stop.displacement);
-        displacement.unwrap_or_default().map(|metres| metres.0)
+        let [north, east] = displacement.unwrap_or_default();
+        [north.0, east.0]
     }
 
     /// Standard deviation of the last stop's position, 1σ, m; zero with a single stop.

@@ -90,7 +90,8 @@ crate::words! { Refusal:
         "the vehicle stood once only, from {} to {} s: drive and stop again, or align it as one that stands",
         Rounded::<1>(from.0), Rounded::<1>(to.0);
     Self::StopTooShort { stop, seconds, least } =>
-        "stop {} has {} s of rest: {} are needed", stop, Rounded::<1>(seconds.0), Rounded::<0>(least.0);
+        "stop {} has {} s of rest: {} are needed",
+        stop, Rounded::<1>(seconds.0), Rounded::<0>(least.0);
     Self::DriveTooShort { seconds, least } =>
         "{} s between the stops are too few for the Earth to turn: {} are needed",
         Rounded::<1>(seconds.0), Rounded::<0>(least.0);

@@ -34,6 +34,6 @@ impl Residual {
         let [north, east, _] = difference(&levelled, &predicted);
         let walked = angle_random_walk.0 * angle_random_walk.0 * since.max(0.0);
         let felt = path.density() / (path.gravity * path.gravity * end.seconds);
-        Self { tilt: [north, east].map(Radians), sigma: Radians(libm::sqrt(walked + felt)) }
+        Self { tilt: [Radians(north), Radians(east)], sigma: Radians(libm::sqrt(walked + felt)) }
     }
 }

@@ -219,14 +219,14 @@ impl Session {
     }
 
     /// Takes the displacement of the present stop.
-    fn displace(&mut self, place: &[Metres; 2], listener: Listener) {
+    fn displace(&mut self, &[north, east]: &[Metres; 2], listener: Listener) {
         let Phase::Standing(index) = self.phase else { return };
         if index == 0 {
-            self.origin = self.origin.or(Some(*place));
+            self.origin = self.origin.or(Some([north, east]));
             return;
         }
         if let Some(origin) = self.origin {
-            let place = [0, 1].map(|axis| Metres(place[axis].0 - origin[axis].0));
+            let place = [Metres(north.0 - origin[0].0), Metres(east.0 - origin[1].0)];
             self.placed = index;
             self.stop_detector.displace(place);
             listener(Stops(Progress::Displaced(index + 1, place)));

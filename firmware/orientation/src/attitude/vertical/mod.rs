@@ -285,8 +285,7 @@ impl Vertical {
     /// Mean rates about the body's axes at rest, including the Earth rate; `None` in motion.
     pub fn rest_rates(&self) -> Option<[RadiansPerSecond; 3]> {
         let frame = turned(&transposed(&self.matrix), &self.frame);
-        let rate = |rate: f32| RadiansPerSecond(rate.into());
-        self.is_at_rest().then(|| sum(&self.bias, &frame).map(rate))
+        self.is_at_rest().then(|| rates(sum(&self.bias, &frame)))
     }
 
     /// Replaces the gyro of the down axis by another one, whose bias is unknown.
@@ -344,4 +343,9 @@ impl Vertical {
 #[inline]
 fn seconds_between(before: Instant, now: Instant) -> f32 {
     now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6
+}
+
+/// Rates in double precision.
+pub(super) fn rates([x, y, z]: Vector) -> [RadiansPerSecond; 3] {
+    [x, y, z].map(|rate| RadiansPerSecond(rate.into()))
 }

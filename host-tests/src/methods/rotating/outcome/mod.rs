@@ -165,7 +165,7 @@ fn misalignment(found: &AxisMisalignment) -> Keys {
 
 /// The axis misalignment with its lag, in words.
 fn words(found: &AxisMisalignment) -> String {
-    let [angle, sigma] = [found.angle(), Radians(found.sine_sigma)].map(Radians::degrees);
+    let [angle, sigma] = [found.angle().0, found.sine_sigma].map(degrees);
     let (lag, speed) = (1e3 * found.lag().0, found.frequency.0 / TAU);
     format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed:.3} Hz")
 }

@@ -271,10 +271,11 @@ impl Problem<'_> {
         let axis = (mount.axis)(&tilt, dwell);
         let force = (mount.force)(&tilt, dwell);
         let latitude = self.setting.site.latitude;
+        let [own, across] = self.setting.site.g_sensitivity;
         let first = self.dwells[0];
         let [forward, right] = tilt.turning(tilt.rate.value);
         let left = dwell.rate.0 - first.rate.0 + latitude.vertical_rate().0 * axis[2]
-            - dot(self.setting.site.g_sensitivity.map(|part| part.0), force)
+            - dot([own.0, across.0], force)
             - (axis[0] * forward + axis[1] * right);
         let yaw = bent.rate * self.hours_to_end(dwell) - bent.turn_before(dwell);
         let left = left - bent.rate / 3600.0 * axis[2];
