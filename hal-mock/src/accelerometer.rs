@@ -29,8 +29,7 @@ pub struct Accelerometer {
 
 impl Accelerometer {
     /// An accelerometer read `rate_hz` times a second (> 0); biases are drawn from the seed.
-    #[must_use]
-    pub fn new(configuration: &AccelerometerConfiguration, rate_hz: f64, seed: u64) -> Self {
+    pub(crate) fn new(configuration: &AccelerometerConfiguration, rate_hz: f64, seed: u64) -> Self {
         let mut start = Generator::stream(seed, source::ACCELEROMETER_START);
         let sigma = configuration.bias_sigma_m_s2;
         // White noise of one sample: density·√(fs/2), the whole band to Nyquist.

@@ -73,7 +73,6 @@ impl Cadence {
 
 /// The `count`-th period of a frequency in hertz after `start`, to the nearest microsecond; the
 /// rounding does not add up.
-#[must_use]
-pub fn period(start: Instant, count: u64, hertz: f64) -> Instant {
+pub(crate) fn period(start: Instant, count: u64, hertz: f64) -> Instant {
     Instant::from_micros(start.as_micros() + libm::round(count as f64 * 1e6 / hertz) as u64)
 }

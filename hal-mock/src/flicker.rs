@@ -109,12 +109,6 @@ impl Flicker {
         self.samples = self.samples.wrapping_add(1);
         self.sum
     }
-
-    /// Whether there is any noise at all.
-    #[must_use]
-    pub fn is_active(&self) -> bool {
-        self.count > 0
-    }
 }
 
 /// Number of processes and the ratio of their corners for a band; (0, 1) when it is empty.

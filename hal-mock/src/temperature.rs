@@ -44,8 +44,7 @@ pub struct Thermometer {
 
 impl Thermometer {
     /// A thermometer with the noise of a configuration; the seed fixes its readings.
-    #[must_use]
-    pub fn new(configuration: &TemperatureConfiguration, seed: u64) -> Self {
+    pub(crate) fn new(configuration: &TemperatureConfiguration, seed: u64) -> Self {
         let white = White::new(configuration.noise_c, seed, source::THERMOMETER);
         Self { temperature: *configuration, white }
     }

@@ -7,7 +7,7 @@
 
 use crate::accelerometer::Lever;
 use crate::disturbance::{self, Disturbance};
-use crate::instruments::{BaseMotion, Instruments, InstrumentsConfiguration, Truth};
+use crate::instruments::{BaseMotion, Instruments, InstrumentsConfiguration};
 use crate::stage::{StageState, Unevenness, first_sample};
 
 /// A stretch of time under one rate law of the motor: a ramp from the rate it had to
@@ -254,11 +254,6 @@ impl<'a> Turntable<'a> {
             self.crept_rad += self.slip.rad_per_s / self.rate_hz;
         }
         slipped_rad
-    }
-
-    /// The truth behind the latest sample.
-    pub fn truth(&self) -> Truth {
-        self.instruments.truth()
     }
 }
 

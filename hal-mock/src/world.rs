@@ -49,12 +49,6 @@ impl<'a> World<'a> {
     pub fn truth(&self) -> Truth {
         self.instruments.truth()
     }
-
-    /// Length of the whole run, s.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.stage.seconds()
-    }
 }
 
 impl Iterator for World<'_> {

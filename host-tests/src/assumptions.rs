@@ -50,7 +50,6 @@ pub const WAY_OF_A_VEHICLE: &str =
     "displacements in metres north and east: the forces on the way show them too badly";
 
 /// What the azimuth of a stage's session assumes that none of its data show; nothing where there is none.
-#[must_use]
 pub fn of_stage(session: &Session) -> Vec<String> {
     let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
     let Some((conclusion, fit)) = found.and_then(|found| Some((found, found.fit.as_ref()?))) else {
@@ -85,7 +84,6 @@ fn words_of(assumed: &[(bool, &str)]) -> impl Iterator<Item = String> {
 }
 
 /// What the azimuth of a turning platform assumes that none of its data show; nothing where there is none.
-#[must_use]
 pub fn of_platform(session: &rotating::Session) -> Vec<String> {
     let Some(conclusion) = session.conclusion() else { return Vec::new() };
     let (Some(fit), Ok(azimuth)) = (conclusion.fit, conclusion.verdict) else { return Vec::new() };

@@ -39,8 +39,7 @@ fn bound(text: &str) -> Result<f64, String> {
 }
 
 /// The name that [`parse`] reads.
-#[must_use]
-pub fn name(criterion: Criterion) -> String {
+pub(crate) fn name(criterion: Criterion) -> String {
     match criterion {
         Criterion::MaximumLikelihood => "ml".to_owned(),
         Criterion::OnTable => "table".to_owned(),

@@ -5,22 +5,22 @@
 #![forbid(unsafe_code)]
 
 pub mod allan;
-pub mod assumptions;
+mod assumptions;
 pub mod campaign;
 pub mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;
-pub mod median;
+mod median;
 pub mod methods;
 pub mod oracle;
 pub mod outcome;
 pub mod output;
 pub mod planning;
 pub mod recording;
-pub mod reference;
+mod reference;
 pub mod report;
-pub mod setting;
+mod setting;
 pub mod simulate;
 pub mod spectrum;
 pub mod unwritten;

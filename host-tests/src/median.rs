@@ -1,7 +1,6 @@
 //! The median of values.
 
 /// The median, the upper one of two, in linear time, which leaves the values in another order; zero of none.
-#[must_use]
 pub fn median(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     match values {

@@ -143,8 +143,7 @@ impl Request {
     }
 
     /// What the planner of the core is given.
-    #[must_use]
-    pub fn conditions(&self) -> Conditions {
+    pub(crate) fn conditions(&self) -> Conditions {
         conditions(self.noise, Rotation::fixed(Seconds(self.rotation)))
     }
 

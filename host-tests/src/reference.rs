@@ -21,7 +21,6 @@ pub struct Filter {
 
 impl Filter {
     /// Designs it for a cut-off and a sample rate in Hz.
-    #[must_use]
     pub fn low_pass(order: u32, cutoff_hz: f64, rate_hz: f64) -> Self {
         let k = (PI * cutoff_hz / rate_hz).tan();
         let section = |index: u32| {
@@ -37,7 +36,6 @@ impl Filter {
     }
 
     /// Filters from rest at `origin`.
-    #[must_use]
     pub fn run(&self, origin: f64, samples: &[f64]) -> Vec<f64> {
         let mut signal: Vec<f64> = samples.iter().map(|x| x - origin).collect();
         for section in &self.sections {
@@ -54,7 +52,6 @@ impl Filter {
     }
 
     /// The mean of a dwell as the core takes it: filtered from its first sample, freed of the lag.
-    #[must_use]
     pub fn dwell_mean(&self, samples: &[f64]) -> f64 {
         let origin = samples.first().copied().unwrap_or(0.0);
         let filtered = self.run(origin, samples);

@@ -14,7 +14,6 @@ const SCALE_SIGMA: f64 = 0.01;
 const FORCE_BIAS_SIGMA: f64 = 0.25;
 
 /// Builds the site for a latitude from the header's keys.
-#[must_use]
 pub fn describe(
     header: &Header,
     body: &Body,

@@ -4,8 +4,7 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Why nothing could be written there.
-#[must_use]
-pub fn words(path: &Path, error: &io::Error) -> String {
+pub(crate) fn words(path: &Path, error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => {
             let folder = path.parent().unwrap_or(path);

@@ -36,8 +36,7 @@ impl SwayConfiguration {
     }
 
     /// Lean and its rates at a time in s.
-    #[must_use]
-    pub fn at(&self, time_s: f64) -> BaseMotion {
+    pub(crate) fn at(&self, time_s: f64) -> BaseMotion {
         let (mut lean, mut rates_rad_s) = ([0.0; 3], [0.0; 3]);
         for c in self.components.iter().filter(|c| c.frequency_hz > 0.0) {
             let angular = core::f64::consts::TAU * c.frequency_hz;

@@ -65,8 +65,7 @@ pub enum Oscillator {
 
 impl Oscillator {
     /// Frequency of the clock, Hz; the chip's time counts it to the kilohertz below.
-    #[must_use]
-    pub const fn hertz(self) -> u32 {
+    pub(crate) const fn hertz(self) -> u32 {
         match self {
             Self::Internal { hertz } | Self::External { hertz } => hertz,
         }

@@ -130,8 +130,7 @@ impl<'a> Motion<'a> {
     }
 
     /// North and east from the start, m.
-    #[must_use]
-    pub fn displacement_m(&self) -> [f64; 2] {
+    pub(crate) fn displacement_m(&self) -> [f64; 2] {
         self.position.displacement_m(&self.start)
     }
 
@@ -141,8 +140,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Velocity north, east, down at the latest moment, m/s.
-    #[must_use]
-    pub fn velocity_m_s(&self) -> [f64; 3] {
+    pub(crate) fn velocity_m_s(&self) -> [f64; 3] {
         { self.route }.pose(self.time_s).way()[0]
     }
 

@@ -14,8 +14,7 @@ pub struct Position {
 impl Position {
     /// North and east from another position, m: differences of coordinates times the radii of
     /// curvature at the mean latitude, as two position fixes give them.
-    #[must_use]
-    pub fn displacement_m(&self, from: &Self) -> [f64; 2] {
+    pub(crate) fn displacement_m(&self, from: &Self) -> [f64; 2] {
         let mean_rad = 0.5 * (self.latitude_rad + from.latitude_rad);
         let [meridian_m, transverse_m] = curvature_radii_m(mean_rad);
         let east_rad = (self.longitude_rad - from.longitude_rad) * libm::cos(mean_rad);

@@ -76,14 +76,12 @@ impl Rest {
     }
 
     /// The samples of the longest segment, rad/s.
-    #[must_use]
-    pub fn longest(&self) -> &[f64] {
+    pub(crate) fn longest(&self) -> &[f64] {
         self.segments().max_by_key(|segment| segment.len()).unwrap_or_default()
     }
 
     /// Record of all segments for the estimators.
-    #[must_use]
-    pub fn record(&self) -> Record {
+    pub(crate) fn record(&self) -> Record {
         Record::new(self.spacing.period_s, self.segments())
     }
 

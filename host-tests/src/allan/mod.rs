@@ -32,8 +32,7 @@ impl Record {
     }
 
     /// The samples of the longest segment: a window cannot be longer than half of it.
-    #[must_use]
-    pub fn longest(&self) -> usize {
+    pub(crate) fn longest(&self) -> usize {
         self.phases.iter().map(|phases| phases.len() - 1).max().unwrap_or(0)
     }
 

@@ -31,7 +31,6 @@ pub struct Unseen {
 }
 
 /// What a stage's session does not show, where it may put the azimuth wrong.
-#[must_use]
 pub fn of_stage(session: &Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
@@ -41,7 +40,6 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
 }
 
 /// Slow motions of the base that a turning platform does not show.
-#[must_use]
 pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
@@ -58,7 +56,6 @@ impl Unseen {
     }
 
     /// By how much it puts north off at the most, rad; infinite where the recording shows nothing of it.
-    #[must_use]
     pub fn shift(&self) -> f64 {
         let shift = self.rate * self.lever;
         if shift < FRAC_PI_4 { shift } else { f64::INFINITY }

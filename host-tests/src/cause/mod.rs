@@ -31,8 +31,7 @@ const NO_NOISE: f64 = 100.0;
 const FEW: usize = 5;
 
 /// The likely cause of a refusal of a recording whose stage stops, with its remedy.
-#[must_use]
-pub fn of_stopping(
+pub(crate) fn of_stopping(
     header: &Header,
     body: &Body,
     asked: &Asked,

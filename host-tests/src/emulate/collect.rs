@@ -26,8 +26,7 @@ pub struct Figures {
 
 impl Figures {
     /// Instructions of the longest poll of a task.
-    #[must_use]
-    pub fn longest_poll(&self) -> u64 {
+    pub(crate) fn longest_poll(&self) -> u64 {
         self.tasks.iter().map(|task| task.worst).max().unwrap_or(0)
     }
 }

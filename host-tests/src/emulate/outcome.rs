@@ -22,8 +22,7 @@ impl Row {
 
     /// From a line of the log: `dwell stage middle … [12, 34, …]`; [`None`] where the numbers are not
     /// as many as their names.
-    #[must_use]
-    pub fn parse(text: &str) -> Option<Self> {
+    pub(crate) fn parse(text: &str) -> Option<Self> {
         let (head, bits) = text.strip_suffix(']')?.split_once(" [")?;
         let bits =
             bits.split(", ").map(|number| number.parse().ok()).collect::<Option<Vec<_>>>()?;

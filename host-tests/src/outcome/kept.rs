@@ -23,7 +23,6 @@ impl Finished for KeptAzimuth {
 
 impl Outcome {
     /// The outcome with what only a run has; what was kept stands for an alignment where there is none.
-    #[must_use]
     pub fn of_run(self, seed: u64, run: RunDetails) -> Self {
         let this = Self { source: Some(Source::Seed(seed)), ..self };
         if !this.details.is_empty() {

@@ -4,19 +4,18 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 /// Keys with their values, in their order.
+#[must_use]
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Keys(Map<String, Value>);
 
 impl Keys {
     /// The keys with one more.
-    #[must_use]
     pub fn with(mut self, key: &str, value: impl Serialize) -> Self {
         self.0.insert(key.to_owned(), json!(value));
         self
     }
 
     /// The keys with one more where it has a value, and without it where it has none.
-    #[must_use]
     pub fn with_found(self, key: &str, value: Option<impl Serialize>) -> Self {
         match value {
             Some(value) => self.with(key, value),
@@ -25,7 +24,6 @@ impl Keys {
     }
 
     /// The keys with those of something that is serialised as an object, where it is there.
-    #[must_use]
     pub fn with_all(mut self, object: Option<&impl Serialize>) -> Self {
         if let Value::Object(keys) = json!(object) {
             self.0.extend(keys);
@@ -34,8 +32,7 @@ impl Keys {
     }
 
     /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }

@@ -65,6 +65,7 @@ pub enum Source {
 }
 
 /// The result of any method on a recording or on a simulated run, as its JSON object has it.
+#[must_use]
 #[derive(Debug, Default, Serialize)]
 pub struct Outcome {
     /// Version of the object, [`SCHEMA`].
@@ -170,7 +171,6 @@ pub struct Excluded {
 
 impl FitDetails {
     /// What an azimuth rests on, of the budget of its fit, where there is one.
-    #[must_use]
     pub fn of(budget: Option<&Budget>, positions: usize) -> Self {
         Self {
             budget: budget.copied().map(BudgetDetails),
@@ -183,20 +183,17 @@ impl FitDetails {
 
 impl Outcome {
     /// An outcome of a method, with nothing found yet.
-    #[must_use]
     pub fn new(method: &'static str, details: Keys, parts: Vec<ReportPart>) -> Self {
         Self { schema: SCHEMA, method, status: "refused", details, parts, ..Self::default() }
     }
 
     /// The outcome of a session that was not given its end.
-    #[must_use]
     pub fn unfinished(method: &'static str) -> Self {
         let this = Self::new(method, Keys::default(), Vec::new());
         this.settled(Some("the session did not end".to_owned()))
     }
 
     /// The outcome with the verdict of an alignment; `truth_deg` is for its error alone.
-    #[must_use]
     pub fn judged(self, verdict: &Result<Azimuth, Refusal>, truth_deg: Option<f64>) -> Self {
         let azimuth = verdict.as_ref().ok();
         let found = azimuth.map(|azimuth| azimuth.angle.degrees());
@@ -210,7 +207,6 @@ impl Outcome {
     }
 
     /// The outcome with its status: refused where there is a reason.
-    #[must_use]
     pub fn settled(self, reason: Option<String>) -> Self {
         let status = if reason.is_none() { "ok" } else { "refused" };
         // A sum of nothing is −0.
@@ -218,14 +214,12 @@ impl Outcome {
     }
 
     /// Whether there is a result.
-    #[must_use]
-    pub fn is_ok(&self) -> bool {
+    pub(crate) fn is_ok(&self) -> bool {
         self.reason.is_none()
     }
 }
 
 /// The report on an outcome of what `name` names: its lines and tables, then the figures.
-#[must_use]
 pub fn report(
     name: &str,
     outcome: &Outcome,

@@ -30,6 +30,7 @@ pub struct RunDetails {
 }
 
 /// What only the run of a single platform has; nothing by default.
+#[must_use]
 #[derive(Clone, Debug, Default)]
 pub struct OfPlatform {
     keys: Keys,
@@ -39,7 +40,6 @@ pub struct OfPlatform {
 
 impl OfPlatform {
     /// Of a turntable: the stored axis misalignments that its board used.
-    #[must_use]
     pub fn recalled(found: &[Remembered]) -> Self {
         let keys = Keys::default().with("recalled", found.iter().map(recalled).collect::<Vec<_>>());
         Self { keys, recalled: found.iter().map(ToString::to_string).collect(), gyro: None }
@@ -47,7 +47,6 @@ impl OfPlatform {
 
     /// Of two frames: whether the gyro stands vertical at the end, to keep the azimuth, and the true angle between its axis
     /// and the vertical then, °.
-    #[must_use]
     pub fn stored(is_vertical: bool, off_deg: f64) -> Self {
         let keys = Keys::default().with("stored", is_vertical);
         let what = if is_vertical { "vertical, to store the azimuth" } else { "not stored" };

@@ -93,7 +93,6 @@ impl Coefficient {
 
 impl Shown<'_> {
     /// The report for terminal and page: the record, the noise that it shows, and how both estimators did.
-    #[must_use]
     pub fn report(&self) -> Report {
         let analysis = self.analysis.as_ref();
         let residuals = |Analysis { fit: NoiseFit { chi_square, degrees, .. }, .. }: &Analysis| {
@@ -113,8 +112,7 @@ impl Shown<'_> {
     }
 
     /// What is to be known of the record, and of what the fit leaves open.
-    #[must_use]
-    pub fn notes(&self) -> Vec<String> {
+    pub(crate) fn notes(&self) -> Vec<String> {
         let fit = self.analysis.as_ref().ok().map(|analysis| &analysis.fit);
         let seconds = self.rest.rates.len() as f64 * self.rest.spacing.period_s;
         let misfit = fit.filter(|fit| fit.chi_square > MISFIT * fit.degrees as f64).map(|_| {
@@ -141,7 +139,6 @@ impl Shown<'_> {
     }
 
     /// The analysis as one JSON object.
-    #[must_use]
     pub fn object(&self) -> Keys {
         let reason = self.analysis.as_ref().err().map(ToString::to_string);
         let status = if reason.is_none() { "ok" } else { "refused" };

@@ -11,7 +11,6 @@ use crate::emulate::{Emulation, Run};
 use crate::report::{Columns, Lines, Part, Report};
 
 /// What the images found, took and hold.
-#[must_use]
 pub fn report(emulation: &Emulation) -> Report {
     let costs = emulation.cost.chunk_by(|one, other| one.heading == other.heading).map(of_cost);
     let rest = [of_runs(emulation), of_memory(emulation)];

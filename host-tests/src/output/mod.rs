@@ -23,8 +23,7 @@ pub fn degrees(angle: f64) -> f64 {
 }
 
 /// What rounds to zero, being smaller than `half`, prints without a sign.
-#[must_use]
-pub fn positive_zero(value: f64, half: f64) -> f64 {
+pub(crate) fn positive_zero(value: f64, half: f64) -> f64 {
     if value.abs() < half { 0.0 } else { value }
 }
 

@@ -44,8 +44,7 @@ impl Total {
 
 impl Steps {
     /// The steps between rows whose times, s, increase; `None` of fewer than two.
-    #[must_use]
-    pub fn of<R>(rows: &[R], time_s: impl Fn(&R) -> f64) -> Option<Self> {
+    pub(crate) fn of<R>(rows: &[R], time_s: impl Fn(&R) -> f64) -> Option<Self> {
         let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
         let mut sorted: Vec<f64> = steps().collect();
         let middle = sorted.len().checked_sub(1)? / 2;
@@ -55,20 +54,17 @@ impl Steps {
     }
 
     /// Whether no sample is missing in a step, s.
-    #[must_use]
-    pub fn is_unbroken(&self, step_s: f64) -> bool {
+    pub(crate) fn is_unbroken(&self, step_s: f64) -> bool {
         step_s <= LONGEST_STEP * self.median_s
     }
 
     /// The mean of the steps without a missing sample, s.
-    #[must_use]
-    pub fn mean_s(&self) -> f64 {
+    pub(crate) fn mean_s(&self) -> f64 {
         self.unbroken.sum_s / self.unbroken.count
     }
 
     /// The rate of the times, Hz, where this one misses it.
-    #[must_use]
-    pub fn contradicted(&self, rate_hz: f64) -> Option<f64> {
+    pub(crate) fn contradicted(&self, rate_hz: f64) -> Option<f64> {
         let found_hz = 1.0 / self.mean_s();
         ((rate_hz / found_hz - 1.0).abs() > RATE_TOLERANCE).then_some(found_hz)
     }
@@ -87,8 +83,7 @@ impl Steps {
     }
 
     /// The sample period, s, with the header's rate, Hz, where it has one.
-    #[must_use]
-    pub fn period_s(&self, rate_hz: Option<f64>) -> f64 {
+    pub(crate) fn period_s(&self, rate_hz: Option<f64>) -> f64 {
         let Total { sum_s, count, .. } = self.unbroken;
         let is_theirs = |stated: &f64| (sum_s - count * stated).abs() <= 0.5 * stated;
         rate_hz.map(|rate| 1.0 / rate).filter(is_theirs).unwrap_or_else(|| self.mean_s())

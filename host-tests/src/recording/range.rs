@@ -3,6 +3,7 @@
 use std::fmt;
 
 /// The values that a quantity may take, both ends included unless said.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     low: f64,
@@ -13,19 +14,16 @@ pub struct Range {
 
 impl Range {
     /// From `-limit` to `limit`.
-    #[must_use]
     pub const fn symmetric(limit: f64, unit: &'static str) -> Self {
         Self { low: -limit, high: limit, above_low: false, unit }
     }
 
     /// From zero to `high`.
-    #[must_use]
     pub const fn from_zero(high: f64, unit: &'static str) -> Self {
         Self { low: 0.0, high, above_low: false, unit }
     }
 
     /// Above zero, to `high`.
-    #[must_use]
     pub const fn above_zero(high: f64, unit: &'static str) -> Self {
         Self { low: 0.0, high, above_low: true, unit }
     }

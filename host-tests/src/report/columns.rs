@@ -5,6 +5,7 @@ use std::fmt::Display;
 use super::{Part, Table};
 
 /// A table that grows by columns: each names itself and shows one thing of every row.
+#[must_use]
 pub struct Columns<'a, R> {
     rows: &'a [R],
     table: Table,
@@ -12,7 +13,6 @@ pub struct Columns<'a, R> {
 
 impl<'a, R> Columns<'a, R> {
     /// A table of these rows, without columns yet.
-    #[must_use]
     pub fn of(title: &str, rows: &'a [R]) -> Self {
         let (title, cells) = (title.to_owned(), vec![Vec::new(); rows.len()]);
         Self { rows, table: Table { title, head: Vec::new(), rows: cells } }
@@ -25,33 +25,28 @@ impl<'a, R> Columns<'a, R> {
     }
 
     /// The rows' numbers, from one.
-    #[must_use]
     pub fn numbered(self, name: &str) -> Self {
         self.filled(name, (1..).map(|number: u32| number.to_string()))
     }
 
     /// Words or a whole number.
-    #[must_use]
     pub fn column<C: Display>(self, name: &str, of: impl Fn(&'a R) -> C) -> Self {
         let rows = self.rows.iter();
         self.filled(name, rows.map(|row| of(row).to_string()))
     }
 
     /// A number with so many decimal places.
-    #[must_use]
     pub fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
         self.column(name, |row| format!("{:.places$}", of(row)))
     }
 
     /// A number with so many decimal places, and a dash where there is none.
-    #[must_use]
     pub fn found(self, name: &str, places: usize, of: impl Fn(&'a R) -> Option<f64>) -> Self {
         let dash = || "-".to_owned();
         self.column(name, |row| of(row).map_or_else(dash, |number| format!("{number:.places$}")))
     }
 
     /// A number with an exponent and so many decimal places.
-    #[must_use]
     pub fn scientific(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
         self.column(name, |row| format!("{:.places$e}", of(row)))
     }

@@ -18,6 +18,7 @@ use thiserror::Error;
 pub use self::columns::Columns;
 
 /// A whole report.
+#[must_use]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// The heading, and the title of the browser's window.
@@ -40,6 +41,7 @@ pub enum Part {
 }
 
 /// Labelled lines under a heading.
+#[must_use]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lines {
     /// The heading; empty for lines that follow the report's own.
@@ -50,19 +52,16 @@ pub struct Lines {
 
 impl Lines {
     /// Lines under a heading, none yet.
-    #[must_use]
     pub fn new(title: &str) -> Self {
         Self { title: title.to_owned(), lines: Vec::new() }
     }
 
     /// The lines with one more.
-    #[must_use]
     pub fn with(self, label: &str, value: impl Into<String>) -> Self {
         self.with_found(label, [value])
     }
 
     /// The lines with one for each value that there is.
-    #[must_use]
     pub fn with_found<V: Into<String>>(
         mut self,
         label: &str,
@@ -273,7 +272,6 @@ impl Report {
     }
 
     /// This report with lines below its heading.
-    #[must_use]
     pub fn below(self, subtitle: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { subtitle: subtitle.into_iter().map(Into::into).collect(), ..self }
     }

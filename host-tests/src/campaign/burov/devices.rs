@@ -47,8 +47,7 @@ pub struct Device {
 }
 
 /// Δω over the number of positions: the paper's Fig. 6 with the values beside the best.
-#[must_use]
-pub fn curve(positions: std::ops::RangeInclusive<u32>) -> Vec<(u32, f64)> {
+pub(crate) fn curve(positions: std::ops::RangeInclusive<u32>) -> Vec<(u32, f64)> {
     let noise = EXAMPLE.noise();
     let of = |n| burov::rate_error(&noise, n, Seconds(SECONDS), Seconds(ROTATION));
     positions.filter_map(|n| Some((n, of(n)?.degrees_per_hour()))).collect()

@@ -92,8 +92,7 @@ impl World {
 
 /// A rate-modulated stretch, then as many seconds clockwise and counter-clockwise at each speed in turns a
 /// second.
-#[must_use]
-pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
+pub(crate) fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
     let Some(first) = speeds_hz.first() else { return Vec::new() };
     let (depth, frequency) = MODULATION;
     let modulated =

@@ -32,8 +32,7 @@ impl Errors {
     }
 
     /// Compares a track with as many true rolls, rad.
-    #[must_use]
-    pub fn between(track: &Track, truth_rad: &[f64]) -> Self {
+    pub(crate) fn between(track: &Track, truth_rad: &[f64]) -> Self {
         let whole: Vec<f64> =
             track.rolls_rad.iter().zip(truth_rad).map(|(roll, truth)| roll - truth).collect();
         let wrapped_rad: Vec<f64> = whole.iter().map(|error| wrapped(*error)).collect();
@@ -60,8 +59,7 @@ impl Errors {
 }
 
 /// RMS of the bounds after [`SETTLED_S`], rad.
-#[must_use]
-pub fn bound_rms(track: &Track, bounds: &[f64]) -> Option<f64> {
+pub(crate) fn bound_rms(track: &Track, bounds: &[f64]) -> Option<f64> {
     let (both, from_s) = (bounds.iter().zip(&track.times_s), settled_s(track));
     let settled: Vec<f64> =
         both.filter(|(_, time_s)| **time_s >= from_s).map(|(bound, _)| *bound).collect();

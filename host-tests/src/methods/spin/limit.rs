@@ -61,8 +61,7 @@ impl Turns {
     }
 
     /// The lift at a sample, m/s²: that of its turn.
-    #[must_use]
-    pub fn lift(&self, index: usize) -> f64 {
+    pub(crate) fn lift(&self, index: usize) -> f64 {
         let after = self.lifts.partition_point(|(from, _)| *from <= index);
         self.lifts.get(after.saturating_sub(1)).map_or(0.0, |(_, lift)| *lift)
     }

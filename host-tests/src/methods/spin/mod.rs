@@ -31,8 +31,7 @@ pub const SCALE_SIGMA: f64 = 0.01;
 pub const METHODS: [Method; 3] = [Method::Extrema, Method::Interpolated, Method::PhaseLocked];
 
 /// The name of a method in tables.
-#[must_use]
-pub fn name(method: Method) -> &'static str {
+pub(crate) fn name(method: Method) -> &'static str {
     match method {
         Method::Extrema => "extrema",
         Method::Interpolated => "interpolated",

@@ -60,8 +60,7 @@ pub struct Track {
 
 impl Track {
     /// Tracks the roll through samples.
-    #[must_use]
-    pub fn of(setting: &Setting, samples: &[SpinSample]) -> Self {
+    pub(crate) fn of(setting: &Setting, samples: &[SpinSample]) -> Self {
         let every = (samples.len() / POINTS).max(1);
         let mut spin = Spin::new(setting);
         let mut track = Self {
@@ -84,8 +83,7 @@ impl Track {
     }
 
     /// Time, s, and an angle, °, of each sample.
-    #[must_use]
-    pub fn over_time(&self, angles_rad: &[f64]) -> Vec<(f64, f64)> {
+    pub(crate) fn over_time(&self, angles_rad: &[f64]) -> Vec<(f64, f64)> {
         self.times_s.iter().copied().zip(angles_rad.iter().copied().map(degrees)).collect()
     }
 

@@ -88,8 +88,7 @@ pub fn check_gyro(
 
 /// What an azimuth from samples assumes of their columns: one that is early or late by whole dwells, and begins and ends
 /// as the others do, shows nothing of it.
-#[must_use]
-pub fn assumption(session: &Session) -> Option<String> {
+pub(crate) fn assumption(session: &Session) -> Option<String> {
     session.conclusion().filter(|conclusion| conclusion.verdict.is_ok())?;
     let angle = |pair: &[Dwell]| (pair[1].stage - pair[0].stage).signed_rad().abs();
     let mut steps: Vec<f64> = session.dwells().windows(2).map(angle).collect();

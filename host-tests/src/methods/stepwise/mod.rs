@@ -38,8 +38,7 @@ pub const STEPWISE: &str = "stepwise";
 pub const POSITIONS: &str = "positions";
 
 /// The name of a session that ran by itself: a planned schedule goes through positions in passes.
-#[must_use]
-pub fn name_of(session: &Session) -> &'static str {
+pub(crate) fn name_of(session: &Session) -> &'static str {
     match session.procedure().schedule {
         Schedule::Planned(_) => POSITIONS,
         Schedule::Listed(_) | Schedule::TowardMaximum { .. } => STEPWISE,
@@ -62,14 +61,12 @@ pub struct Replay {
 
 impl Replay {
     /// The criterion as the command line names it.
-    #[must_use]
-    pub fn criterion_name(&self) -> String {
+    pub(crate) fn criterion_name(&self) -> String {
         crate::criterion::name(self.session.procedure().criterion)
     }
 
     /// Whether the gyro's white noise was stated rather than estimated.
-    #[must_use]
-    pub fn noise_is_known(&self) -> bool {
+    pub(crate) fn noise_is_known(&self) -> bool {
         self.session.setting().site.noise.is_white_known()
             || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
     }

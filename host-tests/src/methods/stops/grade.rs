@@ -47,8 +47,7 @@ pub fn filled(header: &Header, assumed: &mut Vec<String>) -> Header {
 }
 
 /// What gravity makes of the gyros' g-sensitivity, 1σ, rad/s: a bias, for a vehicle stands upright.
-#[must_use]
-pub fn g_sensitivity(header: &Header) -> f64 {
+pub(crate) fn g_sensitivity(header: &Header) -> f64 {
     let [along, across] = header.g_sensitivity_deg_h_g.unwrap_or_default();
     let sigma = header.g_sensitivity_sigma_deg_h_g.unwrap_or_default();
     along.hypot(across).hypot(sigma) * DEGREE_PER_HOUR

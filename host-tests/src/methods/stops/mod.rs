@@ -43,8 +43,7 @@ pub const SIAP: &str = "siap";
 pub const STATIC: &str = "static";
 
 /// The method of a recording for which none was asked; none of a kind without three gyros and three accelerometers.
-#[must_use]
-pub fn usual_method(header: &Header, body: &Body) -> Option<&'static str> {
+pub(crate) fn usual_method(header: &Header, body: &Body) -> Option<&'static str> {
     let rows = samples::rows(body)?;
     Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
 }

@@ -84,8 +84,11 @@ fn of_samples(rows: &[ImuRow], stops_s: Option<&[[f64; 2]]>, period_s: f64) -> O
 const PARTS: usize = 4;
 
 /// The length of the mean rate in each part of the longest rest, rad/s; zero of no rows.
-#[must_use]
-pub fn rest_rates(rows: &[ImuRow], stops_s: Option<&[[f64; 2]]>, period_s: f64) -> [f64; PARTS] {
+pub(crate) fn rest_rates(
+    rows: &[ImuRow],
+    stops_s: Option<&[[f64; 2]]>,
+    period_s: f64,
+) -> [f64; PARTS] {
     let rests = rests(rows, stops_s, period_s);
     let longest = rests.into_iter().max_by_key(|rest| rest.len()).unwrap_or_default();
     let size = longest.len() / PARTS;

@@ -30,8 +30,7 @@ const GYROS: [&str; 3] = ["gx_rad_s", "gy_rad_s", "gz_rad_s"];
 
 /// A gyro that shows one value for far longer than any other: its column, the row where that begins,
 /// and of how many rows.
-#[must_use]
-pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
+pub(crate) fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
     GYROS.iter().enumerate().find_map(|(axis, column)| {
         let run = alone(rows, STUCK, |row| row.sample.rates_rad_s[axis])?;
         Some((*column, &run[0], run.len()))
@@ -40,8 +39,7 @@ pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
 
 /// Which of two accelerometers across the vertical, 0 or 1, shows one value all the time although the upright one has
 /// noise: it is dead, or its steps hide everything.
-#[must_use]
-pub fn dead_accelerometer<R>(rows: &[R], force_m_s2: fn(&R) -> [f64; 3]) -> Option<usize> {
+pub(crate) fn dead_accelerometer<R>(rows: &[R], force_m_s2: fn(&R) -> [f64; 3]) -> Option<usize> {
     let is_constant = |axis: usize| {
         rows.windows(2).all(|pair| force_m_s2(&pair[0])[axis] == force_m_s2(&pair[1])[axis])
     };
@@ -112,8 +110,7 @@ fn within(
 }
 
 /// When the first sample began, s on the recorder's clock.
-#[must_use]
-pub fn begin(rows: &[ImuRow], period_s: f64) -> f64 {
+pub(crate) fn begin(rows: &[ImuRow], period_s: f64) -> f64 {
     rows.first().map_or(0.0, |row| row.time_s) - period_s
 }
 

@@ -70,8 +70,7 @@ impl Slip {
     }
 
     /// What all legs together are likely to be: what fits best of all that fit.
-    #[must_use]
-    pub fn of(legs: &[Leg]) -> Self {
+    pub(crate) fn of(legs: &[Leg]) -> Self {
         let all = [Self::Kilometres, Self::Exchanged, Self::Reversed];
         let fits = |slip: &Self| legs.iter().all(|leg| leg.fits(slip.mended(leg.stated_m)));
         let off =
@@ -95,22 +94,19 @@ impl Leg {
     }
 
     /// Whether it may have come as far as stated.
-    #[must_use]
-    pub fn is_as_stated(&self) -> bool {
+    pub(crate) fn is_as_stated(&self) -> bool {
         self.fits(self.stated_m)
     }
 
     /// Whether what was driven cannot be distinguished from nothing.
-    #[must_use]
-    pub fn tells_nothing(&self) -> bool {
+    pub(crate) fn tells_nothing(&self) -> bool {
         self.fits([0.0; 2])
     }
 }
 
 /// The drives between stops whose displacements are stated, from the azimuth at the first one, rad. Times of
 /// stops count from `zero_s` on the recording's clock.
-#[must_use]
-pub fn legs(
+pub(crate) fn legs(
     rows: &[ImuRow],
     zero_s: f64,
     period_s: f64,

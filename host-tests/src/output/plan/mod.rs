@@ -10,7 +10,6 @@ use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
 use crate::report::{Lines, Part, Report};
 
 /// The report for terminal and page: what was asked, and both schedules.
-#[must_use]
 pub fn report(request: &Request, planned: &Planned) -> Report {
     let parts = [asked(request), burov(planned), optimum(planned)].map(Part::from);
     Report::new("Schedule for a gyro", parts)

@@ -16,7 +16,6 @@ const TIMES: u32 = 24;
 const REACH: [f64; 2] = [0.3, 6.0];
 
 /// The page for a plan: its report, then the figures.
-#[must_use]
 pub fn report(request: &Request, planned: &Planned) -> Report {
     let seconds = planned.optimum.seconds;
     let burov = autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds));
