@@ -7,7 +7,7 @@
 pub mod allan;
 mod assumptions;
 pub mod campaign;
-pub mod cause;
+mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;

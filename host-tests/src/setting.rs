@@ -6,6 +6,7 @@ use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::units::{GSensitivity, MetresPerSecondSquared};
 
 use crate::assumptions::or_assumed;
+use crate::methods::asked::Question;
 use crate::recording::{Body, Header};
 
 /// 1σ of a scale factor of which nothing is known, relative: between fibre-optic and micromachined gyros.
@@ -14,12 +15,8 @@ const SCALE_SIGMA: f64 = 0.01;
 const FORCE_BIAS_SIGMA: f64 = 0.25;
 
 /// Builds the site for a latitude from the header's keys.
-pub fn describe(
-    header: &Header,
-    body: &Body,
-    latitude: Latitude,
-    assumed: &mut Vec<String>,
-) -> Site {
+pub fn describe(of: &Question, latitude: Latitude, assumed: &mut Vec<String>) -> Site {
+    let Question { header, body, .. } = *of;
     let scale_sigma = or_assumed(header.gyro_scale_sigma, SCALE_SIGMA, assumed, || {
         "gyro scale factor to 1 % (gyro_scale_sigma)".to_owned()
     });

@@ -6,7 +6,7 @@ use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::units::DEGREE;
 
 use super::NO_NOISE;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::stepwise;
 use crate::recording::{Body, Header, Short};
 
@@ -47,7 +47,8 @@ pub fn impossible(body: &Body) -> Option<String> {
 }
 
 /// Whether the noise that is stated is not the one that the dwells show.
-pub fn noise(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+pub fn noise(of: &Question) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let stated = header.gyro_n_deg_sqrt_h.filter(|_| matches!(body, Body::Stage(_)))?;
     let silent = Header { gyro_n_deg_sqrt_h: None, ..header.clone() };
     let replay = stepwise::replay(&silent, body, asked, |_| {}).ok()?;
@@ -64,7 +65,8 @@ pub fn noise(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
 }
 
 /// Keys of drift and g-sensitivity that are missing, where a usual one of either would explain the dwells.
-pub fn missing(header: &Header, body: &Body, asked: &Asked, refusal: &Refusal) -> Option<String> {
+pub fn missing(of: &Question, refusal: &Refusal) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let is_scattered = match refusal {
         Refusal::ResidualsNotWhite { ratio }
         | Refusal::Stepwise(Stepwise::NoiseNotAsStated { ratio }) => *ratio <= NO_NOISE,

@@ -21,7 +21,7 @@ use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::alignment::stepwise::session::Session;
 use orientation::alignment::stops::Refusal as Stops;
 
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::{is_answered, rotating, stepwise};
 use crate::recording::{Body, Header, Sensor, Short};
 
@@ -31,13 +31,8 @@ const NO_NOISE: f64 = 100.0;
 const FEW: usize = 5;
 
 /// The likely cause of a refusal of a recording whose stage stops, with its remedy.
-pub(crate) fn of_stopping(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-    session: &Session,
-    refusal: &Refusal,
-) -> Option<String> {
+pub fn of_stopping(of: &Question, session: &Session, refusal: &Refusal) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let proven = stuck::of_stage(header, body).or_else(|| keys::impossible(body));
     if proven.is_some() {
         return proven;
@@ -58,21 +53,16 @@ pub(crate) fn of_stopping(
     warming()
         .or_else(|| meant.as_ref().map(|trial| trial.describe(body)))
         .or_else(|| units::of_forces(body))
-        .or_else(|| units::of_sigma(header, body, asked))
-        .or_else(|| keys::noise(header, body, asked))
+        .or_else(|| units::of_sigma(of))
+        .or_else(|| keys::noise(of))
         .or_else(|| slip::of(session, refusal))
-        .or_else(|| keys::missing(header, body, asked, refusal))
+        .or_else(|| keys::missing(of, refusal))
         .or_else(|| too_much(body, refusal))
 }
 
 /// The cause of a refusal on a platform that turns all the time.
-#[must_use]
-pub fn of_turning(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-    refusal: &Refusal,
-) -> Option<String> {
+pub fn of_turning(of: &Question, refusal: &Refusal) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let Body::Rotating(rows) = body else { return None };
     let proven = stuck::of_platform(rows).or_else(|| units::of_platform_rate(rows));
     let is_noisy = matches!(refusal, Refusal::BudgetNotMet { .. });

@@ -2,9 +2,9 @@
 
 use orientation::units::DEGREE;
 
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::stepwise;
-use crate::recording::{Body, DwellRow, Header, RotatingRow, StageRow};
+use crate::recording::{Body, DwellRow, RotatingRow, StageRow};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
@@ -225,7 +225,6 @@ pub fn force_unit(body: &Body) -> Option<Unit> {
 }
 
 /// What is wrong with the forces' unit, in words.
-#[must_use]
 pub fn of_forces(body: &Body) -> Option<String> {
     force_unit(body).map(|unit| unit.describe(force_columns(body)))
 }
@@ -249,7 +248,8 @@ pub fn of_platform_rate(rows: &[RotatingRow]) -> Option<String> {
 }
 
 /// Whether the σ of averaged dwells alone are in another unit: in the one that is meant they pass, and scatter so.
-pub fn of_sigma(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+pub fn of_sigma(of: &Question) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let Body::Dwells(rows) = body else { return None };
     let passes = |Unit(factor, _): &Unit| {
         let row = |row: &DwellRow| DwellRow { sigma_rad_s: row.sigma_rad_s * factor, ..*row };

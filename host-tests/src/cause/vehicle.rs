@@ -4,22 +4,17 @@ use orientation::alignment::refusal::Refusal;
 
 use super::is_short;
 use super::units::{self, MOST_ROWS, RATES, Unit};
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::is_answered;
 use crate::methods::stops::{self, samples};
-use crate::recording::{Body, Header, ImuRow};
+use crate::recording::{Body, ImuRow};
 
 /// The gyros' columns.
 const GYROS: &str = "columns gx_rad_s to gz_rad_s";
 
 /// The likely cause of a refusal of a vehicle's recording, with its remedy.
-#[must_use]
-pub fn of_vehicle(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-    refusal: &Refusal,
-) -> Option<String> {
+pub fn of_vehicle(of: &Question, refusal: &Refusal) -> Option<String> {
+    let Question { header, body, asked } = *of;
     let force = units::force_unit(body);
     let of_force = units::of_forces(body);
     let rows = samples::rows(body).filter(|rows| rows.len() <= MOST_ROWS)?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use host::methods::asked::Asked;
+use host::methods::asked::{Asked, Question};
 use host::methods::vertical::write_attitude;
 use host::methods::{self, METHODS, Method};
 use host::outcome::{Outcome, Source};
@@ -134,7 +134,9 @@ fn replay(
     let outcome = finished.outcome(&truth);
     // A run gives its own reason.
     let is_caused = outcome.reason.is_some() && header.session.is_none();
-    let cause = is_caused.then(|| finished.cause(&header, &body, &asked)).flatten();
+    let cause = is_caused
+        .then(|| finished.cause(&Question { header: &header, body: &body, asked: &asked }))
+        .flatten();
     let reason = outcome.reason.map(|reason| match cause {
         Some(cause) => explained(&reason, outcome.remedy, &cause),
         None => reason,

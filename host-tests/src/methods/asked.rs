@@ -31,35 +31,6 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// Displacements of the stops: the user's, or the header's.
-    pub(crate) fn displacements_m<'a>(&'a self, header: &'a Header) -> Option<&'a [[f64; 2]]> {
-        self.displacements_m.as_deref().or(header.displacements_m.as_deref())
-    }
-
-    /// The user's latitude, or the header's.
-    ///
-    /// # Errors
-    /// Neither gives one.
-    pub(crate) fn latitude(&self, header: &Header, body: &Body) -> Result<Latitude, ReplayError> {
-        let stated = header.latitude_deg.and_then(Latitude::from_degrees);
-        self.latitude.or(stated).ok_or(ReplayError::NoLatitude(body.kind()))
-    }
-
-    /// Site and instrument as header and user state them.
-    ///
-    /// # Errors
-    /// There is no latitude.
-    pub(crate) fn describe(
-        &self,
-        header: &Header,
-        body: &Body,
-        assumed: &mut Vec<String>,
-    ) -> Result<Site, ReplayError> {
-        let mut site = describe(header, body, self.latitude(header, body)?, assumed);
-        self.change(&mut site);
-        Ok(site)
-    }
-
     /// Greatest accepted 1σ of a method whose recordings hold none, rad.
     pub(crate) fn required_sigma(&self) -> f64 {
         self.required_sigma.unwrap_or(REQUIRED_SIGMA)
@@ -69,5 +40,42 @@ impl Asked {
     pub(crate) fn change(&self, site: &mut Site) {
         site.latitude = self.latitude.unwrap_or(site.latitude);
         site.required_sigma = self.required_sigma.map_or(site.required_sigma, Radians);
+    }
+}
+
+/// A recording and what a user asks of it: what a replay is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// What the recording's header states.
+    pub header: &'a Header,
+    /// Its rows.
+    pub body: &'a Body,
+    /// What the user asks.
+    pub asked: &'a Asked,
+}
+
+impl Question<'_> {
+    /// Displacements of the stops: the user's, or the header's.
+    pub(crate) fn displacements_m(&self) -> Option<&[[f64; 2]]> {
+        self.asked.displacements_m.as_deref().or(self.header.displacements_m.as_deref())
+    }
+
+    /// The user's latitude, or the header's.
+    ///
+    /// # Errors
+    /// Neither gives one.
+    pub(crate) fn latitude(&self) -> Result<Latitude, ReplayError> {
+        let stated = self.header.latitude_deg.and_then(Latitude::from_degrees);
+        self.asked.latitude.or(stated).ok_or(ReplayError::NoLatitude(self.body.kind()))
+    }
+
+    /// Site and instrument as header and user state them.
+    ///
+    /// # Errors
+    /// There is no latitude.
+    pub(crate) fn site(&self, assumed: &mut Vec<String>) -> Result<Site, ReplayError> {
+        let mut site = describe(self, self.latitude()?, assumed);
+        self.asked.change(&mut site);
+        Ok(site)
     }
 }

@@ -17,10 +17,10 @@ use serde::{Serialize, Serializer};
 
 use self::keys::Keys;
 use self::run::RunDetails;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
 use crate::output::{azimuth_error, positive_zero};
-use crate::recording::{Body, Header, Truth};
+use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part as ReportPart, Report, Table};
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
@@ -49,7 +49,7 @@ pub trait Finished {
 
     /// What a refusal of a recording is likely to come from, with its remedy; `None` where nothing points
     /// to a cause.
-    fn cause(&self, _header: &Header, _body: &Body, _asked: &Asked) -> Option<String> {
+    fn cause(&self, _of: &Question) -> Option<String> {
         None
     }
 }

@@ -22,7 +22,7 @@ use self::part::Part;
 use crate::assumptions;
 use crate::assumptions::or_assumed;
 use crate::median::median;
-use crate::methods::asked::Asked;
+use crate::methods::asked::{Asked, Question};
 use crate::methods::error::ReplayError;
 use crate::methods::limits::{limits, saturated};
 use crate::recording::period::period_s;
@@ -76,7 +76,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
         return again(given, rows, asked);
     }
     let mut assumed = Vec::new();
-    let mut site = asked.describe(header, body, &mut assumed)?;
+    let mut site = Question { header, body, asked }.site(&mut assumed)?;
     let sensor = sensor(header, &mut assumed);
     // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
     let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);

@@ -23,7 +23,7 @@ use orientation::units::{
     SpecificForce, TURN, Temperature,
 };
 
-use super::asked::Asked;
+use super::asked::{Asked, Question};
 use super::error::ReplayError;
 use super::limits::{limits, saturated};
 use super::stops::samples::dead_accelerometer;
@@ -82,35 +82,34 @@ pub fn replay(
     asked: &Asked,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
+    let of = &Question { header, body, asked };
     match body {
         Body::Stage(rows) => match Given::of(header).map_err(ReplayError::Session)? {
             Some(given) => again(given, rows, asked, progress),
-            None => followed(header, body, asked, |setting, criterion| {
-                stage(header, rows, setting, criterion, progress)
-            }),
+            None => {
+                followed(of, |setting, criterion| stage(header, rows, setting, criterion, progress))
+            }
         },
-        Body::Dwells(rows) => followed(header, body, asked, |setting, criterion| {
-            dwells(rows, setting, criterion, progress)
-        }),
+        Body::Dwells(rows) => {
+            followed(of, |setting, criterion| dwells(rows, setting, criterion, progress))
+        }
         other => Err(ReplayError::Kind(other.kind())),
     }
 }
 
 /// Replays a recording with what its header and the user state, by a session that follows its rows.
 fn followed(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
+    of: &Question,
     session: impl FnOnce(Setting, Criterion) -> Result<Session, ReplayError>,
 ) -> Result<Replay, ReplayError> {
-    let mut assumed = Vec::new();
-    let site = asked.describe(header, body, &mut assumed)?;
+    let (asked, mut assumed) = (of.asked, Vec::new());
+    let site = of.site(&mut assumed)?;
     let setting = Setting { half: asked.half, ..Setting::new(site) };
     assumed.extend(asked.half.map(|_| HALF.to_owned()));
     let session = session(setting, asked.criterion.unwrap_or_default())?;
     late::check_stage(&session)?;
     assumed.extend(assumptions::of_stage(&session));
-    assumed.extend(late::assumption(&session).filter(|_| body.kind() == Kind::Stage));
+    assumed.extend(late::assumption(&session).filter(|_| of.body.kind() == Kind::Stage));
     Ok(Replay { method: asked.method.unwrap_or(STEPWISE), session, assumed })
 }
 

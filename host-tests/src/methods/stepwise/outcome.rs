@@ -7,13 +7,13 @@ use orientation::signal::dwell::Dwell;
 use serde::Serialize;
 
 use crate::cause;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{columns, degrees, degrees_per_hour};
-use crate::recording::{Body, Header, Truth};
+use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
 /// A dwell, with what the fit leaves of it.
@@ -188,9 +188,9 @@ impl Finished for Replay {
         dwells.map_or_else(Vec::new, |dwells| vec![rates(&dwells), residuals(&dwells)])
     }
 
-    fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<String> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
-        cause::of_stopping(header, body, asked, &self.session, refusal)
+        cause::of_stopping(of, &self.session, refusal)
     }
 }
 

@@ -31,7 +31,7 @@ use self::noise::White;
 use self::way::{Leg, Slip};
 use crate::assumptions;
 use crate::median::median;
-use crate::methods::asked::Asked;
+use crate::methods::asked::{Asked, Question};
 use crate::methods::error::ReplayError;
 use crate::methods::is_answered;
 use crate::recording::period::{Steps, period_s};
@@ -109,36 +109,36 @@ impl Recorder<InertialSample> for &mut Replay {
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
-    let replay = run(header, body, asked)?;
+    let of = &Question { header, body, asked };
+    let replay = run(of)?;
     // What a board was given it went by; what a user states has to agree with the forces.
     let is_run = header.session.is_some() && replay.method == SIAP;
     if is_run && asked.displacements_m.is_none() {
         return Ok(replay);
     }
-    check_kilometres(header, body, asked, &replay)?;
-    check_way(body, header, replay)
+    check_kilometres(of, &replay)?;
+    check_way(of, replay)
 }
 
 /// Replays the rows, as a run where they come from one.
-fn run(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
-    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    let given = Given::of(header).map_err(ReplayError::Session)?;
-    match given.filter(|_| asked.method != Some(STATIC)) {
-        Some(given) => again(given, header, &rows, asked),
-        None => follow(header, body, &rows, asked),
+fn run(of: &Question) -> Result<Replay, ReplayError> {
+    let rows = samples::rows(of.body).ok_or_else(|| missing(of.body))?;
+    let given = Given::of(of.header).map_err(ReplayError::Session)?;
+    match given.filter(|_| of.asked.method != Some(STATIC)) {
+        Some(given) => again(given, of, &rows),
+        None => follow(of, &rows),
     }
 }
 
 /// Replays a run by giving its session what the board's was given.
 fn again(
     given: Given<Setting, Procedure>,
-    header: &Header,
+    of: &Question,
     rows: &[ImuRow],
-    asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
-    asked.change(&mut setting.site);
-    procedure.displacements = displacements(header, asked)?;
+    of.asked.change(&mut setting.site);
+    procedure.displacements = displacements(of)?;
     let period_s = procedure.sample_seconds;
     let session = Session::new(setting, procedure)?;
     let replay = Replay::begun(SIAP, session, 0.0, vec![GIVEN.to_owned()]);
@@ -147,10 +147,10 @@ fn again(
 }
 
 /// Refuses displacements that the forces on the way contradict, and states where they cannot.
-fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay, ReplayError> {
+fn check_way(of: &Question, mut replay: Replay) -> Result<Replay, ReplayError> {
     let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
-    let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
-    let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
+    let (Some(rows), Some(found)) = (samples::rows(of.body), found) else { return Ok(replay) };
+    let period_s = period_s(of.header.rate_hz, &rows, |row| row.time_s);
     let site = &replay.session.setting().site;
     let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
     let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle.0);
@@ -170,13 +170,8 @@ const KILOMETRES: f64 = 100.0;
 const KILOMETRE: f64 = 1e3;
 
 /// Refuses displacements with which there is no azimuth, but with a thousand times as much.
-fn check_kilometres(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-    replay: &Replay,
-) -> Result<(), ReplayError> {
-    let stated = asked.displacements_m(header);
+fn check_kilometres(of: &Question, replay: &Replay) -> Result<(), ReplayError> {
+    let stated = of.displacements_m();
     let greatest =
         stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
     let (Some(list), false) = (stated, is_answered(&replay.session)) else { return Ok(()) };
@@ -185,30 +180,27 @@ fn check_kilometres(
     }
     let displacements_m =
         Some(list.iter().map(|place| place.map(|part| KILOMETRE * part)).collect());
-    let farther = run(header, body, &Asked { displacements_m, ..asked.clone() })?;
+    let asked = &Asked { displacements_m, ..of.asked.clone() };
+    let farther = run(&Question { asked, ..*of })?;
     if is_answered(&farther.session) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
 }
 
 /// Drives the session with the rows.
-fn follow(
-    header: &Header,
-    body: &Body,
-    rows: &[ImuRow],
-    asked: &Asked,
-) -> Result<Replay, ReplayError> {
-    asked.latitude(header, body)?;
+fn follow(of: &Question, rows: &[ImuRow]) -> Result<Replay, ReplayError> {
+    let header = of.header;
+    of.latitude()?;
     let period_s = period_s(header.rate_hz, rows, |row| row.time_s);
     check_rate(header.rate_hz, rows)?;
     check_stuck(rows, period_s)?;
     check_unit(header, rows, period_s)?;
     let zero_s = samples::begin(rows, period_s);
-    let method = asked.method.unwrap_or_else(|| usual(header, rows, period_s));
+    let method = of.asked.method.unwrap_or_else(|| usual(header, rows, period_s));
     let rests = rests(header, method, zero_s)?;
-    let displacements = displacements(header, asked)?;
+    let displacements = displacements(of)?;
     let mut substituted = Vec::new();
     let header = &grade::filled(header, &mut substituted);
     let mut assumed = Vec::new();
-    let mut site = asked.describe(header, body, &mut assumed)?;
+    let mut site = Question { header, ..*of }.site(&mut assumed)?;
     assumed.append(&mut substituted);
     assumed.push(assumptions::AXES_OF_A_VEHICLE.to_owned());
     // Within what is accepted, the difference of a stated rate from the times is a scale error of every rotation.
@@ -284,10 +276,10 @@ fn rests(header: &Header, method: &str, zero_s: f64) -> Result<Rests, ReplayErro
 }
 
 /// The user's displacements, or the header's; one for each stop where stops are stated.
-fn displacements(header: &Header, asked: &Asked) -> Result<Few<[Metres; 2], STOPS>, ReplayError> {
-    let list = asked.displacements_m(header).unwrap_or_default();
+fn displacements(of: &Question) -> Result<Few<[Metres; 2], STOPS>, ReplayError> {
+    let list = of.displacements_m().unwrap_or_default();
     let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
-    match &header.stops_s {
+    match &of.header.stops_s {
         Some(stops) if !list.is_empty() && stops.len() != list.len() => Err(wrong(stops.len())),
         _ if list.len() > STOPS => Err(wrong(STOPS)),
         _ => Ok(list.iter().map(|place| place.map(Metres)).collect()),

@@ -3,13 +3,13 @@
 use orientation::attitude::quaternion::angles;
 
 use crate::cause;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::vertical::errors::{Errors, Off};
 use crate::methods::vertical::{Moment, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome, of_biases};
 use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero};
-use crate::recording::{Body, Header, Truth};
+use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
 impl Finished for Replay {
@@ -58,8 +58,8 @@ impl Finished for Replay {
         Some(&self.moments)
     }
 
-    fn cause(&self, _: &Header, body: &Body, _: &Asked) -> Option<String> {
-        self.refusal.as_ref().and_then(|_| cause::of_level(body))
+    fn cause(&self, of: &Question) -> Option<String> {
+        self.refusal.as_ref().and_then(|_| cause::of_level(of.body))
     }
 }
 

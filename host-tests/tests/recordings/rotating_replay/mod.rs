@@ -6,10 +6,10 @@ mod output;
 mod simulated;
 mod spoilt;
 
-use host::cause::of_turning;
-use host::methods::asked::Asked;
+use host::methods::asked::{Asked, Question};
 use host::methods::error::ReplayError;
 use host::methods::rotating::{Replay, replay};
+use host::outcome::Finished;
 use host::output::azimuth_error;
 use host::recording::{Body, Header, Kind, RotatingRow};
 use orientation::alignment::refusal::Refusal;
@@ -314,8 +314,8 @@ fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_tak
             let azimuth = match conclusion(&replay).verdict {
                 Ok(azimuth) => azimuth,
                 Err(refusal) => {
-                    let body = Body::Rotating(turned.rows);
-                    let cause = of_turning(&turned.header, &body, &Asked::default(), &refusal);
+                    let (header, body) = (&turned.header, &Body::Rotating(turned.rows));
+                    let cause = replay.cause(&Question { header, body, asked: &Asked::default() });
                     // The sensor's gain is not known: in another unit its rates would do as well.
                     assert_eq!(cause, None, "after {stretch}, {turn_deg}°: {refusal}");
                     refused += 1;

@@ -13,13 +13,13 @@ use orientation::units::Radians;
 use serde::Serialize;
 
 use crate::cause;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
-use crate::recording::{Body, Header, RotatingRow, Truth};
+use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
 
 /// A turn of the platform, with what the mean of its stretch leaves of it.
@@ -265,9 +265,9 @@ impl Finished for Replay {
         }
     }
 
-    fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<String> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
-        cause::of_turning(header, body, asked, refusal)
+        cause::of_turning(of, refusal)
     }
 }
 

@@ -10,12 +10,12 @@ use orientation::units::{Radians, wrapped};
 use serde::Serialize;
 
 use crate::cause;
-use crate::methods::asked::Asked;
+use crate::methods::asked::Question;
 use crate::methods::stops::Replay;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases};
 use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero};
-use crate::recording::{Body, Header, Truth};
+use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
 
 /// Azimuths of the least inclination U between the first stop and the last, as the method of Szymanowski 2003 finds
@@ -204,9 +204,9 @@ impl Finished for Replay {
         page
     }
 
-    fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<String> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
-        cause::of_vehicle(header, body, asked, refusal)
+        cause::of_vehicle(of, refusal)
     }
 }
 
