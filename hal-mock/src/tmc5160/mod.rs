@@ -238,15 +238,11 @@ impl Tmc5160 {
     /// Executes a command; what the next datagram carries back (4.1.1).
     fn execute(&mut self, command: u8, data: u32) -> u32 {
         let (address, is_write) = (command & 0x7F, command & 0x80 != 0);
-        let Some(register) = registers::register(MAP, address.into()) else {
-            self.violate(Misuse::UnknownRegister, address);
-            return if is_write { data } else { 0 };
-        };
         if is_write {
-            self.write(address, register, data);
+            self.write(address, data);
             data
-        } else if register.access == Access::Write {
-            self.violate(Misuse::WriteOnly, address);
+        } else if let Some(misuse) = registers::read_refusal(MAP, address.into()) {
+            self.violate(misuse, address);
             0
         } else {
             self.value(address)
@@ -254,13 +250,13 @@ impl Tmc5160 {
     }
 
     /// Writes a register; a reserved or forbidden value is recorded and taken as far as bits exist.
-    fn write(&mut self, address: u8, register: &Registers, data: u32) {
-        if register.access == Access::Read {
-            return self.violate(Misuse::ReadOnly, address);
+    fn write(&mut self, address: u8, data: u32) {
+        if let Some(misuse) = registers::write_refusal(MAP, address.into(), data) {
+            self.violate(misuse, address);
         }
-        if data & !register.mask != 0 {
-            self.violate(Misuse::ReservedBits, address);
-        }
+        let writable = |found: &&Registers| found.access != Access::Read;
+        let found = registers::register(MAP, address.into()).filter(writable);
+        let Some(register) = found else { return };
         let data = data & register.mask;
         if rules::is_forbidden(&self.registers, address, data) {
             self.violate(Misuse::ForbiddenValue, address);

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use super::error::Fault;
 use super::lines::Line;
 use super::number::number;
-use super::problem::{HeaderProblem, ValueProblem};
+use super::problem::Problem;
 use super::range::Range;
 use super::resemblance::resembled;
 use super::warning::{About, Warning};
@@ -128,7 +128,7 @@ impl Layout {
             return Ok(());
         };
         let all = self.needed().map(|column| column.name).collect::<Vec<_>>().join(",");
-        Err(Fault::column(line, missing.name, HeaderProblem::MissingColumn(all)))
+        Err(Fault::column(line, missing.name, Problem::MissingColumn(all)))
     }
 
     /// The place of the column of this name among those that the kind knows.
@@ -163,7 +163,7 @@ impl Layout {
                 continue;
             }
             numbers[place] = match number(field, range) {
-                Err(ValueProblem::Nan(_)) if name.starts_with(TRUTH) => f64::NAN,
+                Err(Problem::Nan(_)) if name.starts_with(TRUTH) => f64::NAN,
                 read => read.map_err(|problem| Fault::column(line.number, name, problem))?,
             };
         }
@@ -178,7 +178,7 @@ impl Layout {
             return Ok(());
         }
         let cut = !line.ended && found < columns;
-        let problem = if cut { ValueProblem::CutShort } else { ValueProblem::FieldCount };
+        let problem = if cut { Problem::CutShort } else { Problem::FieldCount };
         Err(Fault::line(line.number, problem(found, columns)))
     }
 }
@@ -186,7 +186,7 @@ impl Layout {
 /// Refuses a column without a name or with a name that another has.
 fn check_name(line: u64, index: usize, name: &str, is_new: bool) -> Result<(), Fault> {
     if name.is_empty() {
-        return Err(Fault::line(line, HeaderProblem::UnnamedColumn(index + 1)));
+        return Err(Fault::line(line, Problem::UnnamedColumn(index + 1)));
     }
-    if is_new { Ok(()) } else { Err(Fault::column(line, name, HeaderProblem::DuplicateColumn)) }
+    if is_new { Ok(()) } else { Err(Fault::column(line, name, Problem::DuplicateColumn)) }
 }

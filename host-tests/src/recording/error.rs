@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::problem::{Problem, ValueProblem};
+use super::problem::Problem;
 use super::quote::{printable, shortened};
 
 /// Why a recording was not read. Its text is one line, whatever the file holds:
@@ -23,9 +23,7 @@ impl ReadError {
     #[must_use]
     pub fn message(&self) -> String {
         match &self.problem {
-            Problem::Value(ValueProblem::OutOfRange(_, range)) => {
-                format!("{self}{}", range.mistaken())
-            }
+            Problem::OutOfRange(_, range) => format!("{self}{}", range.mistaken()),
             _ => self.to_string(),
         }
     }
@@ -57,22 +55,22 @@ pub(super) struct Fault {
 
 impl Fault {
     /// A problem at a place.
-    pub fn new(place: Place, problem: impl Into<Problem>) -> Self {
-        Self { place, problem: problem.into() }
+    pub fn new(place: Place, problem: Problem) -> Self {
+        Self { place, problem }
     }
 
     /// A problem of one line.
-    pub fn line(line: u64, problem: impl Into<Problem>) -> Self {
+    pub fn line(line: u64, problem: Problem) -> Self {
         Self::new(Place::Line(line), problem)
     }
 
     /// A problem of one column in one line.
-    pub fn column(line: u64, name: &str, problem: impl Into<Problem>) -> Self {
+    pub fn column(line: u64, name: &str, problem: Problem) -> Self {
         Self::new(Place::Column(line, name.to_owned()), problem)
     }
 
     /// A problem of one header key.
-    pub fn key(line: u64, name: &str, problem: impl Into<Problem>) -> Self {
+    pub fn key(line: u64, name: &str, problem: Problem) -> Self {
         Self::new(Place::Key(line, name.to_owned()), problem)
     }
 

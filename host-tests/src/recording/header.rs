@@ -7,7 +7,7 @@ use flate2::Crc;
 
 use super::error::Fault;
 use super::number::{number, pair};
-use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
+use super::problem::Problem;
 use super::range::Range;
 use super::resemblance::resembled;
 use super::warning::{self, About, Warning};
@@ -170,7 +170,7 @@ fn names() -> impl Iterator<Item = &'static str> + Clone {
 /// would lose, say, the noise of a recording without a word. Other comments there are skipped.
 pub(super) fn check_late(line: u64, comment: &str) -> Result<(), Fault> {
     match key_and_value(comment) {
-        Some((key, _)) if is_known(key) => Err(Fault::key(line, key, HeaderProblem::Late)),
+        Some((key, _)) if is_known(key) => Err(Fault::key(line, key, Problem::Late)),
         _ => Ok(()),
     }
 }
@@ -193,7 +193,7 @@ impl Collector {
             Some(before) => return Err(contradiction(line, before, value)),
             None if entries.len() < MAX_TRUTH_KEYS => {}
             None => {
-                let most = SourceProblem::TooMany(MAX_TRUTH_KEYS as u64, "truth_ keys");
+                let most = Problem::TooMany(MAX_TRUTH_KEYS as u64, "truth_ keys");
                 return Err(Fault::line(line, most));
             }
         }
@@ -230,10 +230,10 @@ impl Collector {
     pub fn header(&self) -> Result<Header, Fault> {
         let mut header = Header::default();
         for (name, range, slot) in &NUMBERS {
-            *slot(&mut header) = self.parse(name, |text| Ok(number(text, range)?))?;
+            *slot(&mut header) = self.parse(name, |text| number(text, range))?;
         }
         header.g_sensitivity_deg_h_g =
-            self.parse(PAIR, |text| pair(text, &SIGNED, HeaderProblem::NotAPair))?;
+            self.parse(PAIR, |text| pair(text, &SIGNED, Problem::NotAPair))?;
         header.sensor = self.parse("sensor", sensor)?;
         header.session = self.parse(SESSION, |text| self.unchanged(text))?;
         Ok(header)
@@ -244,7 +244,7 @@ impl Collector {
         let keys = self.known.iter().map(|entry| (entry.key.as_str(), entry.value.as_str()));
         let (sum, session) = text.split_once(' ').unwrap_or_default();
         let is_unchanged = sum == checksum(keys, session);
-        is_unchanged.then(|| session.to_owned()).ok_or_else(|| HeaderProblem::Changed.into())
+        is_unchanged.then(|| session.to_owned()).ok_or(Problem::Changed)
     }
 
     /// What only a check may know.
@@ -277,7 +277,7 @@ impl Collector {
 
 /// The key has another value further up.
 fn contradiction(line: u64, before: &Entry, value: &str) -> Fault {
-    let problem = HeaderProblem::Contradiction(value.to_owned(), before.value.clone(), before.line);
+    let problem = Problem::Contradiction(value.to_owned(), before.value.clone(), before.line);
     Fault::key(line, &before.key, problem)
 }
 
@@ -286,15 +286,15 @@ fn sensor(text: &str) -> Result<Sensor, Problem> {
     match text {
         "gyro" => Ok(Sensor::Gyro),
         "met" => Ok(Sensor::Met),
-        other => Err(HeaderProblem::UnknownSensor(other.to_owned()).into()),
+        other => Err(Problem::UnknownSensor(other.to_owned())),
     }
 }
 
 /// The true azimuth; a truth may be `nan`, which says that it is not known.
-fn azimuth(text: &str) -> Result<Option<f64>, ValueProblem> {
+fn azimuth(text: &str) -> Result<Option<f64>, Problem> {
     match number(text, &AZIMUTH) {
         Ok(value) => Ok(Some(value)),
-        Err(ValueProblem::Nan(_)) => Ok(None),
+        Err(Problem::Nan(_)) => Ok(None),
         Err(problem) => Err(problem),
     }
 }

@@ -8,7 +8,7 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use flate2::read::MultiGzDecoder;
 
 use super::error::{Fault, Place};
-use super::problem::SourceProblem;
+use super::problem::Problem;
 
 /// Longest line, in bytes without its line end. A row has some hundred.
 pub const MAX_LINE_BYTES: u64 = 64 * 1024;
@@ -85,11 +85,11 @@ impl<'r> Lines<'r> {
     /// Refuses what is longer than a recording can be.
     fn check_limits(&self, length: u64) -> Result<(), Fault> {
         let problem = if length > MAX_LINE_BYTES && !self.buffer.ends_with(b"\n") {
-            SourceProblem::LongLine(MAX_LINE_BYTES)
+            Problem::LongLine(MAX_LINE_BYTES)
         } else if self.number > MAX_LINES && length > 0 {
-            SourceProblem::TooMany(MAX_LINES, "lines")
+            Problem::TooMany(MAX_LINES, "lines")
         } else if self.bytes > MAX_BYTES {
-            SourceProblem::TooMany(MAX_BYTES, "bytes")
+            Problem::TooMany(MAX_BYTES, "bytes")
         } else {
             return Ok(());
         };
@@ -107,7 +107,7 @@ impl<'r> Lines<'r> {
     /// The buffer as a line.
     fn line(&self) -> Result<Line<'_>, Fault> {
         let text = std::str::from_utf8(self.content())
-            .map_err(|_| Fault::line(self.number, SourceProblem::NotUtf8))?;
+            .map_err(|_| Fault::line(self.number, Problem::NotUtf8))?;
         Ok(Line { number: self.number, text, ended: self.buffer.ends_with(b"\n") })
     }
 }
@@ -124,5 +124,5 @@ fn decompressed<'r>(mut reader: impl Read + 'r) -> io::Result<Box<dyn Read + 'r>
 
 /// An error of the system.
 pub(super) fn refused(place: Place, error: &io::Error) -> Fault {
-    Fault::new(place, SourceProblem::Io(error.kind(), error.to_string()))
+    Fault::new(place, Problem::Io(error.kind(), error.to_string()))
 }

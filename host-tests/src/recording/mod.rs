@@ -38,7 +38,7 @@ pub(crate) use given::rate;
 pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
-pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
+pub use problem::Problem;
 pub use range::{Range, Short};
 pub use rows::{
     DwellRow, GREATEST_BODY_RATE, GREATEST_SPIN_RATE, ImuRow, ImuSample, RotatingRow, SpinRow,
@@ -186,8 +186,7 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     if kind == Kind::Imu {
         stops::read(&entries, &mut header)?;
     }
-    let (line, names) =
-        names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
+    let (line, names) = names.ok_or_else(|| Fault::line(lines.number(), Problem::NoColumnNames))?;
     let mut warnings = entries.warnings();
     let (body, Truth { roll_rad, attitude, .. }) =
         body(kind, &mut lines, line, &names, &mut warnings)?;
@@ -251,17 +250,17 @@ fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
         }
         entries.add(line.number, line.text)?;
     }
-    if is_empty { Err(Fault::new(Place::Whole, SourceProblem::Empty)) } else { Ok((entries, None)) }
+    if is_empty { Err(Fault::new(Place::Whole, Problem::Empty)) } else { Ok((entries, None)) }
 }
 
 /// The kind that the header names.
 fn kind(entries: &Collector) -> Result<Kind, Fault> {
     let missing = || match entries.resembling("kind") {
-        Some((line, name)) => Fault::key(line, name, HeaderProblem::NoKind),
-        None => Fault::new(Place::Whole, HeaderProblem::NoKind),
+        Some((line, name)) => Fault::key(line, name, Problem::NoKind),
+        None => Fault::new(Place::Whole, Problem::NoKind),
     };
     let (line, text) = entries.get("kind").ok_or_else(missing)?;
-    let unknown = || Fault::key(line, "kind", HeaderProblem::UnknownKind(text.to_owned()));
+    let unknown = || Fault::key(line, "kind", Problem::UnknownKind(text.to_owned()));
     Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)
 }
 

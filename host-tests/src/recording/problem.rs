@@ -8,29 +8,9 @@ use super::KINDS;
 use super::quote::{printable, quoted};
 use super::range::{Range, Short};
 
-/// What is wrong with a recording.
+/// What is wrong with a recording. Times are in seconds, displacements in metres.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
-    /// The text cannot be had.
-    #[error(transparent)]
-    Source(#[from] SourceProblem),
-    /// The header or the column names do not say what is needed.
-    #[error(transparent)]
-    Header(#[from] HeaderProblem),
-    /// A row's shape or a value is wrong.
-    #[error(transparent)]
-    Value(#[from] ValueProblem),
-    /// The times contradict each other or the header.
-    #[error(transparent)]
-    Time(#[from] TimeProblem),
-    /// The stops or their displacements do not do.
-    #[error(transparent)]
-    Stops(#[from] StopProblem),
-}
-
-/// Why the text cannot be had.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum SourceProblem {
     /// The system refuses: its kind of error and its text.
     #[error("{}", system(*.0, .1))]
     Io(io::ErrorKind, String),
@@ -46,11 +26,6 @@ pub enum SourceProblem {
     /// There is more than this reader holds: the limit and what it counts.
     #[error("more than {0} {1}; split the recording")]
     TooMany(u64, &'static str),
-}
-
-/// Why the header or the line of column names does not do.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum HeaderProblem {
     /// No `# kind: …` line.
     #[error("the header does not name the kind; add a line `# kind: …` with {KINDS}")]
     NoKind,
@@ -86,11 +61,6 @@ pub enum HeaderProblem {
     /// The column at this position, from 1, has no name.
     #[error("column {0} has no name; name it or remove the comma")]
     UnnamedColumn(usize),
-}
-
-/// Why a row or a value does not do.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum ValueProblem {
     /// The row's number of fields, and the number of columns.
     #[error("{0} fields, but {1} columns are named")]
     FieldCount(usize, usize),
@@ -115,11 +85,6 @@ pub enum ValueProblem {
     /// There is no row.
     #[error("no rows follow the column names")]
     NoRows,
-}
-
-/// Why the times do not do. All in seconds.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum TimeProblem {
     /// The time here is not later than the one before.
     #[error("{} s does not come after {} s of line {before_line}", Short(*time_s), Short(*before_s))]
     NotLater {
@@ -146,20 +111,12 @@ pub enum TimeProblem {
     /// The header's rate, in Hz, and the rate that the times have.
     #[error("{} Hz contradicts the times, which have {} Hz; correct it", Rounded(*.0), Rounded(*.1))]
     Rate(f64, f64),
-}
-
-/// Why stops or their displacements do not do. Times in seconds, displacements in metres.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum StopProblem {
     /// Not two numbers with a minus.
     #[error("{} is not a stop; write from-to;from-to in seconds", quoted(.0))]
     NotAStop(String),
     /// Not two numbers with a comma.
     #[error("{} is not a displacement; write north,east;north,east in metres", quoted(.0))]
     NotADisplacement(String),
-    /// More than this many.
-    #[error("more than {0} of them; split the recording")]
-    TooMany(usize),
     /// A stop that does not end after it begins.
     #[error("the stop {}-{} does not end after it begins; correct it", Short(*.0), Short(*.1))]
     Backwards(f64, f64),
@@ -177,7 +134,7 @@ pub enum StopProblem {
     NotFromFirst([f64; 2]),
     /// There is not one displacement for each stop.
     #[error("{displacements} for {stops} stops; give one for each stop")]
-    Count {
+    StopCount {
         /// Displacements.
         displacements: usize,
         /// Stops.
@@ -188,7 +145,7 @@ pub enum StopProblem {
         "the stop {} lies outside of the recording, which goes from {} s to {} s; correct it",
         span(stop), Short(recording[0]), Short(recording[1])
     )]
-    Aiding {
+    StopOutside {
         /// The stop, from … to.
         stop: [f64; 2],
         /// Times of the first and the last row.

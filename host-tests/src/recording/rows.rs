@@ -7,7 +7,7 @@ use super::columns::{Column, Layout, Need, TRUE_ATTITUDE, Values};
 use super::error::Fault;
 use super::header::check_late;
 use super::lines::{Lines, MAX_ROWS};
-use super::problem::{SourceProblem, TimeProblem, ValueProblem};
+use super::problem::Problem;
 use super::range::Range;
 use super::warning::Warning;
 
@@ -361,7 +361,7 @@ pub(super) fn read<T: Row>(
             continue;
         }
         if rows.len() as u64 == MAX_ROWS {
-            return Err(Fault::line(line.number, SourceProblem::TooMany(MAX_ROWS, "rows")));
+            return Err(Fault::line(line.number, Problem::TooMany(MAX_ROWS, "rows")));
         }
         let values = layout.values(&line)?;
         let stamp = time.and_then(|place| values.optional(place)).map(|time| (values.line, time));
@@ -370,7 +370,7 @@ pub(super) fn read<T: Row>(
         rows.push(row(&values));
         layout.warn_of_truth(&line, warnings);
     }
-    if rows.is_empty() { Err(Fault::line(line, ValueProblem::NoRows)) } else { Ok(rows) }
+    if rows.is_empty() { Err(Fault::line(line, Problem::NoRows)) } else { Ok(rows) }
 }
 
 /// The line and time of a row, s.
@@ -380,7 +380,7 @@ type Stamp = Option<(u64, f64)>;
 fn check_later(column: &str, before: Stamp, stamp: Stamp) -> Result<(), Fault> {
     match (before, stamp) {
         (Some((before_line, before_s)), Some((line, time_s))) if time_s <= before_s => {
-            let problem = TimeProblem::NotLater { time_s, before_s, before_line };
+            let problem = Problem::NotLater { time_s, before_s, before_line };
             Err(Fault::column(line, column, problem))
         }
         _ => Ok(()),

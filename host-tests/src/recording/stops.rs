@@ -4,7 +4,7 @@
 use super::error::Fault;
 use super::header::{Collector, DISPLACEMENTS, Header, STOPS};
 use super::number::{number, pair};
-use super::problem::{Problem, StopProblem};
+use super::problem::Problem;
 use super::range::Range;
 use super::rows::{ImuRow, TIME};
 
@@ -24,10 +24,10 @@ pub(super) fn read(entries: &Collector, header: &mut Header) -> Result<(), Fault
 fn stops(text: &str) -> Result<Vec<[f64; 2]>, Problem> {
     let stops = list(text, stop)?;
     if let Some([from, to]) = stops.iter().find(|[from, to]| to <= from) {
-        return Err(StopProblem::Backwards(*from, *to).into());
+        return Err(Problem::Backwards(*from, *to));
     }
     match stops.windows(2).find(|pair| pair[1][0] < pair[0][1]) {
-        Some(pair) => Err(StopProblem::Overlap(pair[0], pair[1]).into()),
+        Some(pair) => Err(Problem::Overlap(pair[0], pair[1])),
         None => Ok(stops),
     }
 }
@@ -39,7 +39,7 @@ fn stops(text: &str) -> Result<Vec<[f64; 2]>, Problem> {
 pub fn displacements(text: &str) -> Result<Vec<[f64; 2]>, Problem> {
     let list = list(text, displacement)?;
     match list.first() {
-        Some(first) if *first != [0.0; 2] => Err(StopProblem::NotFromFirst(*first).into()),
+        Some(first) if *first != [0.0; 2] => Err(Problem::NotFromFirst(*first)),
         _ => Ok(list),
     }
 }
@@ -47,7 +47,7 @@ pub fn displacements(text: &str) -> Result<Vec<[f64; 2]>, Problem> {
 /// What stands between semicolons.
 fn list(text: &str, item: fn(&str) -> Result<[f64; 2], Problem>) -> Result<Vec<[f64; 2]>, Problem> {
     if text.split(';').nth(MOST).is_some() {
-        return Err(StopProblem::TooMany(MOST).into());
+        return Err(Problem::TooMany(MOST as u64, "of them"));
     }
     text.split(';').map(|text| item(text.trim_ascii())).collect()
 }
@@ -60,13 +60,13 @@ fn stop(text: &str) -> Result<[f64; 2], Problem> {
         .map(|(at, _)| (text[..at].trim_ascii(), text[at + 1..].trim_ascii()));
     let (from, to) = parted
         .find(|(from, to)| is_number(from) && is_number(to))
-        .ok_or_else(|| StopProblem::NotAStop(text.to_owned()))?;
+        .ok_or_else(|| Problem::NotAStop(text.to_owned()))?;
     Ok([number(from, &TIME)?, number(to, &TIME)?])
 }
 
 /// `north,east`.
 fn displacement(text: &str) -> Result<[f64; 2], Problem> {
-    pair(text, &DISPLACEMENT, StopProblem::NotADisplacement)
+    pair(text, &DISPLACEMENT, Problem::NotADisplacement)
 }
 
 /// Refuses displacements that are not one for each stop.
@@ -77,7 +77,7 @@ fn check_count(entries: &Collector, header: &Header) -> Result<(), Fault> {
     if stops.len() == displacements.len() {
         return Ok(());
     }
-    let problem = StopProblem::Count { displacements: displacements.len(), stops: stops.len() };
+    let problem = Problem::StopCount { displacements: displacements.len(), stops: stops.len() };
     Err(Fault::key(entries.line(DISPLACEMENTS), DISPLACEMENTS, problem))
 }
 
@@ -93,7 +93,7 @@ pub(super) fn check_inside(
     let (begin, end) = (first.time_s - 2.0 * period, last.time_s + period);
     let outside = stops.iter().find(|[from, to]| *from < begin || *to > end);
     outside.map_or(Ok(()), |stop| {
-        let problem = StopProblem::Aiding { stop: *stop, recording: [first.time_s, last.time_s] };
+        let problem = Problem::StopOutside { stop: *stop, recording: [first.time_s, last.time_s] };
         Err(Fault::key(entries.line(STOPS), STOPS, problem))
     })
 }

@@ -2,7 +2,7 @@
 
 use super::error::Fault;
 use super::period::Steps;
-use super::problem::TimeProblem;
+use super::problem::Problem;
 
 /// A gap is a step longer than this many sample periods.
 const GAP_PERIODS: f64 = 3.0;
@@ -18,7 +18,7 @@ pub(super) fn check<T>(rows: &[T], stamp: Stamp<T>, rate: Option<(u64, f64)>) ->
     let Some(steps) = Steps::of(rows, |row| stamp(row).1) else { return Ok(()) };
     let Some((line, rate_hz)) = rate else { return check_gaps(rows, stamp, steps.median_s) };
     if let Some(found_hz) = steps.refuted(rate_hz) {
-        return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
+        return Err(Fault::key(line, "rate_hz", Problem::Rate(rate_hz, found_hz)));
     }
     check_gaps(rows, stamp, 1.0 / rate_hz)
 }
@@ -30,7 +30,7 @@ fn check_gaps<T>(rows: &[T], stamp: Stamp<T>, period_s: f64) -> Result<(), Fault
         let [(before_line, before), (line, time)] = [0, 1].map(|i| stamp(&pair[i]));
         let gap_s = time - before;
         if gap_s > longest {
-            let problem = TimeProblem::Gap { gap_s, before_line, period_s };
+            let problem = Problem::Gap { gap_s, before_line, period_s };
             return Err(Fault::column(line, "t_s", problem));
         }
     }

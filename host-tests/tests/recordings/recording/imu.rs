@@ -1,8 +1,6 @@
 //! An `imu` recording is read as strictly as the others, and so are the stops of its header.
 
-use host::recording::{
-    Body, ImuRow, ImuSample, Problem, Recording, StopProblem, displacements, read_from,
-};
+use host::recording::{Body, ImuRow, ImuSample, Problem, Recording, displacements, read_from};
 use proptest::prelude::*;
 
 use super::{changed, message, parse, read};
@@ -267,7 +265,7 @@ fn the_true_attitude_is_parted_too_and_only_where_it_counts() {
 fn a_stop_problem_can_be_distinguished_from_others() {
     let text = changed(IMU, "0-0.04;0.06-0.10", "0.04-0");
     let error = read_from("walk.csv", text.as_bytes()).expect_err("it ends before it begins");
-    assert_eq!(error.problem, Problem::Stops(StopProblem::Backwards(0.04, 0.0)));
+    assert_eq!(error.problem, Problem::Backwards(0.04, 0.0));
 }
 
 proptest! {

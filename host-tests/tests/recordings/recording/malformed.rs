@@ -1,6 +1,6 @@
 //! What is wrong with a file, its header or its column names is said in these words.
 
-use host::recording::{HeaderProblem, Kind, Place, Problem, read_from};
+use host::recording::{Kind, Place, Problem, read_from};
 
 use super::{DWELLS, STAGE, changed, message, read};
 
@@ -54,7 +54,7 @@ fn the_message_for_an_unknown_kind_names_every_kind() {
 fn an_error_can_be_matched_as_well_as_printed() {
     let error = read_from("a", "# kind: spin\n".as_bytes()).expect_err("has no columns");
     assert_eq!(error.place, Place::Line(1));
-    assert_eq!(error.problem, Problem::Header(HeaderProblem::NoColumnNames));
+    assert_eq!(error.problem, Problem::NoColumnNames);
 }
 
 #[test]
