@@ -6,11 +6,16 @@
 //! cargo run --release --example etalon_exhaustive -- 10000
 //! ```
 
+#[allow(dead_code, reason = "the tests of the search use the rest of it")]
+#[path = "../tests/cores/etalon/oracle.rs"]
+mod oracle;
+
 use std::process::ExitCode;
 
 use hal_mock::noise::Generator;
-use host::oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
 use rayon::prelude::*;
+
+use oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
 
 /// Makes case number `index` of a family.
 type Family = fn(&mut Generator, usize) -> Case;

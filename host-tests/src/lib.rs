@@ -13,7 +13,6 @@ pub mod emulate;
 pub mod instrument;
 mod median;
 pub mod methods;
-pub mod oracle;
 pub mod outcome;
 pub mod output;
 pub mod planning;

@@ -1,11 +1,10 @@
 //! Holds the etalon table to the closed form and its search to a brute force.
 
+mod oracle;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use hal_mock::noise::Generator;
-use host::oracle::{
-    CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
-};
 use orientation::alignment::stepwise::etalon::series::CAPACITY;
 use orientation::alignment::stepwise::etalon::{
     Acceptance, Accepted, Criterion, Limit, Series, SeriesError, accepted, search,
@@ -15,6 +14,10 @@ use orientation::math::reference_table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
+
+use oracle::{
+    CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
+};
 
 const ARCSECOND: f64 = TAU / 1_296_000.0;
 const GRID: f64 = TAU / 129_600.0;
