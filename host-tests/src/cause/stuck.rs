@@ -2,6 +2,7 @@
 
 use orientation::earth::{EARTH_RATE, Latitude};
 
+use crate::median::extremes;
 use crate::recording::repeated::alone;
 use crate::recording::{Body, Header, RotatingRow, StageRow};
 
@@ -58,12 +59,9 @@ fn is_turned(run: &[StageRow], horizontal: f64) -> bool {
     }
     let mean =
         |rows: &[StageRow]| rows.iter().map(|row| row.rate_rad_s).sum::<f64>() / rows.len() as f64;
-    let parts: Vec<&[StageRow]> = run.chunks_exact(size).take(PARTS).collect();
-    let means: Vec<f64> = parts.iter().map(|part| mean(part)).collect();
     let differences = run.windows(2).map(|pair| (pair[1].rate_rad_s - pair[0].rate_rad_s).powi(2));
     let noise = (0.5 * differences.sum::<f64>() / (run.len() - 1) as f64 / size as f64).sqrt();
-    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [least, greatest] = extremes(run.chunks_exact(size).take(PARTS).map(mean));
     greatest - least > (DIFFERENT * noise).max(EARTHLY * horizontal)
 }
 

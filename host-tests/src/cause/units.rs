@@ -2,6 +2,7 @@
 
 use orientation::units::DEGREE;
 
+use crate::median::{extremes, median};
 use crate::methods::asked::Question;
 use crate::methods::stepwise;
 use crate::recording::{Body, DwellRow, RotatingRow, StageRow};
@@ -167,8 +168,8 @@ fn turns_over(body: &Body) -> f64 {
         Body::Rotating(rows) => rows.iter().map(|row| row.stage_rad).collect(),
         _ => Vec::new(),
     };
-    let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
-    angles.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+    let [least, greatest] = extremes(angles);
+    greatest - least
 }
 
 /// The recording in the units that are tried; none of one that is too long to be copied.
@@ -211,7 +212,7 @@ fn all<R>(rows: &[R], converted: impl Fn(&R) -> R) -> Option<Vec<R>> {
 /// The unit of the forces, where it is none of m/s²: their size is gravity's most of the time.
 pub fn force_unit(body: &Body) -> Option<Unit> {
     let size = |force: [f64; 3]| force.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let mut sizes: Vec<f64> = match body {
+    let sizes: Vec<f64> = match body {
         Body::Stage(rows) => rows.iter().map(|row| size(row.force_m_s2)).collect(),
         Body::Dwells(rows) => rows.iter().filter_map(|row| row.force_m_s2.map(size)).collect(),
         Body::Imu(rows) => rows.iter().map(|row| size(row.sample.force_m_s2)).collect(),
@@ -220,7 +221,7 @@ pub fn force_unit(body: &Body) -> Option<Unit> {
         }
         Body::Rotating(_) | Body::Spin(_) => Vec::new(),
     };
-    let usual = crate::median::median(&mut sizes);
+    let usual = median(sizes);
     FORCES.into_iter().find(|Unit(factor, _)| (usual * factor / GRAVITY - 1.0).abs() < NEAR)
 }
 

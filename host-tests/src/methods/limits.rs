@@ -4,6 +4,8 @@
 use orientation::signal::Sample;
 use orientation::units::AngularRate;
 
+use crate::median::extremes;
+
 /// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
 /// coarsely written, its top is the longest by three.
 const LONGER: usize = 4;
@@ -15,8 +17,7 @@ pub(crate) fn limits(values: &(impl Iterator<Item = f64> + Clone), few: f64) -> 
         let stands = values.clone().filter(|value| *value == limit).count();
         stands as f64 > few * values.clone().count() as f64 && is_cut(values.clone(), limit)
     };
-    let least = values.clone().fold(f64::INFINITY, f64::min);
-    let greatest = values.clone().fold(f64::NEG_INFINITY, f64::max);
+    let [least, greatest] = extremes(values.clone());
     [
         if is_limit(least) { least } else { f64::NEG_INFINITY },
         if is_limit(greatest) { greatest } else { f64::INFINITY },

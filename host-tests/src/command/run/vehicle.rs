@@ -73,7 +73,8 @@ impl Simulated for VehicleOptions {
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;
-        let mut seen = Replay::begun(SIAP, beside, 0.0, vec![GIVEN.to_owned()]);
+        let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
+        let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
         let mut wanted = self.common.wanted();
         let (run, wall) = Terminal::watching("stops", |watch| {
             Trial::of(&scenario).fault(fault).record((&mut seen, &mut wanted)).watch(watch).run()

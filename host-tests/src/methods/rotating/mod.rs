@@ -138,7 +138,7 @@ fn rounded(site: &mut Site, is_flat: bool, rows: &[RotatingRow], rate_hz: f64) -
 /// 1σ of a rate's noise, rad/s, from the differences of neighbours: their median is 0.674 of their σ.
 fn of_neighbours(rows: &[RotatingRow]) -> f64 {
     let differences = rows.windows(2).map(|pair| (pair[1].rate_rad_s - pair[0].rate_rad_s).abs());
-    median(&mut differences.collect::<Vec<f64>>()) / 0.674 * FRAC_1_SQRT_2
+    median(differences) / 0.674 * FRAC_1_SQRT_2
 }
 
 /// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.

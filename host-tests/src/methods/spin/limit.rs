@@ -55,9 +55,9 @@ impl Turns {
         let fits: Vec<(usize, [f64; 2])> = bounds
             .filter_map(|(from, to)| Some((from, of_turn(samples.get(from..to)?)?)))
             .collect();
-        let mut variances: Vec<f64> = fits.iter().map(|(_, [_, variance])| *variance).collect();
+        let variance = crate::median::median(fits.iter().map(|(_, [_, variance])| *variance));
         let lifts = fits.iter().map(|(from, [lift, _])| (*from, *lift)).collect();
-        Self { lifts, force_noise: crate::median::median(&mut variances).sqrt() }
+        Self { lifts, force_noise: variance.sqrt() }
     }
 
     /// The lift at a sample, m/s²: that of its turn.
@@ -136,9 +136,9 @@ pub(super) fn white(rates: &[f64]) -> f64 {
     let stuck = stuck(rates);
     let windows = rates.windows(WEIGHTS.len()).enumerate();
     let lives = windows.filter(|(from, _)| !stuck.contains(from));
-    let mut squares: Vec<f64> = lives.map(|(_, window)| difference(window).powi(2)).collect();
+    let squares = lives.map(|(_, window)| difference(window).powi(2));
     // Of a normal variable's square the median is 0.455 of the mean.
-    (crate::median::median(&mut squares) / 0.455 / SIXTH).sqrt()
+    (crate::median::median(squares) / 0.455 / SIXTH).sqrt()
 }
 
 /// How many times as long as any other a stretch of one rate is over which a gyro is stuck.

@@ -91,8 +91,7 @@ pub fn check_gyro(
 pub(crate) fn assumption(session: &Session) -> Option<String> {
     session.conclusion().filter(|conclusion| conclusion.verdict.is_ok())?;
     let angle = |pair: &[Dwell]| (pair[1].stage - pair[0].stage).signed_rad().abs();
-    let mut steps: Vec<f64> = session.dwells().windows(2).map(angle).collect();
-    let step = median(&mut steps).to_degrees();
+    let step = median(session.dwells().windows(2).map(angle)).to_degrees();
     Some(format!(
         "gyro and stage of the same moment: by each dwell that one is late north is {step:.1}° off"
     ))
@@ -105,10 +104,10 @@ pub(crate) fn assumption(session: &Session) -> Option<String> {
 pub fn check_stage(session: &Session) -> Result<(), Late> {
     let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
     let Some(conclusion) = found else { return Ok(()) };
-    let mut lengths: Vec<f64> = session.dwells().iter().map(|d| d.end().0 - d.start().0).collect();
-    let ends = [(End::First, lengths.first()), (End::Last, lengths.last())];
-    let ends = ends.map(|(end, length)| (end, length.copied().unwrap_or_default()));
-    let usual = median(&mut lengths);
+    let lengths = || session.dwells().iter().map(|dwell| dwell.end().0 - dwell.start().0);
+    let ends = [(End::First, lengths().next()), (End::Last, lengths().next_back())];
+    let ends = ends.map(|(end, length)| (end, length.unwrap_or_default()));
+    let usual = median(lengths());
     let whys = [conclusion.disturbances.first(), conclusion.disturbances.last()];
     let longer = ends.into_iter().zip(whys).filter(|((_, length), _)| *length > LONGER * usual);
     for ((end, length), why) in longer {

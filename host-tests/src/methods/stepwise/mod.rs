@@ -237,10 +237,8 @@ const SHORTEST_SECONDS: f64 = 0.1;
 
 /// How far the encoder may move in a standstill, rad: most samples of a recording stand still.
 fn still(rows: &[StageRow]) -> f64 {
-    let mut changes: Vec<f64> =
-        rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs()).collect();
-    let usual = median(&mut changes);
-    (STILL_MEDIANS * usual).clamp(STILL.0, STILL_NOISY)
+    let changes = rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs());
+    (STILL_MEDIANS * median(changes)).clamp(STILL.0, STILL_NOISY)
 }
 
 /// The angle from one reading to the next, rad; a wrap of the encoder is none.

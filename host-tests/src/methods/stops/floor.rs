@@ -112,8 +112,7 @@ impl Spectrum {
         let count = values.len() as f64;
         let rise = |frequency: f64| 4.0 * (PI * frequency * self.period_s).sin().powi(2);
         let mean = values.iter().map(|(frequency, _)| rise(*frequency)).sum::<f64>() / count;
-        let mut levels: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
-        let median = crate::median::median(&mut levels);
+        let median = crate::median::median(values.iter().map(|(_, value)| *value));
         // The median of an exponential distribution is ln 2 of its mean, known to 1/(ln 2 √n) of it.
         let sigma = (BANDWIDTH / count).sqrt() / LN_2;
         Group { rise: mean / self.period_s, level: median / LN_2, sigma }

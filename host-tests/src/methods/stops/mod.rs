@@ -30,7 +30,7 @@ use orientation::units::{
 use self::noise::White;
 use self::way::{Leg, Slip};
 use crate::assumptions;
-use crate::median::median;
+use crate::median::{extremes, median};
 use crate::methods::asked::{Asked, Question};
 use crate::methods::error::ReplayError;
 use crate::methods::is_answered;
@@ -64,17 +64,6 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// A replay whose session has got no sample yet.
-    #[must_use]
-    pub fn begun(
-        method: &'static str,
-        session: Session,
-        zero_s: f64,
-        assumed: Vec<String>,
-    ) -> Self {
-        Self { method, session, zero_s, criteria: Vec::new(), assumed }
-    }
-
     /// Feeds a sample to the session, and keeps the stop criteria where they are new.
     fn push(&mut self, sample: &InertialSample) {
         self.session.feed(Input::Sample(sample));
@@ -140,8 +129,9 @@ fn again(
     of.asked.change(&mut setting.site);
     procedure.displacements = displacements(of)?;
     let period_s = procedure.sample_seconds;
-    let session = Session::new(setting, procedure)?;
-    let replay = Replay::begun(SIAP, session, 0.0, vec![GIVEN.to_owned()]);
+    let (session, criteria) = (Session::new(setting, procedure)?, Vec::new());
+    let assumed = vec![GIVEN.to_owned()];
+    let replay = Replay { method: SIAP, session, zero_s: 0.0, criteria, assumed };
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     Ok(replay.fed(samples::given(rows, period_s.0), end))
 }
@@ -208,7 +198,8 @@ fn follow(of: &Question, rows: &[ImuRow]) -> Result<Replay, ReplayError> {
     site.scale_sigma = site.scale_sigma.hypot(rate_error);
     let setting = setting(header, site, rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, Seconds(period_s)) };
-    let replay = Replay::begun(method, Session::new(setting, procedure)?, zero_s, assumed);
+    let (session, criteria) = (Session::new(setting, procedure)?, Vec::new());
+    let replay = Replay { method, session, zero_s, criteria, assumed };
     let replay = replay.fed(samples::samples(rows, period_s), Input::End);
     check_displacements(&replay.session)?;
     Ok(replay)
@@ -252,13 +243,10 @@ fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> &'static str {
         *turned += row.sample.rates_rad_s[2] * period_s;
         Some(*turned)
     });
-    let mut turned: Vec<f64> = turned.collect();
+    let turned: Vec<f64> = turned.collect();
     let size = ((MEDIAN_S / period_s) as usize).max(1);
-    let headings = turned.chunks_mut(size).map(median);
-    let (least, most) = headings
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heading| {
-            (least.min(heading), most.max(heading))
-        });
+    let headings = turned.chunks(size).map(|headings| median(headings.iter().copied()));
+    let [least, most] = extremes(headings);
     if most - least > DROVE { SIAP } else { STATIC }
 }
 

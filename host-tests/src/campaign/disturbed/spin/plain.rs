@@ -56,8 +56,7 @@ fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
             from = to;
         }
     }
-    let mut variances: Vec<f64> = looks.iter().map(|look| look.variance).collect();
-    let variance = crate::median::median(&mut variances);
+    let variance = crate::median::median(looks.iter().map(|look| look.variance));
     looks.into_iter().map(|look| Look { variance, ..look }).collect()
 }
 

@@ -113,9 +113,7 @@ const FAR: f64 = 20.0;
 fn near(part: &Part<'_>) -> Vec<Complex<f64>> {
     let turns = phasors(part.rows, &|row| row.rate_rad_s).into_iter();
     let mut all: Vec<_> = turns.map(|(_, at)| at * degrees_per_hour(1.0)).collect();
-    let median_of = |of: &dyn Fn(Complex<f64>) -> f64| {
-        median(&mut all.iter().map(|at| of(*at)).collect::<Vec<_>>())
-    };
+    let median_of = |of: &dyn Fn(Complex<f64>) -> f64| median(all.iter().map(|at| of(*at)));
     let middle = Complex::new(median_of(&|at| at.re), median_of(&|at| at.im));
     let usual = median_of(&|at| (at - middle).norm());
     all.retain(|at| (at - middle).norm() <= FAR * usual);
