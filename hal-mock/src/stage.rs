@@ -62,7 +62,7 @@ pub struct Stage<'a> {
     /// Positions in order.
     stops: &'a [Stop],
     /// Samples per second, Hz.
-    rate_hz: f64,
+    pub(crate) rate_hz: f64,
     /// Index of the stop stood at or rotated into.
     current: usize,
     /// Angle from which it turns to that stop, rad.

@@ -180,8 +180,6 @@ impl<'a> Motor<'a> {
 /// Sample k is taken at k/`rate_hz`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turntable<'a> {
-    /// Samples per second, Hz.
-    rate_hz: f64,
     /// The motor's way.
     motor: Motor<'a>,
     /// Unevenness of the gear.
@@ -205,10 +203,8 @@ impl<'a> Turntable<'a> {
     #[must_use]
     pub fn new(configuration: &TurntableConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
-        let rate_hz = c.instruments.rate_hz;
         Self {
-            rate_hz,
-            motor: Motor::new(c.segments, c.start_rad, rate_hz),
+            motor: Motor::new(c.segments, c.start_rad, c.instruments.rate_hz),
             unevenness: c.unevenness,
             instruments: Instruments::new(&c.instruments, seed),
             lever: Lever::new(c.accelerometer_lever_m),
@@ -227,7 +223,7 @@ impl<'a> Turntable<'a> {
         befalls: impl FnOnce(f64, f64) -> (Option<BaseMotion>, f64),
     ) -> Option<TurningSample> {
         let stage = self.unevenness.stage(self.motor.state(self.next)?);
-        let time_s = self.next as f64 / self.rate_hz;
+        let time_s = self.next as f64 / self.motor.rate_hz;
         self.next += 1;
         let (motion, drift_rad_s) = befalls(time_s, stage.angle_rad);
         match motion {
@@ -251,7 +247,7 @@ impl<'a> Turntable<'a> {
         }
         let slipped_rad = self.slip.by_rad + self.crept_rad;
         if rate_rad_s != 0.0 {
-            self.crept_rad += self.slip.rad_per_s / self.rate_hz;
+            self.crept_rad += self.slip.rad_per_s / self.motor.rate_hz;
         }
         slipped_rad
     }

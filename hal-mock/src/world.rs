@@ -19,8 +19,6 @@ pub struct WorldConfiguration<'a> {
 /// taken at k/`rate_hz`; the same configuration and seed give the same samples, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World<'a> {
-    /// Samples per second, Hz.
-    rate_hz: f64,
     /// The stage on its way.
     stage: Stage<'a>,
     /// What disturbs the sensors, in any order.
@@ -35,10 +33,8 @@ impl<'a> World<'a> {
     /// The world of a configuration; the seed fixes everything random in it.
     #[must_use]
     pub fn new(configuration: WorldConfiguration<'a>, seed: u64) -> Self {
-        let rate_hz = configuration.instruments.rate_hz;
         Self {
-            rate_hz,
-            stage: Stage::new(configuration.stops, rate_hz),
+            stage: Stage::new(configuration.stops, configuration.instruments.rate_hz),
             disturbances: configuration.disturbances,
             instruments: Instruments::new(&configuration.instruments, seed),
             next: 0,
@@ -57,7 +53,7 @@ impl Iterator for World<'_> {
     #[inline]
     fn next(&mut self) -> Option<Sample> {
         let stage = self.stage.state(self.next)?;
-        let time_s = self.next as f64 / self.rate_hz;
+        let time_s = self.next as f64 / self.stage.rate_hz;
         self.next += 1;
         self.instruments.turn(stage);
         let effect = disturbance::total(self.disturbances, time_s);

@@ -37,7 +37,7 @@ pub(super) struct Body<'a> {
     /// Where the body is, as of the latest time.
     pub(super) flight: Flight,
     /// The latest time, s.
-    time_s: f64,
+    pub(super) time_s: f64,
 }
 
 /// Places and weights by which Gauss and Legendre integrate over [−½, ½], exact to the fifth power: over

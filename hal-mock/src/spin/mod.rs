@@ -139,10 +139,6 @@ pub struct SpinWorld<'a> {
     body: Body<'a>,
     /// What is fixed to it.
     sensors: Sensors<'a>,
-    /// What goes wrong with the sensors.
-    faults: &'a [SensorFault],
-    /// Time of the latest sample, s.
-    time_s: f64,
     /// Numbers of the samples that are still to come.
     samples: core::ops::Range<u64>,
 }
@@ -155,21 +151,18 @@ impl<'a> SpinWorld<'a> {
             rate_hz: configuration.rate_hz,
             body: Body::new(configuration),
             sensors: Sensors::new(configuration, seed),
-            faults: configuration.faults,
-            time_s: 0.0,
             samples: 0..first_sample(configuration.seconds, configuration.rate_hz),
         }
     }
 
     /// The truth behind the latest sample.
     pub fn truth(&self) -> SpinTruth {
-        SpinTruth::of(&self.body, &self.sensors, self.time_s)
+        SpinTruth::of(&self.body, &self.sensors, self.body.time_s)
     }
 
     /// The next sample, whether it is missing or not; none after the end.
     fn sample(&mut self) -> Option<SpinSample> {
         let time_s = self.samples.next()? as f64 / self.rate_hz;
-        self.time_s = time_s;
         self.body.advance(time_s);
         let shown = self.sensors.sample(time_s, &self.body.felt(time_s));
         Some(SpinSample { time_s, rate_rad_s: shown.rate_rad_s, force_m_s2: shown.force_m_s2 })
@@ -181,7 +174,7 @@ impl Iterator for SpinWorld<'_> {
 
     /// The next sample that is not missing.
     fn next(&mut self) -> Option<SpinSample> {
-        let faults = self.faults;
+        let faults = self.sensors.0.faults;
         core::iter::from_fn(|| self.sample())
             .find(|sample| !SensorFault::lost(faults, sample.time_s))
     }

@@ -148,8 +148,6 @@ pub struct Vehicle<'a> {
     motion: Motion<'a>,
     /// What is fixed to it.
     sensors: Sensors<'a>,
-    /// What goes wrong with the sensors.
-    faults: &'a [SensorFault],
     /// Integrals at the end of the latest sample.
     before: Integrals,
     /// Numbers of the samples that are still to come.
@@ -164,7 +162,6 @@ impl<'a> Vehicle<'a> {
             rate_hz: configuration.rate_hz,
             motion: configuration.motion(),
             sensors: Sensors::new(configuration, configuration.rate_hz, seed),
-            faults: configuration.faults,
             before: Integrals::default(),
             samples: 1..=first_sample(configuration.seconds(), configuration.rate_hz),
         }
@@ -192,7 +189,7 @@ impl Iterator for Vehicle<'_> {
 
     /// The next sample that is not missing.
     fn next(&mut self) -> Option<VehicleSample> {
-        let faults = self.faults;
+        let faults = self.sensors.strapdown.faults;
         core::iter::from_fn(|| self.sample())
             .find(|sample| !SensorFault::lost(faults, sample.time_s))
     }

@@ -12,7 +12,7 @@ use crate::vehicle::motion::Motion;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensors<'a> {
     /// The gyros and accelerometers, with full scales and faults.
-    strapdown: Strapdown<'a, 3>,
+    pub(super) strapdown: Strapdown<'a, 3>,
     /// The warm-up.
     temperature: TemperatureConfiguration,
     /// Gravity at the start, the g of the g-sensitivity.
