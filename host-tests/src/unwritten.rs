@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Why nothing could be written there.
-pub(crate) fn words(path: &Path, error: &io::Error) -> String {
+fn words(path: &Path, error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => {
             let folder = path.parent().unwrap_or(path);

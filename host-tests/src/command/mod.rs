@@ -131,8 +131,7 @@ impl Answer {
     /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
     fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
-        let write = |path: &Path| page().write(path).map_err(|error| error.to_string());
-        self.with_written(path.map_or(Ok(()), write))
+        self.with_written(path.map_or(Ok(()), |path| page().write(path)))
     }
 }
 

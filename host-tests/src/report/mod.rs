@@ -10,10 +10,10 @@ mod html;
 mod span;
 mod text;
 
+use std::io;
 use std::path::Path;
 
 use crate::unwritten;
-use thiserror::Error;
 
 pub use self::columns::Columns;
 
@@ -253,16 +253,6 @@ impl From<Table> for Part {
     }
 }
 
-/// Why a report was not written.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{file}: the report cannot be written: {reason}")]
-pub struct ReportError {
-    /// The file.
-    pub file: String,
-    /// What is wrong with it.
-    pub reason: String,
-}
-
 impl Report {
     /// A report of these parts, without labelled lines of which there are none.
     pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
@@ -285,10 +275,10 @@ impl Report {
     /// Writes the report to a file, over one that is there.
     ///
     /// # Errors
-    /// [`ReportError`] names the file and what the system says.
-    pub fn write(&self, path: &Path) -> Result<(), ReportError> {
-        let refused = |reason| ReportError { file: path.display().to_string(), reason };
-        let text = html::document(self).map_err(|error| refused(error.to_string()))?;
-        std::fs::write(path, text).map_err(|error| refused(unwritten::words(path, &error)))
+    /// The file and what the system says.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let page = html::document(self).map_err(io::Error::other);
+        page.and_then(|page| std::fs::write(path, page))
+            .map_err(|error| unwritten::message("the report", path, &error))
     }
 }

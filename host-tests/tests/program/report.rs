@@ -260,6 +260,6 @@ fn a_path_that_cannot_be_written_is_named() {
     ] {
         let error = Report::default().write(path).expect_err("it cannot be written");
         let expected = format!("{}: the report cannot be written: {reason}", path.display());
-        assert_eq!(error.to_string(), expected);
+        assert_eq!(error, expected);
     }
 }
