@@ -1,6 +1,5 @@
 //! Noise and σ that are not those of the dwells, and keys that are missing: what they would show is unknown, not zero.
 
-use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::Refusal as Stepwise;
 use orientation::units::DEGREE;
@@ -52,8 +51,7 @@ pub fn noise(of: &Question) -> Option<String> {
     let stated = header.gyro_n_deg_sqrt_h.filter(|_| matches!(body, Body::Stage(_)))?;
     let silent = Header { gyro_n_deg_sqrt_h: None, ..header.clone() };
     let replay = stepwise::replay(&silent, body, asked, |_| {}).ok()?;
-    let conclusion = replay.session.conclusion()?;
-    let Ok(Azimuth { .. }) = conclusion.verdict else { return None };
+    let conclusion = replay.session.conclusion().filter(|found| found.verdict.is_ok())?;
     let shown = conclusion.angle_random_walk.0 / DEGREE * 60.0;
     let is_other = shown > OTHER_NOISE * stated || stated > OTHER_NOISE * shown;
     is_other.then(|| {

@@ -2,6 +2,7 @@
 
 use orientation::units::DEGREE;
 
+use crate::campaign::statistics::rms;
 use crate::median::{extremes, median};
 use crate::methods::asked::Question;
 use crate::methods::stepwise;
@@ -257,8 +258,7 @@ pub fn of_sigma(of: &Question) -> Option<String> {
         let body = Body::Dwells(rows.iter().map(row).collect());
         let replay = stepwise::replay(header, &body, asked, |_| {}).ok()?;
         let conclusion = replay.session.conclusion().filter(|found| found.verdict.is_ok())?;
-        let squares = conclusion.residuals.iter().map(|residual| residual.normalised.powi(2));
-        let scatter = (squares.sum::<f64>() / conclusion.residuals.len().max(1) as f64).sqrt();
+        let scatter = rms(conclusion.residuals.iter().map(|residual| residual.normalised));
         (scatter > LEAST_SCATTER).then_some(())
     };
     let unit = RATES.into_iter().find(|unit| passes(unit).is_some())?;

@@ -10,6 +10,7 @@ use orientation::navigation::Progress;
 use serde::Serialize;
 
 use super::keys::Keys;
+use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
@@ -160,15 +161,9 @@ fn realigned<R>(run: &Run<R>) -> usize {
     run.events.iter().filter(|(_, event)| fused(event)).count()
 }
 
+/// RMS of the errors of pitch and roll on the way, rad.
 fn level_rms(kept: &Kept) -> [f64; 2] {
-    let (mut squares, mut count) = ([0.0; 2], 0.0_f64);
-    for (point, _) in kept.with_azimuth() {
-        for (sum, error) in squares.iter_mut().zip(point.level_error()) {
-            *sum += error * error;
-        }
-        count += 1.0;
-    }
-    squares.map(|sum| (sum / count.max(1.0)).sqrt())
+    [0, 1].map(|axis: usize| rms(kept.with_azimuth().map(|(point, _)| point.level_error()[axis])))
 }
 
 /// The figures: the azimuth's error against its σ, and pitch and roll.

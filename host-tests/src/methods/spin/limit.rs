@@ -11,6 +11,9 @@ use orientation::math::regression::{Column, Regression};
 use orientation::signal::SpinSample;
 use orientation::units::{SpinForce, TURN};
 
+use crate::median::median;
+use crate::recording::repeated::longest;
+
 /// Columns of the fit of one turn: 1, u, cos, sin, u cos, u sin. A parabola would be mistaken for a turn.
 const COLUMNS: usize = 6;
 /// Fewest samples of a turn from which noise is estimated.
@@ -55,7 +58,7 @@ impl Turns {
         let fits: Vec<(usize, [f64; 2])> = bounds
             .filter_map(|(from, to)| Some((from, of_turn(samples.get(from..to)?)?)))
             .collect();
-        let variance = crate::median::median(fits.iter().map(|(_, [_, variance])| *variance));
+        let variance = median(fits.iter().map(|(_, [_, variance])| *variance));
         let lifts = fits.iter().map(|(from, [lift, _])| (*from, *lift)).collect();
         Self { lifts, force_noise: variance.sqrt() }
     }
@@ -138,7 +141,7 @@ pub(super) fn white(rates: &[f64]) -> f64 {
     let lives = windows.filter(|(from, _)| !stuck.contains(from));
     let squares = lives.map(|(_, window)| difference(window).powi(2));
     // Of a normal variable's square the median is 0.455 of the mean.
-    (crate::median::median(squares) / 0.455 / SIXTH).sqrt()
+    (median(squares) / 0.455 / SIXTH).sqrt()
 }
 
 /// How many times as long as any other a stretch of one rate is over which a gyro is stuck.
@@ -147,18 +150,9 @@ const LONGER: usize = 10;
 /// Where a gyro is stuck; nowhere of one that is always so, or often for about as long: it is coarse.
 #[must_use]
 pub(super) fn stuck(rates: &[f64]) -> Range<usize> {
-    let (mut from, mut longest, mut second) = (0, 0..0, 0);
-    let ends = (1..=rates.len()).filter(|to| rates.get(*to) != rates.get(to - 1));
-    for to in ends {
-        if to - from > longest.len() {
-            second = longest.len();
-            longest = from..to;
-        } else {
-            second = second.max(to - from);
-        }
-        from = to;
-    }
-    if second > 0 && longest.len() > LONGER * second { longest } else { 0..0 }
+    let [first, second] = longest(rates, |rate| *rate);
+    let is_alone = !second.is_empty() && first.len() > LONGER * second.len();
+    if is_alone { first } else { 0..0 }
 }
 
 /// The bound of the roll at each sample, rad (1σ), from that sample and all before: with such a noise, with

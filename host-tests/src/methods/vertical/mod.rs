@@ -83,7 +83,9 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let mut assumed = Vec::new();
     let latitude = latitude(header, asked, &mut assumed);
     let mut keeper = Keeper::new(&setting(header, latitude, period_s, &mut assumed));
-    let mut replay = Replay::begun(keeper.report(), assumed);
+    let (last, moments, states) = (keeper.report(), Vec::new(), Vec::new());
+    let mut replay =
+        Replay { moments, last, states, turned: 0.0, seconds: 0.0, assumed, refusal: None };
     for (sample, row) in samples::samples(&rows, period_s).zip(rows.iter()) {
         keeper.push(&sample);
         replay.push(row.time_s, &keeper.report(), period_s);
@@ -151,12 +153,6 @@ fn known_noise(header: &Header, assumed: GyroNoise) -> GyroNoise {
 }
 
 impl Replay {
-    /// A replay of no sample yet.
-    fn begun(first: Report, assumed: Vec<String>) -> Self {
-        let (moments, states) = (Vec::new(), Vec::new());
-        Self { moments, last: first, states, turned: 0.0, seconds: 0.0, assumed, refusal: None }
-    }
-
     /// Adds what the keeper says after a sample.
     fn push(&mut self, time_s: f64, report: &Report, period_s: f64) {
         let seconds = self.moments.last().map_or(period_s, |before| time_s - before.time_s);
