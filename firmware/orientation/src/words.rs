@@ -12,10 +12,45 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded<const PLACES: usize>(pub f64);
 
+// In integers, since a status line of a board has such numbers: core's own formatting of floats takes
+// 10 KB of flash.
 impl<const PLACES: usize> fmt::Display for Rounded<PLACES> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.PLACES$}", self.0)
+        if self.0.is_nan() {
+            return f.write_str("NaN");
+        }
+        if self.0.is_sign_negative() {
+            f.write_str("-")?;
+        }
+        if self.0.is_infinite() {
+            return f.write_str("inf");
+        }
+        match decimals(self.0.abs(), PLACES as u32) {
+            (whole, _) if PLACES == 0 => write!(f, "{whole}"),
+            (whole, part) => write!(f, "{whole}.{part:0PLACES$}"),
+        }
     }
+}
+
+/// Digits before and after the point of a number from zero to 2¹²⁸, with up to 19 decimal places:
+/// rounded to nearest, and to even from the middle.
+fn decimals(number: f64, places: u32) -> (u128, u64) {
+    let unit = 10_u64.pow(places);
+    let whole = libm::floor(number);
+    // The rest, below one and exact, is mantissa · 2^−shift.
+    let bits = (number - whole).to_bits();
+    let mantissa = bits & ((1 << 52) - 1) | (1 << 52);
+    let shift = 1075 - (bits >> 52) as u32;
+    let whole = whole as u128;
+    if shift >= u128::BITS {
+        return (whole, 0);
+    }
+    let scaled = u128::from(mantissa) * u128::from(unit);
+    let (part, half) = ((scaled >> shift) as u64, 1 << (shift - 1));
+    let left = scaled & (2 * half - 1);
+    let is_odd = (if places == 0 { whole as u64 } else { part }) & 1 == 1;
+    let part = part + u64::from(left > half || (left == half && is_odd));
+    if part == unit { (whole + 1, 0) } else { (whole, part) }
 }
 
 #[cfg(feature = "defmt")]

@@ -6,6 +6,7 @@ use orientation::units::{
     Angle, AngularRate, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, Instant, SpecificForce, TURN,
     Temperature,
 };
+use orientation::words::Rounded;
 use proptest::prelude::*;
 
 #[test]
@@ -53,6 +54,47 @@ fn conversions_round_to_nearest_and_saturate() {
     assert_eq!(Temperature::from_celsius(23.979).0, 23_979);
     assert_eq!(Instant::from_seconds(-1.0).0, 0);
     assert_eq!(Angle::from_rad(TURN * (1.0 - 1e-12)).0, 0);
+}
+
+/// A number with so many decimal places in the words of a message, and as the standard library writes it.
+fn written<const PLACES: usize>(number: f64) -> [String; 2] {
+    [Rounded::<PLACES>(number).to_string(), format!("{number:.PLACES$}")]
+}
+
+/// Holds every number of decimal places that messages have to the standard library.
+fn is_written_as_by_the_standard_library(number: f64) {
+    let places =
+        [written::<0>, written::<1>, written::<2>, written::<3>, written::<4>, written::<6>];
+    for [ours, standard] in places.map(|written| written(number)) {
+        assert_eq!(ours, standard);
+    }
+}
+
+#[test]
+fn numbers_in_messages_are_rounded_to_even_from_the_middle_and_exactly_elsewhere() {
+    let edges = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, -0.04, 0.999_999_9, 1e38];
+    edges.into_iter().for_each(is_written_as_by_the_standard_library);
+    for step in 0..4096 {
+        // Dyadic fractions, of which some are in the middle; then decimal ones, of which none is.
+        is_written_as_by_the_standard_library(f64::from(step) / 64.0);
+        is_written_as_by_the_standard_library(f64::from(step) * 0.05);
+        is_written_as_by_the_standard_library(f64::from(step) * 5e-7);
+    }
+}
+
+proptest! {
+    #[test]
+    fn numbers_in_messages_are_those_of_the_standard_library(bits in any::<u64>()) {
+        // All of a float's bits but for exponents over 2¹²⁸.
+        let number = f64::from_bits(bits);
+        let number = if number.abs() < 3.4e38 { number } else { 1.0 / number };
+        is_written_as_by_the_standard_library(number);
+    }
+
+    #[test]
+    fn numbers_of_daily_size_are_those_of_the_standard_library(number in -1e6..1e6) {
+        is_written_as_by_the_standard_library(number);
+    }
 }
 
 proptest! {
