@@ -57,16 +57,16 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                         Timer::after(REST.min(shared.period.get() * (QUEUE as u32 / 3))).await;
                     }
                 }
-                match select(shared.orders.wait(), channels.samples.receive()).await {
+                match &select(shared.orders.wait(), channels.samples.receive()).await {
                     Either::First(order) => {
-                        shared.obey(&order);
-                        give(&mut aligner, Input::Ordered(order))
+                        shared.obey(order);
+                        give(&mut aligner, Input::Ordered(*order))
                     }
                     Either::Second(sample) => {
                         if aligner.state == State::Aligning {
-                            recorder.record(&sample).await;
+                            recorder.record(sample).await;
                         }
-                        aligner.sample(&sample, listener)
+                        aligner.sample(sample, listener)
                     }
                 }
             }

@@ -40,16 +40,22 @@ pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
 /// Sends one status line. If the link does not take the line in time, the line is discarded and
 /// counted; the first loss is also reported as an event.
 pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
-    let mut line = String::<LENGTH>::new();
-    let faults = shared.health.get().faults();
-    let status = shared.status.get();
-    let status = if shared.homed.signaled() { status } else { status.before_homing() };
-    // The capacity holds the longest line; a longer one would be cut.
-    let _ = write!(line, "{status}, faults {faults}\r\n");
+    let line = line(shared);
     if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {
         if shared.health.get().unsent == 0 {
             shared.report(Event::LinkSilent);
         }
         shared.count(|health| health.unsent = health.unsent.saturating_add(1));
     }
+}
+
+/// The present status line.
+fn line(shared: &Shared<'_>) -> String<LENGTH> {
+    let mut line = String::new();
+    let faults = shared.health.get().faults();
+    let status = shared.status.get();
+    let status = if shared.homed.signaled() { status } else { status.before_homing() };
+    // The capacity holds the longest line; a longer one would be cut.
+    let _ = write!(line, "{status}, faults {faults}\r\n");
+    line
 }

@@ -39,17 +39,18 @@ use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::Setting;
 use orientation::alignment::stops;
 use orientation::alignment::stops::session::Procedure as Driving;
+use orientation::attitude as keep;
 use orientation::earth::Latitude;
 use orientation::navigation::{Policy, Realignment};
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
+use orientation::roll::{self as spin, Flight};
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{
     AngularRate, DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared,
     Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds, TURN,
 };
-use orientation::{attitude as keep, roll as spin};
 
 /// Platform that carries the gyro.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -439,20 +440,16 @@ const LAUNCH: [f64; 2] = [0.0, 0.0];
 pub const SPIN_CONVERTER: Converter =
     Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
 
-/// Properties of the gyro about x, for the roll.
-pub fn spin_setting() -> spin::Setting {
-    spin::Setting {
+/// The flight to be tracked, by the properties of the gyro about x.
+pub fn flight() -> Flight {
+    let setting = spin::Setting {
         sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
         angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
         scale_sigma: SPIN_SCALE_SIGMA,
         bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),
         method: spin::Method::PhaseLocked,
-    }
-}
-
-/// Course and pitch at the start.
-pub fn launch() -> [Radians; 2] {
-    LAUNCH.map(Radians::from_degrees)
+    };
+    Flight::new(&setting, LAUNCH.map(Radians::from_degrees), None)
 }
 
 /// Configuration of the sensors; `None` where a scale factor is zero.

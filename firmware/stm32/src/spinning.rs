@@ -27,8 +27,7 @@ pub async fn follow(spawner: Spawner, wires: SpinWires) {
     };
     let SpinWires { converters, outlets: Outlets { mut link, flash: _ } } = wires;
     let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
-    let (setting, launch) = (configuration::spin_setting(), configuration::launch());
-    let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
+    let flight = FLIGHT.init_with(configuration::flight);
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(converters), sensors, channels)));
     let mut body = Strapdown::new(&channels.shared);
     let outside = (&mut link, &mut NoRecorder);
