@@ -54,6 +54,7 @@ pub mod status;
 pub mod watch;
 
 pub mod configuration;
+pub mod platform;
 pub mod run;
 pub mod shared;
 pub mod spin;

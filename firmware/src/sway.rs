@@ -49,21 +49,13 @@ pub trait CompensatesSway {
         true
     }
 
-    /// Reads the sensors where their readings are subtracted; called with every sample, before its
-    /// angle is read.
+    /// Reads the sensors at one of two moments of every sample: before its angle is read if their
+    /// readings are subtracted, after it if they are only kept, since on a platform that turns the
+    /// angle must not be late.
     ///
     /// # Errors
     /// The sensors are given up while their readings are being subtracted.
-    async fn follow(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
-        Ok(())
-    }
-
-    /// Reads the sensors where their readings are only kept; called with every sample, after its
-    /// angle is read, which on a platform that turns must not be late.
-    ///
-    /// # Errors
-    /// None that ends an alignment.
-    async fn observe(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+    async fn follow(&mut self, _is_angle_read: bool, _: &Shared<'_>) -> Result<(), Refusal> {
         Ok(())
     }
 
@@ -291,12 +283,8 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
         !self.compensates || self.is_lost || self.sway.decision != Decision::Watching
     }
 
-    async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if self.compensates { self.take(shared).await } else { Ok(()) }
-    }
-
-    async fn observe(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if self.compensates { Ok(()) } else { self.take(shared).await }
+    async fn follow(&mut self, is_angle_read: bool, shared: &Shared<'_>) -> Result<(), Refusal> {
+        if self.compensates == is_angle_read { Ok(()) } else { self.take(shared).await }
     }
 
     fn reading(&mut self) -> Option<(Instant, BaseReading)> {

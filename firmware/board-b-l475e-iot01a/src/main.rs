@@ -51,8 +51,9 @@ mod pins;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::Instant;
+use firmware::platform::Platform;
 use panic_probe as _;
-use stm32::{CARRIER, Carrier, spinning, stepwise, stops, turning, watchdog};
+use stm32::{PLATFORM, spinning, stepwise, stops, turning, watchdog};
 
 use pins::Board;
 
@@ -68,20 +69,20 @@ async fn main(spawner: Spawner) {
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
     let board = defmt::unwrap!(Board::new(peripherals));
     // Tasks that are never spawned are not in the image.
-    match CARRIER {
-        Carrier::Stage => {
+    match PLATFORM {
+        Platform::Stage => {
             spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(spawner, board.axis())));
         }
-        Carrier::TwoFrames => {
+        Platform::TwoFrame => {
             spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(spawner, board.two_frames())));
         }
-        Carrier::Turntable => {
+        Platform::Turntable => {
             spawner.spawn(defmt::unwrap!(turning::align(spawner, board.axis())));
         }
-        Carrier::Vehicle => {
+        Platform::Vehicle => {
             spawner.spawn(defmt::unwrap!(stops::align(spawner, board.vehicle())));
         }
-        Carrier::SpinningBody => {
+        Platform::Spin => {
             spawner.spawn(defmt::unwrap!(spinning::follow(spawner, board.spinning_body())));
         }
     }

@@ -3,13 +3,12 @@
 //! vertical.
 
 use embassy_time::Instant;
+use orientation::navigation::Motion;
+use orientation::navigation::progress::VerticalGyro;
 use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
 use super::increments;
-use orientation::navigation::Motion;
-use orientation::navigation::progress::VerticalGyro;
-
 use crate::ports::BaseReading;
 use crate::shared::Shared;
 

@@ -90,12 +90,15 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
         self.pointing.renew();
     }
 
-    /// Passes a coarse reading on to attitude and heading.
-    fn pass_on(&mut self) {
+    /// Reads the coarse sensors, where this is their moment, and passes a reading on to attitude and
+    /// heading.
+    async fn follow(&mut self, is_angle_read: bool) -> Result<(), Refusal> {
         let shared = self.outlet.shared();
+        self.compensation.follow(is_angle_read, shared).await?;
         if let Some((at, reading)) = self.compensation.reading() {
             self.coarse.pass_on(at, &reading, shared);
         }
+        Ok(())
     }
 }
 
@@ -126,17 +129,15 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             Ok(rate) => rate,
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None)?,
         };
-        self.compensation.follow(shared).await?;
         self.coarse.turn(time, rate);
-        self.pass_on();
+        self.follow(false).await?;
         if !self.compensation.is_decided() {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         let shown = self.pointing.read().await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
-        self.compensation.observe(shared).await?;
-        self.pass_on();
+        self.follow(true).await?;
         if P::FORCE_ON_BASE {
             self.coarse.feel(force.map(|reading| reading.force));
         }
@@ -166,9 +167,8 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
-            self.compensation.follow(shared).await?;
-            self.compensation.observe(shared).await?;
-            self.pass_on();
+            self.follow(false).await?;
+            self.follow(true).await?;
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.is_idle() {
                 shared.fail(reason);

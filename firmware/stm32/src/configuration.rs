@@ -23,6 +23,7 @@ use firmware::calibration::Harmonics;
 use firmware::configuration::{
     Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
+use firmware::platform::Platform;
 use firmware::ports::Frames;
 use firmware::spin::configuration::{Channel, SpinConfiguration};
 use orientation::alignment::period::CONVERTER_TOLERANCE;
@@ -52,46 +53,24 @@ use orientation::units::{
     Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds, TURN,
 };
 
-/// Platform that carries the gyro.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Carrier {
-    /// A stage that stands at positions.
-    Stage,
-    /// A mount with two frames about horizontal axes, on which the gyro stands at four headings.
-    TwoFrames,
-    /// A platform on a slip ring that rotates continuously.
-    Turntable,
-    /// A vehicle that drives from stop to stop, with three gyros.
-    Vehicle,
-    /// A body in fast rotation about its longitudinal axis, with three gyros and two
-    /// accelerometers.
-    SpinningBody,
-}
-
-/// The carriers, and which of them a feature of this crate has chosen.
-const CARRIERS: [(Carrier, bool); 5] = [
-    (Carrier::Stage, cfg!(feature = "stage")),
-    (Carrier::TwoFrames, cfg!(feature = "two-frame")),
-    (Carrier::Turntable, cfg!(feature = "turntable")),
-    (Carrier::Vehicle, cfg!(feature = "vehicle")),
-    (Carrier::SpinningBody, cfg!(feature = "spin")),
-];
-
-/// Platform of this instrument. Code for the others is not in the image.
-pub const CARRIER: Carrier = {
-    let (mut chosen, mut place) = (None, 0);
-    while place < CARRIERS.len() {
-        match (CARRIERS[place], chosen) {
-            ((carrier, true), None) => chosen = Some(carrier),
-            ((_, true), Some(_)) => panic!("more than one carrier is chosen"),
-            ((_, false), _) => {}
-        }
-        place += 1;
+/// Platform of this instrument, by the feature that is chosen of this crate. Code for the others is not
+/// in the image.
+pub const PLATFORM: Platform = match [
+    cfg!(feature = "stage"),
+    cfg!(feature = "two-frame"),
+    cfg!(feature = "turntable"),
+    cfg!(feature = "vehicle"),
+    cfg!(feature = "spin"),
+] {
+    [true, false, false, false, false] => Platform::Stage,
+    [false, true, false, false, false] => Platform::TwoFrame,
+    [false, false, true, false, false] => Platform::Turntable,
+    [false, false, false, true, false] => Platform::Vehicle,
+    [false, false, false, false, true] => Platform::Spin,
+    [false, false, false, false, false] => {
+        panic!("choose a carrier, as in `cargo board --features stage`")
     }
-    match chosen {
-        Some(carrier) => carrier,
-        None => panic!("choose a carrier, as in `cargo board --features stage`"),
-    }
+    _ => panic!("more than one carrier is chosen"),
 };
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond which no azimuth is determined.
@@ -184,9 +163,7 @@ pub fn setting() -> Setting {
 pub fn procedure() -> Procedure {
     let schedule = Schedule::closed_circle(POSITIONS, DWELL);
     let plan_seconds = schedule.seconds();
-    let procedure = Procedure::new(schedule, period());
-    let mut procedure =
-        Procedure { settle_seconds: RINGING, period_tolerance: CONVERTER_TOLERANCE, ..procedure };
+    let mut procedure = dwelling(schedule);
     if let Some(seconds) = SURVEY {
         let orders = &Order::COMPARED;
         procedure = procedure.after(Survey {
@@ -200,6 +177,15 @@ pub fn procedure() -> Procedure {
     match ACCURACY {
         Some((_, seconds)) => procedure.until_accurate(Seconds(seconds)),
         None => procedure,
+    }
+}
+
+/// Procedure of a session that dwells at the positions of a schedule.
+fn dwelling(schedule: Schedule) -> Procedure {
+    Procedure {
+        settle_seconds: RINGING,
+        period_tolerance: CONVERTER_TOLERANCE,
+        ..Procedure::new(schedule, period())
     }
 }
 
@@ -296,13 +282,7 @@ pub fn mount_procedure() -> Procedure {
     let pass =
         PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds: DWELL });
     let positions = core::iter::repeat_n(pass, PASSES).flatten().collect();
-    let procedure = Procedure::new(Schedule::Listed(positions), period());
-    Procedure {
-        arrival: ARRIVAL,
-        settle_seconds: RINGING,
-        period_tolerance: CONVERTER_TOLERANCE,
-        ..procedure
-    }
+    Procedure { arrival: ARRIVAL, ..dwelling(Schedule::Listed(positions)) }
 }
 
 /// Geometry, encoders and drives of the two frames.

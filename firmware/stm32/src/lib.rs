@@ -2,7 +2,7 @@
 //! configured with, and its chips on their wires.
 //!
 //! A board's crate connects its pins to [`wiring`], starts its clocks, and spawns the program of
-//! [`CARRIER`], which is chosen when the image is built.
+//! [`PLATFORM`], which is chosen when the image is built.
 #![no_std]
 
 mod configuration;
@@ -16,7 +16,7 @@ pub mod stepwise;
 pub mod stops;
 pub mod turning;
 
-pub use configuration::{CARRIER, Carrier};
+pub use configuration::PLATFORM;
 
 use embassy_time::Timer;
 use firmware::acquire::{acquire, on_stage};
@@ -28,12 +28,13 @@ use firmware::shared::Shared;
 use firmware::sway::SwayCompensation;
 use orientation::alignment::setup::SetupError;
 use orientation::attitude::{Keeper, Setting};
+use orientation::signal::Sample;
 use static_cell::StaticCell;
 
 use wiring::{BaseBus, Link};
 
-/// The channels between the instrument's parts on a platform.
-type Channels = firmware::shared::Channels<'static>;
+/// The channels between the instrument's parts.
+type Channels<S = Sample> = firmware::shared::Channels<'static, S>;
 
 /// The IMU on the base, which measures its motion.
 type OnBase = SwayCompensation<'static, ports::Base>;

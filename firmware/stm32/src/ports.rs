@@ -10,10 +10,11 @@ use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, BaseImu};
+use firmware::platform::Platform;
 use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 
 use crate::configuration;
-use crate::configuration::{CARRIER, Carrier};
+use crate::configuration::PLATFORM;
 use crate::wiring::{BaseBus, ConverterWires, Device, Ready, StageDevice};
 
 /// Converter with its data-ready line.
@@ -104,10 +105,10 @@ pub fn motor(wires: StageDevice) -> AxisMotor {
 /// Output rate of the accelerometer. Its filter delays a force by two and a half outputs, during
 /// which a platform must not turn far, nor a vehicle sway; a vehicle's is read 400 times a second.
 fn force() -> OutputRate {
-    match CARRIER {
-        Carrier::Stage | Carrier::TwoFrames | Carrier::SpinningBody => OutputRate::default(),
-        Carrier::Turntable => OutputRate::Hz1000,
-        Carrier::Vehicle => OutputRate::Hz500,
+    match PLATFORM {
+        Platform::Stage | Platform::TwoFrame | Platform::Spin => OutputRate::default(),
+        Platform::Turntable => OutputRate::Hz1000,
+        Platform::Vehicle => OutputRate::Hz500,
     }
 }
 
@@ -115,5 +116,5 @@ fn force() -> OutputRate {
 fn drive() -> Motor {
     let usual = Motor::default();
     let none = Switches { left: None, right: None };
-    Motor { switches: if CARRIER == Carrier::Turntable { none } else { usual.switches }, ..usual }
+    Motor { switches: if PLATFORM == Platform::Turntable { none } else { usual.switches }, ..usual }
 }

@@ -7,7 +7,6 @@ use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
-use firmware::shared::Channels;
 use firmware::spin::configuration::SpinConfiguration;
 use orientation::roll::Flight;
 use orientation::signal::SpinSample;
@@ -15,18 +14,18 @@ use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::{Outlets, SpinWires};
-use crate::{configuration, ports, report_conclusion};
+use crate::{Channels, configuration, ports, report_conclusion};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(spawner: Spawner, wires: SpinWires) {
-    static CHANNELS: StaticCell<Channels<'static, SpinSample>> = StaticCell::new();
+    static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
     let Some(sensors) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };
     let SpinWires { converters, outlets: Outlets { mut link, flash: _ } } = wires;
-    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     let flight = FLIGHT.init_with(configuration::flight);
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(converters), sensors, channels)));
     let mut body = Strapdown::new(&channels.shared);
@@ -40,7 +39,7 @@ pub async fn follow(spawner: Spawner, wires: SpinWires) {
 async fn acquisition(
     mut sensors: Spinning,
     configuration: SpinConfiguration,
-    channels: &'static Channels<'static, SpinSample>,
+    channels: &'static Channels<SpinSample>,
 ) {
     acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, channels)).await;
 }

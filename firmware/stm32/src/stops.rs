@@ -8,7 +8,6 @@ use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
 use firmware::ports::NoRecorder;
 use firmware::run::navigate;
-use firmware::shared::Channels;
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
@@ -16,16 +15,16 @@ use static_cell::StaticCell;
 use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::{Outlets, VehicleWires};
-use crate::{begun, configuration, keeper, ports, report_conclusion};
+use crate::{Channels, begun, configuration, keeper, ports, report_conclusion};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wires: VehicleWires) {
-    static CHANNELS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
+    static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let Some(session) = session() else { return };
     let VehicleWires { converters, accelerometer, outlets } = wires;
     let Outlets { mut link, flash } = outlets;
-    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     let triad = ports::triad(converters, accelerometer);
     spawner.spawn(defmt::unwrap!(acquisition(triad, channels)));
     let policy = configuration::policy();
@@ -39,7 +38,7 @@ pub async fn align(spawner: Spawner, wires: VehicleWires) {
 
 /// Task that acquires samples for ever.
 #[embassy_executor::task]
-async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, InertialSample>) {
+async fn acquisition(mut triad: Triad, channels: &'static Channels<InertialSample>) {
     let configuration = configuration::vehicle();
     acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
 }

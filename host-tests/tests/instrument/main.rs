@@ -5,6 +5,7 @@
 mod support;
 
 mod carriers;
+mod catalogue;
 mod instrument;
 mod instrument_parts;
 mod keeping_instrument;

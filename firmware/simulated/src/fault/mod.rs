@@ -18,53 +18,16 @@ use orientation::device::Device;
 pub use self::chip::{Chip, ChipFault, InjectionPoint};
 pub use self::injection::Injection;
 pub use self::port::{FaultyRecorder, PortWrapper};
-
-/// What carries the sensors of a simulated board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Platform {
-    /// A stage that turns the gyro about one axis and stops at positions.
-    Stage,
-    /// A mount of two frames.
-    TwoFrame,
-    /// A stage that turns all the time, on a slip ring.
-    Turntable,
-    /// A vehicle that drives from stop to stop.
-    Vehicle,
-    /// A body in fast rotation.
-    Spin,
-}
+pub use firmware::platform::Platform;
 
 use Platform::{Spin, Stage, Turntable, TwoFrame, Vehicle};
 
-impl Platform {
-    /// The platforms of the catalogue.
-    pub const ALL: [Self; 5] = [Stage, TwoFrame, Turntable, Vehicle, Spin];
-
-    /// The name of the platform on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Stage => "stage",
-            TwoFrame => "two-frame",
-            Turntable => "turntable",
-            Vehicle => "vehicle",
-            Spin => "spin",
-        }
-    }
-
-    /// The motors of the platform, each with its encoder.
-    const fn axes(self) -> &'static [Device] {
-        match self {
-            Stage | Turntable => &[Device::Stage],
-            TwoFrame => &[Device::OuterFrame, Device::InnerFrame],
-            Vehicle | Spin => &[],
-        }
-    }
-}
-
-impl fmt::Display for Platform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+/// The motors of a platform, each with its encoder.
+const fn axes(platform: Platform) -> &'static [Device] {
+    match platform {
+        Stage | Turntable => &[Device::Stage],
+        TwoFrame => &[Device::OuterFrame, Device::InnerFrame],
+        Vehicle | Spin => &[],
     }
 }
 
@@ -199,8 +162,7 @@ impl Fault {
     pub fn all(platform: Platform) -> impl Iterator<Item = Self> {
         let chips = Chip::all(platform)
             .flat_map(|chip| chip.faults().map(move |fault| Self::Chip(chip.device, fault)));
-        let axes = platform
-            .axes()
+        let axes = axes(platform)
             .iter()
             .flat_map(|axis| AXIS_FAULTS.iter().map(|(fault, ..)| Self::Axis(*axis, *fault)));
         let others =
