@@ -40,11 +40,11 @@ impl Scenario {
         Some(keep::Setting { latitude, gyros, force_bias_sigma, sample_seconds })
     }
 
-    /// How the instrument on a base goes on; none where the latitude is none.
+    /// How the instrument on a base goes on.
     #[must_use]
-    pub fn policy(&self) -> Option<Policy> {
-        let [_, _, down] = self.keeper()?.gyros;
-        Some(self.hold.policy(Realignment::AtStops(Seconds(STAND_SECONDS)), down, self.precise()))
+    pub fn policy(&self) -> Policy {
+        let ([_, _, down], _) = base::gyros(self);
+        self.hold.policy(Realignment::AtStops(Seconds(STAND_SECONDS)), down, self.precise())
     }
 
     /// How long an alignment on a stage takes, s.

@@ -21,6 +21,7 @@ use orientation::units::{DEGREE, Radians, RadiansPerSecond, Seconds, TURN};
 use super::fault::{Fault, Injection};
 use super::scenario::{GyroClass, Scenario};
 use super::{Chips, board_around};
+use firmware::storage::Today;
 
 /// The motor driver of a platform that turns without end: it has no switches.
 const MOTOR: Switches = Switches { left: None, right: None };
@@ -71,6 +72,8 @@ pub struct TurntableScenario {
     pub quickest_deg: [f64; 2],
     /// Axis misalignments that were stored, for each speed.
     pub stored: [Option<AxisMisalignment>; SPEEDS],
+    /// The day, where the board keeps misalignments: without one it takes none from its store, and keeps none in it.
+    pub today: Option<Today>,
 }
 
 impl Default for TurntableScenario {
@@ -87,6 +90,7 @@ impl Default for TurntableScenario {
             unevenness: [0.002, 0.0005],
             quickest_deg: [35.0, 110.0],
             stored: [None; SPEEDS],
+            today: None,
         }
     }
 }

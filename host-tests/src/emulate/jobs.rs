@@ -12,7 +12,8 @@ use simulated::turntable::TurntableScenario;
 use simulated::vehicle::{BRIEF, Day, VehicleScenario};
 
 use super::outcome::Outcome;
-use crate::instrument::{Carrier, Run, Trial, VehiclePlan, VehicleRun};
+use crate::instrument::{Carrier, Run, Trial, VehiclePlan};
+use crate::methods::stepwise::Replay;
 
 /// A run of the image.
 #[derive(Debug)]
@@ -62,7 +63,7 @@ pub static TWO_FRAME: Job = Job {
     title: "from dwell to dwell at 2400 Hz, on a two-frame mount",
     sample_budget: Some(budget::FRAMES_SAMPLE_INSTRUCTIONS),
     is_idle: false,
-    on_host: |seed| outcome(Trial::of(&FramesScenario::brief(seed)), |run| of_stage(&run.run)),
+    on_host: |seed| outcome(Trial::of(&FramesScenario::brief(seed)), of_stage),
 };
 
 /// A run on a turntable.
@@ -73,7 +74,7 @@ pub static TURNTABLE: Job = Job {
     is_idle: true,
     on_host: |seed| {
         outcome(Trial::of(&TurntableScenario::brief(seed)), |run| {
-            Outcome::of::<Sample>(&run.run.replay, &[])
+            Outcome::of::<Sample>(&run.replay, &[])
         })
     },
 };
@@ -88,7 +89,7 @@ pub static VEHICLE: Job = Job {
         let scenario = VehicleScenario::brief(seed);
         let day = Day { legs: BRIEF.into_iter().collect(), ..scenario.day(None) };
         let plan = VehiclePlan { day, chips: Injection::NONE };
-        outcome(Trial::of(&scenario).plan(plan), |VehicleRun { run, .. }| {
+        outcome(Trial::of(&scenario).plan(plan), |run| {
             let kept: Vec<_> = run.reports.iter().map(|report| report as &dyn Trace).collect();
             Outcome::of::<InertialSample>(&run.replay, &kept)
         })
@@ -103,7 +104,7 @@ pub static SPIN: Job = Job {
     is_idle: false,
     on_host: |seed| {
         outcome(Trial::of(&SpinScenario::brief(seed)), |run| {
-            Outcome::of::<SpinSample>(&run.run.replay, &[])
+            Outcome::of::<SpinSample>(&run.replay, &[])
         })
     },
 };
@@ -117,6 +118,6 @@ fn outcome<C: Carrier>(trial: Trial<'_, C>, of: fn(&C::Run) -> Outcome) -> Resul
     trial.run().map(|run| of(&run)).map_err(|error| format!("the host's run: {error}"))
 }
 
-fn of_stage(run: &Run) -> Outcome {
+fn of_stage<T>(run: &Run<Replay, T>) -> Outcome {
     Outcome::of::<Sample>(&run.replay.session, &[])
 }

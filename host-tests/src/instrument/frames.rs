@@ -6,7 +6,6 @@ use firmware::acquire::{acquire, on_mount};
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::ports::{Frames, NoBase, Recorder, Store};
-use firmware::run::navigate;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::stepwise::session::Session;
@@ -16,20 +15,15 @@ use simulated::Wires;
 use simulated::fault::{Fault, FaultyRecorder};
 use simulated::mount::FramesScenario;
 
-use super::harness::{self, Harness};
+use super::harness::Harness;
 use super::kept::KeptPlan;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::methods::stepwise::{POSITIONS, Replay, given_with};
 
-/// A finished run on a two-frame mount.
-#[derive(Clone, Debug)]
-pub struct FramesRun {
-    /// What every simulated board brings back.
-    pub run: Run,
-    /// The true direction of the gyro's axis at the end: forward, right, down in the base.
-    pub axis: [f64; 3],
-}
+/// A finished run on a two-frame mount, with the true direction of the gyro's axis at the end: forward,
+/// right, down in the base.
+pub type FramesRun = Run<Replay, [f64; 3]>;
 
 impl Carrier for FramesScenario {
     type Sample = Sample;
@@ -45,12 +39,9 @@ impl Carrier for FramesScenario {
         if !scenario.base.has_base_imu {
             return align_on(NoBase, None, trial);
         }
-        plan.on_base(
-            &scenario.base,
-            scenario.alignment_seconds(),
-            |found: &mut FramesRun| &mut found.run,
-            |imu, journey| align_on(SwayCompensation::new(imu), journey, trial),
-        )
+        plan.on_base(&scenario.base, scenario.alignment_seconds(), |imu, journey| {
+            align_on(SwayCompensation::new(imu), journey, trial)
+        })
     }
 }
 
@@ -73,25 +64,19 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let configuration = scenario.base.configuration();
     let wires = Wires(&board, injection);
     let mut sensors = wires.frame_sensors(scenario).with_base(base);
-    let mut recorder = FaultyRecorder::new(recorder, injection.hang);
     let mut actuator = wires.actuators();
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
-    let policy = scenario.base.policy().ok_or_else(outside)?;
-    let ended = harness::run(
+    let policy = scenario.base.policy();
+    let ended = harness.run(
         acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
-        navigate(
-            &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
-            &mut session,
-            Some(Keeping { keeper: &mut keeper, policy, store }),
-            &scenario.base.hold.aiding(),
-            (&mut harness.wire(), &mut recorder),
-            &channels,
-        ),
+        &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
+        (&mut session, Some(Keeping { keeper: &mut keeper, policy, store })),
+        (&scenario.base.hold.aiding(), FaultyRecorder::new(recorder, injection.hang)),
+        &channels,
     )?;
     let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
     let replay = Replay { method: POSITIONS, session, assumed: given_with(scenario.base.half) };
-    let run = harness.clear(ended, &board, replay);
-    Ok(FramesRun { run, axis })
+    Ok(harness.clear(ended, &board, replay, axis))
 }

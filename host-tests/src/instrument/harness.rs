@@ -6,12 +6,16 @@ use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::ports::{BaseReading, Observer};
+use firmware::keep::Keep;
+use firmware::mechanism::Mechanism;
+use firmware::ports::{Aiding, BaseReading, Observer, Recorder};
+use firmware::run::navigate;
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
-use orientation::alignment::Progress;
+use orientation::alignment::{Method, Progress};
 use orientation::attitude::Report;
 use orientation::navigation::{self, aligner};
+use orientation::signal::Timed;
 
 use super::kept::Kept;
 use super::{Run, RunError};
@@ -57,7 +61,7 @@ impl Observer for Harness<'_> {
 }
 
 /// The wire of the link: it takes everything.
-pub(super) struct Wire<'d>(&'d RefCell<Vec<u8>>);
+struct Wire<'d>(&'d RefCell<Vec<u8>>);
 
 impl ErrorType for Wire<'_> {
     type Error = core::convert::Infallible;
@@ -86,22 +90,40 @@ impl<'w> Harness<'w> {
         Channels::new(self)
     }
 
-    /// The wire of its link.
-    pub(super) fn wire(&self) -> Wire<'_> {
-        Wire(&self.bytes)
+    /// Runs an instrument to its end in virtual time on this thread, beside the acquisition of its
+    /// samples; what it ends with, and when.
+    ///
+    /// # Errors
+    /// Everything waits and nothing would come.
+    pub(super) fn run<S: Timed>(
+        &self,
+        acquisition: impl Future<Output = ()>,
+        mechanism: &mut impl Mechanism,
+        (method, keeping): (&mut dyn Method<S>, impl Keep),
+        (aiding, mut recorder): (&dyn Aiding, impl Recorder<S>),
+        channels: &Channels<'_, S>,
+    ) -> Result<(Health, Instant), RunError> {
+        let instrument = async {
+            let outside = (&mut Wire(&self.bytes), &mut recorder);
+            let health = navigate(mechanism, method, keeping, aiding, outside, channels).await;
+            (health, Instant::now())
+        };
+        virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
     }
 
-    /// What is left of a run on a board.
-    pub(super) fn clear<R, P, C: Chips<P>>(
+    /// What is left of a run on a board, with what was true.
+    pub(super) fn clear<R, T, P, C: Chips<P>>(
         self,
         (health, at): (Health, Instant),
         board: &RefCell<Board<'_, P, C>>,
         replay: R,
-    ) -> Run<R> {
+        truth: T,
+    ) -> Run<R, T> {
         let mut board = board.borrow_mut();
         let violations = board.recorded();
         Run {
             replay,
+            truth,
             events: self.events.into_inner(),
             reports: self.reports.into_inner(),
             base: self.base.into_inner(),
@@ -114,16 +136,4 @@ impl<'w> Harness<'w> {
                 .collect(),
         }
     }
-}
-
-/// Runs a board's two futures in virtual time on this thread; what the instrument ends with, and when.
-///
-/// # Errors
-/// Everything waits and nothing would come.
-pub(super) fn run(
-    acquisition: impl Future<Output = ()>,
-    instrument: impl Future<Output = Health>,
-) -> Result<(Health, Instant), RunError> {
-    let instrument = async { (instrument.await, Instant::now()) };
-    virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
 }

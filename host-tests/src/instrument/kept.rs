@@ -39,27 +39,25 @@ impl KeptPlan {
     ///
     /// # Errors
     /// Those of the run.
-    pub(super) fn on_base<O, R>(
+    pub(super) fn on_base<R, T>(
         &self,
         scenario: &Scenario,
         alignment_s: f64,
-        of_run: impl FnOnce(&mut O) -> &mut Run<R>,
         run: impl FnOnce(
             &mut SimulatedBase<'_, '_, Injection>,
             Option<JourneyConfiguration<'_>>,
-        ) -> Result<O, RunError>,
-    ) -> Result<O, RunError> {
+        ) -> Result<Run<R, T>, RunError>,
+    ) -> Result<Run<R, T>, RunError> {
         let day = self.day(scenario.day(alignment_s));
         let journey = journey(&day, &self.base);
         let journey = (scenario.hold.seconds > 0.0).then_some(journey);
         let rig = RefCell::new(base::rig(scenario, journey.as_ref()));
-        let mut found = run(&mut base::imu(&rig, scenario, &self.chips), journey)?;
-        let of_run = of_run(&mut found);
+        let mut run = run(&mut base::imu(&rig, scenario, &self.chips), journey)?;
         let rig = rig.borrow();
         let violations = base::violations(&rig).iter();
-        of_run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
-        of_run.kept = Kept::of(&of_run.reports, day.configuration().motion());
-        Ok(found)
+        run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
+        run.kept = Kept::of(&run.reports, day.configuration().motion());
+        Ok(run)
     }
 
     /// A day with what happens on the way; of too many events the first ones.

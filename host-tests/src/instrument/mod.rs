@@ -15,7 +15,7 @@ pub use frames::FramesRun;
 pub use spinning::{FlightPlan, SpinRun};
 pub use stage::align_on;
 pub use trial::{Carrier, Trial};
-pub use turntable::{TurntablePlan, TurntableRun};
+pub use turntable::TurntableRun;
 pub use vehicle::{VehiclePlan, VehicleRun};
 
 use embassy_time::Instant;
@@ -34,11 +34,13 @@ use self::kept::Kept;
 use crate::methods::stepwise::Replay;
 use crate::output::degrees;
 
-/// A finished run of one kind of session.
+/// A finished run of one kind of session, with what was true of its carrier.
 #[derive(Clone, Debug)]
-pub struct Run<R = Replay> {
+pub struct Run<R = Replay, T = ()> {
     /// The session with its conclusion, reported like a replay.
     pub replay: R,
+    /// What was true, where more is asked of it than an azimuth.
+    pub truth: T,
     /// What the board reported, in order.
     pub events: Vec<(Instant, Event)>,
     /// What the keeper reported, once a second.
@@ -57,7 +59,7 @@ pub struct Run<R = Replay> {
     pub violations: Vec<String>,
 }
 
-impl Run {
+impl<T> Run<Replay, T> {
     /// What the session concluded; every run concludes.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
@@ -65,7 +67,7 @@ impl Run {
     }
 }
 
-impl<R> Run<R> {
+impl<R, T> Run<R, T> {
     /// When the alignments that found an azimuth concluded, from power-on.
     fn conclusions(&self) -> impl DoubleEndedIterator<Item = Instant> {
         self.events.iter().filter_map(|(at, event)| {

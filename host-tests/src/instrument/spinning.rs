@@ -7,7 +7,6 @@ use firmware::event::Event;
 use firmware::keep::NotKept;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Recorder, Store};
-use firmware::run::navigate;
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
 use orientation::alignment::Progress;
@@ -19,7 +18,7 @@ use simulated::Wires;
 use simulated::fault::{Fault, Injection};
 use simulated::spin::{Course, SpinScenario};
 
-use super::harness::{self, Harness};
+use super::harness::Harness;
 use super::recorder::Samples;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
@@ -33,11 +32,9 @@ pub struct FlightPlan {
     pub chips: Injection,
 }
 
-/// A finished flight.
+/// What was true of a flight, beside the samples that the board made of it.
 #[derive(Clone, Debug)]
-pub struct SpinRun {
-    /// What every simulated board brings back.
-    pub run: Run<Flight>,
+pub struct Flown {
     /// The samples that the board made.
     pub samples: Vec<SpinSample>,
     /// The true roll at each of them, rad.
@@ -45,10 +42,13 @@ pub struct SpinRun {
     /// What was true at the first sample.
     pub start: SpinTruth,
     /// What was true at the last.
-    pub truth: SpinTruth,
+    pub end: SpinTruth,
 }
 
-impl Run<Flight> {
+/// A finished flight.
+pub type SpinRun = Run<Flight, Flown>;
+
+impl SpinRun {
     /// Why the board gave the roll up, if it did: what it had by then is none of the end.
     #[must_use]
     pub fn ended(&self) -> Option<Refusal> {
@@ -79,19 +79,13 @@ impl Carrier for SpinScenario {
         let harness = Harness::new(watch);
         let channels = harness.channels();
         let mut sensors = Wires(&board, injection).spinning();
-        let ended = harness::run(
+        let ended = harness.run(
             acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
-            navigate(
-                &mut Strapdown::new(&channels.shared),
-                &mut flight,
-                NotKept,
-                &(),
-                (&mut harness.wire(), &mut (&mut kept, recorder)),
-                &channels,
-            ),
+            &mut Strapdown::new(&channels.shared),
+            (&mut flight, NotKept),
+            (&(), (&mut kept, recorder)),
+            &channels,
         )?;
-        drop(channels);
-        let run = harness.clear(ended, &board, flight);
         // Another body of the same course, which has not flown yet.
         let fresh = scenario.board(course, injection).plant;
         let at = |plant: &SpinPlant, time: Instant| {
@@ -100,7 +94,9 @@ impl Carrier for SpinScenario {
         let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
         let (start, flown) = (at(&fresh, time(kept.taken.first())), &board.borrow().plant);
         let rolls_rad = kept.taken.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
-        let truth = at(flown, time(kept.taken.last()));
-        Ok(SpinRun { run, samples: kept.taken, rolls_rad, start, truth })
+        let end = at(flown, time(kept.taken.last()));
+        let truth = Flown { samples: kept.taken, rolls_rad, start, end };
+        drop(channels);
+        Ok(harness.clear(ended, &board, flight, truth))
     }
 }

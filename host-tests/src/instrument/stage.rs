@@ -6,7 +6,6 @@ use drivers::tmc5160::configuration::Configuration as Motor;
 use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
 use firmware::ports::{NoBase, Recorder, Store};
-use firmware::run::navigate;
 use firmware::stage::Stage;
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
@@ -17,7 +16,7 @@ use simulated::fault::{Fault, FaultyRecorder};
 use simulated::scenario::{self, Scenario};
 use simulated::{self, Wires};
 
-use super::harness::{self, Harness};
+use super::harness::Harness;
 use super::kept::KeptPlan;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
@@ -37,12 +36,9 @@ impl Carrier for Scenario {
         if !scenario.has_base_imu {
             return align_on(NoBase, None, trial);
         }
-        plan.on_base(
-            scenario,
-            scenario.alignment_seconds(),
-            |run| run,
-            |imu, journey| align_on(SwayCompensation::new(imu), journey, trial),
-        )
+        plan.on_base(scenario, scenario.alignment_seconds(), |imu, journey| {
+            align_on(SwayCompensation::new(imu), journey, trial)
+        })
     }
 }
 
@@ -66,21 +62,15 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let configuration = scenario.configuration();
     let wires = Wires(&board, injection);
     let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
-    let mut recorder = FaultyRecorder::new(recorder, injection.hang);
     let mut actuator = wires.actuator(Motor::default());
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
-    let policy = scenario.policy().ok_or_else(outside)?;
-    let ended = harness::run(
+    let ended = harness.run(
         acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
-        navigate(
-            &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
-            &mut session,
-            Some(Keeping { keeper: &mut keeper, policy, store }),
-            &scenario.hold.aiding(),
-            (&mut harness.wire(), &mut recorder),
-            &channels,
-        ),
+        &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
+        (&mut session, Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store })),
+        (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang)),
+        &channels,
     )?;
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };
-    Ok(harness.clear(ended, &board, replay))
+    Ok(harness.clear(ended, &board, replay, ()))
 }

@@ -6,7 +6,6 @@ use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Recorder, Store};
-use firmware::run::navigate;
 use hal_mock::vehicle::VehicleTruth;
 use orientation::alignment::stops;
 use orientation::attitude::Keeper;
@@ -15,7 +14,7 @@ use simulated::Wires;
 use simulated::fault::{Fault, FaultyRecorder, Injection};
 use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
-use super::harness::{self, Harness};
+use super::harness::Harness;
 use super::kept::Kept;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
@@ -29,20 +28,14 @@ pub struct VehiclePlan {
     pub chips: Injection,
 }
 
-/// A finished run in a vehicle.
-#[derive(Clone, Debug)]
-pub struct VehicleRun {
-    /// What every simulated board brings back.
-    pub run: Run<stops::Session>,
-    /// What was true at the end.
-    pub truth: VehicleTruth,
-}
+/// A finished run in a vehicle, with what was true at the end.
+pub type VehicleRun = Run<stops::Session, VehicleTruth>;
 
 impl VehicleRun {
     /// The true azimuth when the latest alignment concluded, rad: at the end, unless the vehicle went on.
     #[must_use]
     pub fn azimuth_rad(&self) -> f64 {
-        self.run.kept_azimuth_rad().unwrap_or(self.truth.attitude.azimuth_rad)
+        self.kept_azimuth_rad().unwrap_or(self.truth.attitude.azimuth_rad)
     }
 }
 
@@ -69,20 +62,17 @@ impl Carrier for VehicleScenario {
         let aiding = VehicleAiding::new(&board, scenario);
         let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
         let mut keeper = Keeper::new(&setting);
-        let ended = harness::run(
+        let keeping = Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store });
+        let ended = harness.run(
             acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
-            navigate(
-                &mut Strapdown::new(&channels.shared),
-                &mut session,
-                Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store }),
-                &aiding,
-                (&mut harness.wire(), &mut FaultyRecorder::new(recorder, injection.hang)),
-                &channels,
-            ),
+            &mut Strapdown::new(&channels.shared),
+            (&mut session, keeping),
+            (&aiding, FaultyRecorder::new(recorder, injection.hang)),
+            &channels,
         )?;
         let truth = board.borrow().plant.truth();
-        let mut run = harness.clear(ended, &board, session);
+        let mut run = harness.clear(ended, &board, session, truth);
         run.kept = Kept::of(&run.reports, day.configuration().motion());
-        Ok(VehicleRun { run, truth })
+        Ok(run)
     }
 }

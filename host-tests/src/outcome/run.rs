@@ -71,7 +71,7 @@ fn recalled(found: &Remembered) -> Keys {
 impl RunDetails {
     /// What a finished run of so many samples a second was like, which took so long on this machine.
     #[must_use]
-    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration, beside: OfPlatform) -> Self {
+    pub fn of<R, T>(run: &Run<R, T>, rate_hz: f64, wall: Duration, beside: OfPlatform) -> Self {
         let kept = run.kept.last().copied();
         let health =
             Keys::default().with_all(Some(&run.health)).with("violations", &run.violations);
@@ -88,7 +88,7 @@ impl RunDetails {
 }
 
 /// How the board did.
-fn board<R>(run: &Run<R>, rate: f64, wall: f64, beside: OfPlatform) -> Lines {
+fn board<R, T>(run: &Run<R, T>, rate: f64, wall: f64, beside: OfPlatform) -> Lines {
     let (seconds, ratio) = (run.seconds, run.seconds / wall);
     let simulated =
         format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
@@ -106,7 +106,7 @@ fn board<R>(run: &Run<R>, rate: f64, wall: f64, beside: OfPlatform) -> Lines {
 }
 
 /// What was kept at last, and how well on the way.
-fn of_kept<R>(run: &Run<R>, last: &Point) -> Keys {
+fn of_kept<R, T>(run: &Run<R, T>, last: &Point) -> Keys {
     let azimuth = last.azimuth_deg();
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     Keys::default()
@@ -125,7 +125,7 @@ fn of_kept<R>(run: &Run<R>, last: &Point) -> Keys {
 }
 
 /// What was kept at last, in words.
-fn in_words<R>(run: &Run<R>, last: &Point) -> Lines {
+fn in_words<R, T>(run: &Run<R, T>, last: &Point) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
@@ -154,7 +154,7 @@ fn greatest_sigmas(kept: &Kept) -> Option<f64> {
 }
 
 /// How often a later azimuth agreed with what was kept.
-fn realigned<R>(run: &Run<R>) -> usize {
+fn realigned<R, T>(run: &Run<R, T>) -> usize {
     let fused = |event: &Event| {
         matches!(event, Event::Navigation(Progress::HandedOver(_, Realigned::Fused { .. })))
     };

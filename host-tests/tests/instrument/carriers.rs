@@ -107,19 +107,19 @@ fn base(asked: Asked) -> Scenario {
 
 fn on_stage(asked: Asked) -> Result<Seen, RunError> {
     let run = Trial::of(&base(asked)).fault(asked.fault).run()?;
-    Ok(seen::<Sample, _, _>(&run, &run.replay.session))
+    Ok(seen::<Sample, _, _, _>(&run, &run.replay.session))
 }
 
 fn on_frames(asked: Asked) -> Result<Seen, RunError> {
     let scenario = FramesScenario { base: base(asked), passes: 2, ..FramesScenario::default() };
-    let run = Trial::of(&scenario).fault(asked.fault).run()?.run;
-    Ok(seen::<Sample, _, _>(&run, &run.replay.session))
+    let run = Trial::of(&scenario).fault(asked.fault).run()?;
+    Ok(seen::<Sample, _, _, _>(&run, &run.replay.session))
 }
 
 fn on_turntable(asked: Asked) -> Result<Seen, RunError> {
     let scenario = TurntableScenario { base: base(asked), turns: 4, ..TurntableScenario::brief(3) };
-    let run = Trial::of(&scenario).fault(asked.fault).run()?.run;
-    Ok(seen::<Sample, _, _>(&run, &run.replay))
+    let run = Trial::of(&scenario).fault(asked.fault).run()?;
+    Ok(seen::<Sample, _, _, _>(&run, &run.replay))
 }
 
 fn in_vehicle(asked: Asked) -> Result<Seen, RunError> {
@@ -127,17 +127,17 @@ fn in_vehicle(asked: Asked) -> Result<Seen, RunError> {
     let Asked { latitude_deg, hold_s, fault } = asked;
     let base = Scenario { latitude_deg, hold: Hold::of(hold_s), ..usual.base };
     let scenario = VehicleScenario { base, stops: 2, drive_s: 300.0, ..usual };
-    let run = Trial::of(&scenario).fault(fault).run()?.run;
-    Ok(seen::<InertialSample, _, _>(&run, &run.replay))
+    let run = Trial::of(&scenario).fault(fault).run()?;
+    Ok(seen::<InertialSample, _, _, _>(&run, &run.replay))
 }
 
 fn on_spinning_body(asked: Asked) -> Result<Seen, RunError> {
     let scenario = SpinScenario { seconds: 3.0, ..SpinScenario::default() };
-    let run = Trial::of(&scenario).fault(asked.fault).run()?.run;
-    Ok(seen::<SpinSample, _, _>(&run, &run.replay))
+    let run = Trial::of(&scenario).fault(asked.fault).run()?;
+    Ok(seen::<SpinSample, _, _, _>(&run, &run.replay))
 }
 
-fn seen<S, R, M: Method<S> + Trace>(run: &Run<R>, method: &M) -> Seen {
+fn seen<S, R, T, M: Method<S> + Trace>(run: &Run<R, T>, method: &M) -> Seen {
     let mut log = String::new();
     for (_, event) in &run.events {
         writeln!(log, "{event}").expect("memory takes it");

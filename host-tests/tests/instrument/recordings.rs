@@ -14,14 +14,13 @@ use simulated::turntable::TurntableScenario;
 use simulated::vehicle::{Place, VehicleScenario};
 
 use host::instrument::recorder::{self, Recorded, Samples};
-use host::instrument::{Run, SpinRun, Trial};
+use host::instrument::{Run, SpinRun, Trial, TurntableRun};
 use host::methods::asked::{Asked, REQUIRED_SIGMA};
 use host::methods::spin::follow;
 use host::methods::{rotating, spin, stepwise, stops};
 use host::outcome::Finished;
 use host::recording::{self, Body, Header, Truth};
 use orientation::alignment::Progress;
-use orientation::alignment::rotating::session as rotating_session;
 use orientation::alignment::stops::session as stops_session;
 use orientation::roll;
 use orientation::units::DEGREE;
@@ -77,13 +76,18 @@ fn reported_of_stage(replay: &stepwise::Replay) -> (Value, String) {
 }
 
 /// Compares runs without and with a recorder with what a replay makes of the recording.
-fn compare_stage<C: Recorded>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
-    assert_eq!(reported_of_stage(&plain.replay), reported_of_stage(&of.replay));
+fn compare_stage<T, C: Recorded<Run = Run<stepwise::Replay, T>>>(
+    plain: &C::Run,
+    carrier: &C,
+    run: &C::Run,
+    it: &[C::Sample],
+) {
+    assert_eq!(reported_of_stage(&plain.replay), reported_of_stage(&run.replay));
     let Some((header, body)) = read_back(carrier, run, it) else { return };
     let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(reported_of_stage(&again), reported_of_stage(&of.replay));
-    assert_eq!(again.session.setting(), of.replay.session.setting());
+    assert_eq!(reported_of_stage(&again), reported_of_stage(&run.replay));
+    assert_eq!(again.session.setting(), run.replay.session.setting());
 }
 
 fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
@@ -92,35 +96,35 @@ fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let run = Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
-    compare_stage(&plain, scenario, &run, &run, &samples.taken);
+    compare_stage(&plain, scenario, &run, &samples.taken);
 }
 
 fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
     let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
-    let found = plain.run.conclusion().map(|conclusion| conclusion.verdict);
+    let found = plain.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let frames =
         Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
-    compare_stage(&plain.run, scenario, &frames, &frames.run, &samples.taken);
+    compare_stage(&plain, scenario, &frames, &samples.taken);
 }
 
 fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
-    let of_run = |run: &Run<rotating_session::Session>| {
+    let of_run = |run: &TurntableRun| {
         let (session, assumed) = (run.replay.clone(), Vec::new());
         let replay = rotating::Replay { session, zero_s: 0.0, assumed };
         reported(&replay, &replay.session.conclusion())
     };
     let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
-    let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
+    let found = plain.replay.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let run = Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
-    assert_eq!(of_run(&plain.run), of_run(&run.run));
+    assert_eq!(of_run(&plain), of_run(&run));
     let Some((header, body)) = read_back(scenario, &run, &samples.taken) else { return };
     let again = rotating::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(reported(&again, &again.session.conclusion()), of_run(&run.run));
+    assert_eq!(reported(&again, &again.session.conclusion()), of_run(&run));
 }
 
 fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
@@ -128,38 +132,38 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
         format!("{:?} {:?}", session.conclusion(), session.stops())
     };
     let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");
-    let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
+    let found = plain.replay.conclusion().map(|conclusion| conclusion.verdict);
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let found =
         Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
-    assert_eq!(reported(&plain.run.replay), reported(&found.run.replay));
+    assert_eq!(reported(&plain.replay), reported(&found.replay));
     let Some((header, body)) = read_back(scenario, &found, &samples.taken) else { return };
     let again = stops::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(reported(&again.session), reported(&found.run.replay));
+    assert_eq!(reported(&again.session), reported(&found.replay));
 }
 
 fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
     let run = Trial::of(scenario).fault(fault).run().expect("it is possible");
-    let Some((header, body)) = read_back(scenario, &run, &run.samples) else { return };
+    let Some((header, body)) = read_back(scenario, &run, &run.truth.samples) else { return };
     let again = spin::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(format!("{again:?}"), format!("{:?}", of_spin(scenario, &run, &again.assumed)));
     let end = again.answer().end;
-    assert_eq!(end.roll_rad.to_bits(), run.run.replay.spin.roll().rad().to_bits());
-    assert_eq!(end.sigma_rad, run.run.replay.spin.sigma().map(|sigma| sigma.0));
+    assert_eq!(end.roll_rad.to_bits(), run.replay.spin.roll().rad().to_bits());
+    assert_eq!(end.sigma_rad, run.replay.spin.sigma().map(|sigma| sigma.0));
 }
 
 /// What the command line tells of a flight.
 fn of_spin(scenario: &SpinScenario, run: &SpinRun, assumed: &[String]) -> spin::Replay {
-    let ended = run.run.events.iter().find_map(|(_, event)| match event {
+    let ended = run.events.iter().find_map(|(_, event)| match event {
         Event::Alignment(Progress::Roll(roll::Progress::Ended(_))) => Some(event.to_string()),
         _ => None,
     });
     spin::Replay {
         ended,
-        ..follow(&run.samples, scenario.setting(), REQUIRED_SIGMA, assumed.to_vec())
+        ..follow(&run.truth.samples, scenario.setting(), REQUIRED_SIGMA, assumed.to_vec())
     }
 }
 
@@ -297,7 +301,7 @@ fn a_recorded_mount_with_a_fault_replays_bit_for_bit() {
 fn what_a_session_was_given_counts_as_the_run_wrote_it_or_not_at_all() {
     let scenario = SpinScenario { seconds: 0.6, ..SpinScenario::default() };
     let run = Trial::of(&scenario).run().expect("it is possible");
-    let (header, body) = read_back(&scenario, &run, &run.samples).expect("there are samples");
+    let (header, body) = read_back(&scenario, &run, &run.truth.samples).expect("there are samples");
     let changed = Header { session: Some("{}".to_owned()), ..header };
     let refused = spin::replay(&changed, &body, &Asked::default()).map(|_| ());
     let why = refused.expect_err("nothing was given").to_string();

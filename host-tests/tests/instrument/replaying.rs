@@ -94,11 +94,10 @@ fn replayed<S: Timed>(
 }
 
 /// Runs a board and drives its halves again by what came in; with what the board did.
-fn both<C: Carrier, R, M: Method<C::Sample>>(
+fn both<C: Carrier<Run = Run<R, T>>, R, T, M: Method<C::Sample>>(
     carrier: &C,
     mut method: M,
     (setting, policy): (attitude::Setting, Policy),
-    finished: impl Fn(C::Run) -> Run<R>,
     verdict: impl Fn(&R) -> Option<Verdict>,
 ) -> [Done; 2]
 where
@@ -106,7 +105,7 @@ where
 {
     let journal = Journal(RefCell::new(Vec::new()));
     let run = Trial::of(carrier).record(&journal).watch(&journal).run();
-    let run = finished(run.expect("the scenario is possible"));
+    let run = run.expect("the scenario is possible");
     let inputs = journal.0.into_inner();
     let is_order = |input: &&Input<C::Sample>| {
         matches!(input, Input::Aligner(aligner::Input::Ordered(Order::Restart | Order::Skip)))
@@ -139,13 +138,13 @@ fn a_stage_and_two_frames_do_again_what_came_of_their_inputs() {
         let scenario = base(hold);
         let setting = scenario.setting().expect("a latitude");
         let method = stepwise::Session::new(setting, scenario.procedure()).expect("a procedure");
-        let keeping = (scenario.keeper().expect("a latitude"), scenario.policy().expect("one"));
-        assert_alike(both(&scenario, method, keeping, |run| run, |it| it.session.verdict()));
+        let keeping = (scenario.keeper().expect("a latitude"), scenario.policy());
+        assert_alike(both(&scenario, method, keeping, |it| it.session.verdict()));
         let frames = FramesScenario { base: scenario, passes: 2, ..FramesScenario::default() };
         let setting = frames.setting().expect("a latitude");
         let method = stepwise::Session::new(setting, frames.procedure()).expect("a procedure");
         let keeping = (frames.keeper().expect("a latitude"), keeping.1);
-        assert_alike(both(&frames, method, keeping, |run| run.run, |it| it.session.verdict()));
+        assert_alike(both(&frames, method, keeping, |it| it.session.verdict()));
     }
 }
 
@@ -157,8 +156,8 @@ fn a_turntable_does_again_what_came_of_its_inputs() {
         let setting = scenario.setting().expect("a latitude");
         let method = rotating::Session::new(setting, scenario.procedure()).expect("a procedure");
         let base = scenario.base;
-        let keeping = (base.keeper().expect("a latitude"), base.policy().expect("one"));
-        assert_alike(both(&scenario, method, keeping, |run| run.run, Method::verdict));
+        let keeping = (base.keeper().expect("a latitude"), base.policy());
+        assert_alike(both(&scenario, method, keeping, Method::verdict));
     }
 }
 
@@ -170,6 +169,6 @@ fn a_vehicle_does_again_what_came_of_its_inputs() {
         let setting = scenario.setting().expect("a latitude");
         let method = stops::Session::new(setting, scenario.procedure()).expect("a procedure");
         let keeping = (scenario.keeper().expect("a latitude"), scenario.policy());
-        assert_alike(both(&scenario, method, keeping, |run| run.run, Method::verdict));
+        assert_alike(both(&scenario, method, keeping, Method::verdict));
     }
 }

@@ -15,12 +15,12 @@ fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
 }
 
 fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {
-    found.run.replay.conclusion().expect("every run concludes").verdict
+    found.replay.conclusion().expect("every run concludes").verdict
 }
 
 /// What was reported, without the times.
 fn reported(found: &VehicleRun) -> Vec<String> {
-    found.run.events.iter().map(|(_, event)| event.to_string()).collect()
+    found.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
 /// Error of the azimuth, rad, the short way.
@@ -39,8 +39,8 @@ fn north_is_found_within_its_sigma_and_no_rule_of_a_chip_is_broken() {
         assert!(sigmas.abs() < 3.5, "seed {seed}: {sigmas} σ");
         assert!(azimuth.sigma.degrees() < 0.2, "seed {seed}: {}", azimuth.sigma.degrees());
         squares += sigmas * sigmas;
-        assert_eq!(found.run.violations, [""; 0], "seed {seed}");
-        assert_eq!(found.run.health.faults(), 0, "seed {seed}");
+        assert_eq!(found.violations, [""; 0], "seed {seed}");
+        assert_eq!(found.health.faults(), 0, "seed {seed}");
     }
     // Chi-square of 4 degrees of freedom: 0.09 and 16.9 are its 0.1 and 99.8 % points (scipy).
     assert!((0.09..16.9).contains(&squares), "{squares}");
@@ -49,7 +49,7 @@ fn north_is_found_within_its_sigma_and_no_rule_of_a_chip_is_broken() {
 #[test]
 fn three_headings_tell_the_biases_that_the_gyros_have() {
     let found = run(&VehicleScenario::usual(1), None);
-    let conclusion = found.run.replay.conclusion().expect("it concludes");
+    let conclusion = found.replay.conclusion().expect("it concludes");
     let solved = conclusion.found.expect("something was found");
     let truth = found.truth.gyro_bias_rad_s;
     for ((bias, sigma), truth) in solved.biases.into_iter().zip(solved.bias_sigmas).zip(truth) {
@@ -85,12 +85,12 @@ fn the_log_tells_what_the_board_did_in_order() {
     }
     assert!(lines.last().is_some_and(|line| line.starts_with("azimuth ")), "{lines:?}");
     let statuses = ["starting", "levelling at stop 1", "stop 1 done, may drive", "driving"];
-    let mut link = found.run.lines.lines();
+    let mut link = found.lines.lines();
     for status in statuses {
         assert!(link.any(|line| line.starts_with(status)), "{status} is missing or late");
     }
-    assert!(found.run.lines.lines().last().is_some_and(|line| line.starts_with("azimuth ")));
-    assert!(!found.run.lines.contains("homing"), "nothing is homed");
+    assert!(found.lines.lines().last().is_some_and(|line| line.starts_with("azimuth ")));
+    assert!(!found.lines.contains("homing"), "nothing is homed");
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn a_stop_is_levelled_as_the_ground_lies_there() {
     let found = run(&scenario, None);
     let day = scenario.day(None);
     let hal_mock::vehicle::Leg::Stop(first) = day.legs[0] else { panic!("a day begins at rest") };
-    let level = found.run.events.iter().find_map(|(_, event)| match event {
+    let level = found.events.iter().find_map(|(_, event)| match event {
         Event::Alignment(Progress::Stops(stops::Progress::MayDrive(1, _, level))) => Some(*level),
         _ => None,
     });

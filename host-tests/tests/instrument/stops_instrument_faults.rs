@@ -65,7 +65,7 @@ fn run(fault: Fault) -> VehicleRun {
 }
 
 fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {
-    found.run.replay.conclusion().expect("every run concludes").verdict
+    found.replay.conclusion().expect("every run concludes").verdict
 }
 
 /// What it came to.
@@ -101,10 +101,10 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs(extent: E
             expected => end == Some(expected),
         };
         assert!(is_right, "{fault}: {:?}, not {expected:?}", verdict(&found));
-        assert!(found.run.seconds < 720.0, "{fault}: {} s", found.run.seconds);
+        assert!(found.seconds < 720.0, "{fault}: {} s", found.seconds);
         // Who asks a chip that has just lost its supply is too early, and learns so.
         if !matches!(fault, Fault::Chip(_, ChipFault::Reset)) {
-            assert_eq!(found.run.violations, [""; 0], "{fault}");
+            assert_eq!(found.violations, [""; 0], "{fault}");
         }
     }
 }
@@ -113,7 +113,7 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs(extent: E
 fn one_lost_conversion_of_any_axis_is_reported_as_a_gap_of_its_length() {
     for device in [Device::ForwardGyro, Device::RightGyro, Device::DownGyro] {
         let found = run(Fault::Chip(device, ChipFault::ChecksumOnce));
-        assert_eq!(found.run.health.missing, 1, "{device}");
+        assert_eq!(found.health.missing, 1, "{device}");
         let Err(Refusal::Stops(Stops::RotationMissing { seconds, .. })) = verdict(&found) else {
             panic!("{device}: {:?}", verdict(&found));
         };
@@ -124,7 +124,7 @@ fn one_lost_conversion_of_any_axis_is_reported_as_a_gap_of_its_length() {
 #[test]
 fn a_converter_that_comes_late_is_named_and_the_others_are_not_blamed() {
     let found = run(Fault::OutOfStep);
-    let lines: Vec<String> = found.run.events.iter().map(|(_, event)| event.to_string()).collect();
+    let lines: Vec<String> = found.events.iter().map(|(_, event)| event.to_string()).collect();
     let stray = "right gyro: reading lost: out of step with the others";
     assert!(lines.iter().any(|line| line == stray), "{lines:?}");
     let again = "right gyro: out of step with the others: starting it again";

@@ -30,11 +30,11 @@ fn run(scenario: &TurntableScenario) -> TurntableRun {
 }
 
 fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
-    run.run.replay.conclusion().expect("every run concludes").verdict
+    run.replay.conclusion().expect("every run concludes").verdict
 }
 
 fn reported(run: &TurntableRun) -> Vec<String> {
-    run.run.events.iter().map(|(_, event)| event.to_string()).collect()
+    run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
 /// The error of an azimuth, °, and its σ.
@@ -64,13 +64,13 @@ fn the_default_run_finds_north_and_breaks_no_rule_of_a_chip() {
     let scenario = TurntableScenario::usual(1);
     let run = run(&scenario);
     assert_north(&scenario, &run);
-    assert_eq!(run.run.violations, Vec::<String>::new());
-    assert_eq!(run.run.health.faults(), 0, "{:?}", run.run.health);
+    assert_eq!(run.violations, Vec::<String>::new());
+    assert_eq!(run.health.faults(), 0, "{:?}", run.health);
     let misalignment =
-        run.run.replay.misalignments().next().expect("the rate-modulated turns show it");
+        run.replay.misalignments().next().expect("the rate-modulated turns show it");
     let off = misalignment.angle().degrees() - scenario.elevation_deg;
     assert!(off.abs() < 1e-3, "the axis is found {off}° beside its elevation");
-    assert_eq!(run.run.replay.turns(), (20, 20));
+    assert_eq!(run.replay.turns(), (20, 20));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_molecular_electronic_sensor_finds_north_at_two_speeds() {
     let scenario = TurntableScenario::molecular(2);
     let run = run(&scenario);
     assert_north(&scenario, &run);
-    let fit = run.run.replay.conclusion().and_then(|conclusion| conclusion.fit).expect("a fit");
+    let fit = run.replay.conclusion().and_then(|conclusion| conclusion.fit).expect("a fit");
     assert!(fit.molecular.size() > 0.1, "its g-sensitivity counts: {}", fit.molecular.size());
     assert!(fit.phases[0].0 > 0.2, "it runs ahead: {} rad", fit.phases[0].0);
 }
@@ -131,7 +131,7 @@ fn the_log_tells_what_the_board_did_in_order() {
             "{part}: not, or not there, in {reported:#?}"
         );
     }
-    let run = run(&short(1)).run;
+    let run = run(&short(1));
     assert!(run.lines.contains("measuring 0/8"), "{}", run.lines);
     assert!(run.lines.contains("measuring 7/8"), "{}", run.lines);
 }
@@ -140,7 +140,7 @@ fn the_log_tells_what_the_board_did_in_order() {
 #[test]
 fn the_commands_of_a_modulated_turn_are_not_reported() {
     let run = run(&short(1));
-    let rates = run.run.events.iter().filter(|(_, event)| matches!(event, Event::Revolving(..)));
+    let rates = run.events.iter().filter(|(_, event)| matches!(event, Event::Revolving(..)));
     assert_eq!(rates.count(), 3, "clockwise, counter-clockwise, at rest");
 }
 
@@ -150,13 +150,13 @@ fn the_platform_comes_to_rest_whatever_the_end() {
         let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
         let run = run_with(&short(1), fault);
         // It still rings, by a hundredth of what it turned at.
-        assert!(run.rate.abs() < 0.0126, "{name}: it turns at {} rad/s", run.rate);
+        assert!(run.truth.abs() < 0.0126, "{name}: it turns at {} rad/s", run.truth);
     }
 }
 
 #[test]
 fn a_stored_misalignment_spares_the_modulated_turns() {
-    let before = run(&short(5)).run.replay;
+    let before = run(&short(5)).replay;
     let mut stored = [None; SPEEDS];
     stored.iter_mut().zip(before.misalignments()).for_each(|(place, found)| *place = Some(found));
     let scenario = TurntableScenario { modulated_turns: 0, stored, ..short(6) };
@@ -251,7 +251,7 @@ fn a_motor_driver_that_was_reset_turns_on() {
     let run = with_fault("stage-reset");
     let reported = reported(&run);
     assert!(reported.iter().any(|line| line.contains("it has restarted")), "{reported:#?}");
-    assert!(run.run.events.len() > 20, "{reported:#?}");
+    assert!(run.events.len() > 20, "{reported:#?}");
     if verdict(&run).is_ok() {
         assert_north(&short(1), &run);
     }

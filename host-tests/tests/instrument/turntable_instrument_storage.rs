@@ -6,7 +6,7 @@ use firmware::date::Day;
 use firmware::event::Event;
 use firmware::ports::Store;
 use firmware::storage::{FlashStore, Today, keep, recall};
-use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun};
+use host::instrument::{Trial, TurntableRun};
 use host::output::{azimuth_error, degrees};
 use host::virtual_time::run;
 use orientation::alignment::Azimuth;
@@ -154,17 +154,16 @@ fn molecular(modulated_turns: u32) -> TurntableScenario {
 }
 
 fn aligned(scenario: &TurntableScenario, keeping: &mut Keeping) -> TurntableRun {
-    let plan = TurntablePlan { today: Some(keeping.today), ..scenario.plan(None) };
-    let trial = Trial::of(scenario).plan(plan).store(&mut keeping.store);
-    trial.run().expect("it is possible")
+    let scenario = TurntableScenario { today: Some(keeping.today), ..*scenario };
+    Trial::of(&scenario).store(&mut keeping.store).run().expect("it is possible")
 }
 
 fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
-    run.run.replay.conclusion().expect("every run concludes").verdict
+    run.replay.conclusion().expect("every run concludes").verdict
 }
 
 fn reported(run: &TurntableRun, part: &str) -> Option<String> {
-    let mut reported = run.run.events.iter().map(|(_, event)| event.to_string());
+    let mut reported = run.events.iter().map(|(_, event)| event.to_string());
     reported.find(|line| line.contains(part))
 }
 
@@ -192,11 +191,11 @@ fn a_misalignment_is_saved_as_its_alignment_ends_while_the_azimuth_is_held_on() 
     let base = Scenario { hold: Hold::of(30.0), has_base_imu: true, ..usual.base };
     let run = aligned(&TurntableScenario { base, ..usual }, &mut keeping(Flash::default(), THEN));
     let at = |part: &str| {
-        let found = run.run.events.iter().find(|(_, event)| event.to_string().contains(part));
+        let found = run.events.iter().find(|(_, event)| event.to_string().contains(part));
         found.unwrap_or_else(|| panic!("nothing of {part}")).0.as_micros() as f64 * 1e-6
     };
     let saved = at("axis misalignment saved");
-    assert!(saved <= at("handed over") && saved + 29.0 < run.run.seconds, "{saved} s");
+    assert!(saved <= at("handed over") && saved + 29.0 < run.seconds, "{saved} s");
 }
 
 #[test]
@@ -218,7 +217,7 @@ fn misalignments_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again(
     let error = azimuth_error(azimuth.angle.degrees(), molecular(0).base.azimuth_deg);
     assert!(error.abs() < 4.0 * azimuth.sigma.degrees(), "off by {error}°");
     let is_recalled = |event: &Event| matches!(event, Event::Recalled(_));
-    assert_eq!(run.run.events.iter().filter(|(_, event)| is_recalled(event)).count(), 2);
+    assert_eq!(run.events.iter().filter(|(_, event)| is_recalled(event)).count(), 2);
 }
 
 /// A misalignment that a refused session found is not saved: the next session would be refused for it, too.

@@ -15,6 +15,7 @@ use simulated::turntable::TurntableScenario;
 use simulated::vehicle::VehicleScenario;
 
 use crate::instrument::{Run, RunError, Trial};
+use crate::methods::stepwise::Replay;
 use crate::output::{azimuth_error, degrees};
 
 /// Sample rate of all but the spinning body, Hz.
@@ -52,7 +53,7 @@ pub(super) struct Ended {
 }
 
 impl Ended {
-    fn new<R>(run: &Run<R>, verdict: Result<f64, String>) -> Self {
+    fn new<R, T>(run: &Run<R, T>, verdict: Result<f64, String>) -> Self {
         Self {
             error_sigmas: verdict.as_ref().ok().copied(),
             reason: verdict.err(),
@@ -65,7 +66,7 @@ impl Ended {
     }
 
     /// How a run with dwells ended.
-    fn with_dwells(run: &Run, truth_deg: f64) -> Result<Self, RunError> {
+    fn with_dwells<T>(run: &Run<Replay, T>, truth_deg: f64) -> Result<Self, RunError> {
         let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
         let left_out = conclusion.disturbances.iter().filter(|why| why.is_some()).count();
         let dwells = Some([run.replay.session.repetitions.len(), left_out]);
@@ -109,8 +110,8 @@ fn on_stage(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 fn on_frames(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario =
         FramesScenario { base: base(fault, seed), passes: PASSES, ..FramesScenario::default() };
-    let frames = Trial::of(&scenario).fault(Some(fault)).run()?;
-    Ended::with_dwells(&frames.run, scenario.base.azimuth_deg)
+    let run = Trial::of(&scenario).fault(Some(fault)).run()?;
+    Ended::with_dwells(&run, scenario.base.azimuth_deg)
 }
 
 fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
@@ -122,7 +123,7 @@ fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
         turns: TURNS,
         ..TurntableScenario::default()
     };
-    let run = Trial::of(&scenario).fault(Some(fault)).run()?.run;
+    let run = Trial::of(&scenario).fault(Some(fault)).run()?;
     let conclusion = run.replay.conclusion().ok_or(RunError::Deadlock)?;
     Ok(Ended::new(&run, in_sigmas(conclusion.verdict, scenario.base.azimuth_deg)))
 }
@@ -131,23 +132,23 @@ fn in_vehicle(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let usual = VehicleScenario::usual(seed);
     let scenario = VehicleScenario { stops: STOPS, stop_s: STOP_S, drive_s: DRIVE_S, ..usual };
     let found = Trial::of(&scenario).fault(Some(fault)).run()?;
-    let conclusion = found.run.replay.conclusion().ok_or(RunError::Deadlock)?;
+    let conclusion = found.replay.conclusion().ok_or(RunError::Deadlock)?;
     let truth_deg = degrees(found.truth.attitude.azimuth_rad);
-    Ok(Ended::new(&found.run, in_sigmas(conclusion.verdict, truth_deg)))
+    Ok(Ended::new(&found, in_sigmas(conclusion.verdict, truth_deg)))
 }
 
 fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
     let flown = Trial::of(&scenario).fault(Some(fault)).run()?;
-    let spin = &flown.run.replay.spin;
-    let verdict = match (flown.run.ended(), spin.sigma().map(Radians::degrees)) {
+    let spin = &flown.replay.spin;
+    let verdict = match (flown.ended(), spin.sigma().map(Radians::degrees)) {
         (Some(reason), _) => Err(reason.to_string()),
         (None, Some(sigma)) if sigma <= ROLL_SIGMA_DEG => {
-            let [roll, truth] = [spin.roll().rad(), flown.truth.roll_rad].map(degrees);
+            let [roll, truth] = [spin.roll().rad(), flown.truth.end.roll_rad].map(degrees);
             Ok(azimuth_error(roll, truth) / sigma)
         }
         (None, Some(sigma)) => Err(format!("σ of the roll at the end is {sigma:.1}°")),
         (None, None) => Err(format!("the roll is not known at the end: {}", spin.state())),
     };
-    Ok(Ended::new(&flown.run, verdict))
+    Ok(Ended::new(&flown, verdict))
 }

@@ -1,7 +1,7 @@
 //! `meridian run spin`: the board on a body in fast rotation.
 
 use clap::Args;
-use host::instrument::{SpinRun, Trial};
+use host::instrument::Trial;
 use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Replay, follow};
 use host::outcome::run::{OfPlatform, RunDetails};
@@ -35,17 +35,16 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (flown, wall) = Terminal::watching("samples", |watch| {
+        let (run, wall) = Terminal::watching("samples", |watch| {
             Trial::of(&scenario).fault(fault).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &flown, &flown.samples);
-        let SpinRun { run, samples, rolls_rad, .. } = flown;
+        let written = self.common.write(&scenario, &run, &run.truth.samples);
         let assumed = vec![GIVEN.to_owned()];
         let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());
-        let replay = follow(&samples, scenario.setting(), REQUIRED_SIGMA, assumed);
+        let replay = follow(&run.truth.samples, scenario.setting(), REQUIRED_SIGMA, assumed);
         let finished = Box::new(Replay { ended, ..replay });
-        let truth = Truth { roll_rad: rolls_rad, ..Truth::default() };
         let details = RunDetails::of(&run, SAMPLE_RATE, wall, OfPlatform::default());
+        let truth = Truth { roll_rad: run.truth.rolls_rad, ..Truth::default() };
         let shown = Shown { name: "the simulated flight", finished, truth, body: None };
         Ok(Ran { shown, details, written })
     }

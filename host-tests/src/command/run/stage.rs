@@ -5,7 +5,8 @@ use std::time::Duration;
 use clap::Args;
 use firmware::event::Event;
 use host::instrument::recorder::Recorded;
-use host::instrument::{FramesRun, Run, Trial};
+use host::instrument::{Run, Trial};
+use host::methods::stepwise::Replay;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::Truth;
@@ -209,7 +210,8 @@ impl Simulated for FramesOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |FramesRun { run, axis: [forward, right, down] }, wall| {
+        self.base.run(&scenario, fault, |run, wall| {
+            let [forward, right, down] = run.truth;
             let is_vertical =
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
             let off_deg = degrees(forward.hypot(right).atan2(down));
@@ -221,7 +223,12 @@ impl Simulated for FramesOptions {
 }
 
 /// What came of a run at standstills; what it kept, where no alignment of it stands.
-fn ran(name: &'static str, run: Run, details: RunDetails, scenario: &Scenario) -> Ran {
+fn ran<T>(
+    name: &'static str,
+    run: Run<Replay, T>,
+    details: RunDetails,
+    scenario: &Scenario,
+) -> Ran {
     let is_aligned = run.conclusion().is_some();
     let azimuth_deg = run.azimuth_deg(scenario.azimuth_deg);
     let finished = finished(is_aligned, run.replay);

@@ -7,7 +7,7 @@ use firmware::date::Day;
 use firmware::event::Event;
 use firmware::storage::{FlashStore, Today};
 use host::instrument::recorder::{Samples, turning_rows};
-use host::instrument::{Carrier as _, Trial, TurntablePlan, TurntableRun, flash_file};
+use host::instrument::{Trial, flash_file};
 use host::methods::rotating::Replay;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::{Body, GIVEN, Truth};
@@ -123,6 +123,7 @@ impl TurntableOptions {
             speeds_hz: self.speeds.unwrap_or(usual.speeds_hz),
             modulated_turns: self.modulated_turns.unwrap_or(usual.modulated_turns),
             turns: self.turns.map_or(usual.turns, |turns| turns as u32),
+            today: self.flash.is_some().then_some(Today { date: self.date, longest: None }),
             ..usual
         }
     }
@@ -168,15 +169,12 @@ impl Simulated for TurntableOptions {
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
         let (mut store, mut recorder) = (self.store()?, Samples::default());
-        let today = self.flash.is_some().then_some(Today { date: self.date, longest: None });
-        let plan = TurntablePlan { today, ..scenario.plan(fault) };
         let (run, wall) = Terminal::watching("turns", |watch| {
-            let trial = Trial::of(&scenario).plan(plan).record(&mut recorder);
+            let trial = Trial::of(&scenario).fault(fault).record(&mut recorder);
             trial.store(&mut store).watch(watch).run()
         })?;
         let recorded = self.common.write(&scenario, &run, &recorder.taken);
         let written = self.put_away(store).and(recorded);
-        let TurntableRun { run, .. } = run;
         let recalled = run.events.iter().filter_map(|(_, event)| match event {
             Event::Recalled(misalignment) => Some(*misalignment),
             _ => None,

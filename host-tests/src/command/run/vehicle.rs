@@ -81,7 +81,6 @@ impl Simulated for VehicleOptions {
         })?;
         let written = self.common.write(&scenario, &run, &wanted.taken);
         let azimuth_rad = run.azimuth_rad();
-        let run = run.run;
         let truth = Truth {
             azimuth_deg: Some(degrees(azimuth_rad).rem_euclid(360.0)),
             start_azimuth_deg: Some(scenario.base.azimuth_deg),

@@ -18,9 +18,9 @@ impl Recorded for SpinScenario {
         writeln!(head, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
         writeln!(head, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
         writeln!(head, "# gyro_scale_sigma: {}", self.scale_sigma)?;
-        Given::new(self.setting(), (), run.run.ended()).write(to, &head)?;
+        Given::new(self.setting(), (), run.ended()).write(to, &head)?;
         writeln!(to, "{COLUMNS}")?;
-        of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
+        of.iter().zip(&run.truth.rolls_rad).try_for_each(|(sample, roll)| {
             let [x, y, z] = sample
                 .turned
                 .map(|turned| mean_rate(turned, 1.0 / SAMPLE_RATE, GREATEST_SPIN_RATE));

@@ -15,6 +15,7 @@ use simulated::scenario::Scenario;
 
 use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::{FramesRun, Run};
+use crate::methods::stepwise::Replay;
 use crate::recording::{Given, Kind};
 
 /// The columns of every stage, then that of a mount, then those of a base with coarse sensors.
@@ -32,7 +33,7 @@ impl Recorded for Scenario {
 
 impl Recorded for FramesScenario {
     fn write(&self, to: &mut impl Write, run: &FramesRun, of: &[Sample]) -> io::Result<()> {
-        write(to, &self.base, (self.setting(), self.procedure()), &run.run, of)
+        write(to, &self.base, (self.setting(), self.procedure()), run, of)
     }
 }
 
@@ -41,7 +42,7 @@ fn write(
     to: &mut impl Write,
     scenario: &Scenario,
     (setting, procedure): (Option<Setting>, Procedure),
-    run: &Run,
+    run: &Run<Replay, impl Sized>,
     of: &[Sample],
 ) -> io::Result<()> {
     let setting = setting.ok_or(io::ErrorKind::InvalidInput)?;

@@ -19,7 +19,7 @@ impl Recorded for VehicleScenario {
         run: &VehicleRun,
         of: &[InertialSample],
     ) -> io::Result<()> {
-        let session = &run.run.replay;
+        let session = &run.replay;
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let period_s = procedure.sample_seconds;
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
@@ -47,7 +47,7 @@ impl Recorded for VehicleScenario {
 
 /// Writes where the vehicle stood, and what the board was given of how far from the first stop that was.
 fn stops(to: &mut impl Write, run: &VehicleRun) -> io::Result<()> {
-    let stops = run.run.replay.stops();
+    let stops = run.replay.stops();
     if stops.is_empty() {
         return Ok(());
     }

@@ -39,9 +39,9 @@ fn bus_error(select: Select, when: When) -> Injection {
 
 /// No error is greater than is said, and the level is found again at the end.
 fn check(found: &FramesRun) {
-    let [worst, within] = sigmas(&found.run.kept);
-    assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", reported(&found.run));
-    let last = found.run.kept.last().expect("it was kept");
+    let [worst, within] = sigmas(&found.kept);
+    assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", reported(&found));
+    let last = found.kept.last().expect("it was kept");
     let [pitch, roll] = last.level_error().map(f64::to_degrees);
     // Where it stands gravity shows the level; on the road coarse gyros have it within what they say.
     let bound = if last.report.is_at_rest { 2.0 } else { 4.5 * last.report.level_sigma.degrees() };
@@ -49,7 +49,7 @@ fn check(found: &FramesRun) {
 }
 
 fn has(found: &FramesRun, words: &str) -> bool {
-    reported(&found.run).iter().any(|line| line.contains(words))
+    reported(&found).iter().any(|line| line.contains(words))
 }
 
 #[test]
@@ -58,8 +58,8 @@ fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
     let stands = departure(&scenario) - 25.0;
     let coarse_imu = Some(lost(stands, 2));
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
-    assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found.run));
-    assert!(!has(&found, "the azimuth is lost"), "{:#?}", reported(&found.run));
+    assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found));
+    assert!(!has(&found, "the azimuth is lost"), "{:#?}", reported(&found));
     check(&found);
 }
 
@@ -68,7 +68,7 @@ fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_report
     let scenario = scenario();
     let coarse_imu = Some(lost(departure(&scenario) + AFTER, 3));
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
-    assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found.run));
+    assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found));
     check(&found);
 }
 
@@ -83,7 +83,7 @@ fn coarse_gyros_that_clip_are_reported_and_the_level_comes_back() {
     };
     let base = (0..3).map(clipped).collect();
     let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
-    assert!(has(&found, "rotation was lost"), "{:#?}", reported(&found.run));
+    assert!(has(&found, "rotation was lost"), "{:#?}", reported(&found));
     check(&found);
 }
 
@@ -98,7 +98,7 @@ fn coarse_sensors_that_are_stuck_are_started_again() {
     };
     let base = (0..6).map(stuck).collect();
     let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
-    assert!(has(&found, "base: the same reading again and again"), "{:#?}", reported(&found.run));
+    assert!(has(&found, "base: the same reading again and again"), "{:#?}", reported(&found));
     check(&found);
 }
 
@@ -107,12 +107,8 @@ fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
     let scenario = scenario();
     let when = When::always(moment(departure(&scenario) + AFTER));
     let found = injected(&scenario, bus_error(Select::Gyro, when));
-    assert!(
-        has(&found, "the coarse gyro, as it was compared, shows"),
-        "{:#?}",
-        reported(&found.run)
-    );
-    assert!(found.run.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
+    assert!(has(&found, "the coarse gyro, as it was compared, shows"), "{:#?}", reported(&found));
+    assert!(found.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
     check(&found);
 }
 
@@ -121,11 +117,11 @@ fn without_the_accelerometer_the_gyros_carry_the_level_on() {
     let scenario = scenario();
     let begins = departure(&scenario) + 10.0;
     let found = injected(&scenario, bus_error(Select::Accelerometer, lost(begins, 20)));
-    assert!(has(&found, "accelerometer: reading lost"), "{:#?}", reported(&found.run));
+    assert!(has(&found, "accelerometer: reading lost"), "{:#?}", reported(&found));
     // Starting it again would cost what the base turns meanwhile.
-    assert!(!has(&found, "starting it again"), "{:#?}", reported(&found.run));
-    assert!(has(&found, "without forces"), "{:#?}", reported(&found.run));
-    assert!(has(&found, "keeping: level"), "{:#?}", reported(&found.run));
+    assert!(!has(&found, "starting it again"), "{:#?}", reported(&found));
+    assert!(has(&found, "without forces"), "{:#?}", reported(&found));
+    assert!(has(&found, "keeping: level"), "{:#?}", reported(&found));
     check(&found);
 }
 
@@ -135,8 +131,8 @@ fn a_free_fall_is_reported_and_over_at_once() {
     let at_s = departure(&scenario) + AFTER;
     let events = vec![Event::Fall { at_s, seconds: 0.6 }];
     let found = keep(&scenario, &KeptPlan { events, ..KeptPlan::of(None) });
-    assert!(has(&found, "falling freely"), "{:#?}", reported(&found.run));
-    let [_, _, level] = at(&found.run.kept, at_s + 20.0);
+    assert!(has(&found, "falling freely"), "{:#?}", reported(&found));
+    let [_, _, level] = at(&found.kept, at_s + 20.0);
     assert!(level.is_some_and(|level| level < 1.5), "{level:?}°");
     check(&found);
 }

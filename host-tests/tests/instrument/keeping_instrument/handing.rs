@@ -105,21 +105,21 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
 fn the_azimuth_goes_on_from_the_sessions_last_sample_without_a_gap() {
     for seed in 1..=3 {
         let found = drive(&vehicle(seed, Hold::of(5.0)));
-        let concluded = found.run.events.iter().find_map(|(at, event)| match event {
+        let concluded = found.events.iter().find_map(|(at, event)| match event {
             Event::Alignment(Progress::Concluded(solution)) => {
                 Some((*at, solution.azimuth.angle.degrees()))
             }
             _ => None,
         });
         let (at, azimuth) = concluded.expect("a healthy run");
-        let handed = found.run.events.iter().find_map(|(at, event)| match event {
+        let handed = found.events.iter().find_map(|(at, event)| match event {
             Event::Navigation(navigation::Progress::HandedOver(..)) => Some(*at),
             _ => None,
         });
         let late = handed.expect("it is handed over") - at;
         assert!(late <= Duration::from_millis(10), "{late:?}");
         // The vehicle stands: what is kept a moment later is what was found.
-        let (point, [error, _]) = found.run.kept.with_azimuth().next().expect("it is kept");
+        let (point, [error, _]) = found.kept.with_azimuth().next().expect("it is kept");
         let truth = point.truth.azimuth_rad.to_degrees();
         let found_error = (azimuth - truth + 180.0).rem_euclid(360.0) - 180.0;
         assert!((error.to_degrees() - found_error).abs() < 0.01, "seed {seed}");

@@ -13,32 +13,32 @@ fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {
     for seed in 1..=2 {
         // Long ways, so that no bend turns it more quickly than its gyros show.
         let found = drive(&vehicle(seed, Hold { drive_s: 240.0, ..Hold::of(1800.0) }));
-        let [worst, within] = sigmas(&found.run.kept);
+        let [worst, within] = sigmas(&found.kept);
         assert!(worst < 4.0 && within > 0.99, "seed {seed}: {worst} σ, {within}");
-        let (last, [error, sigma]) = found.run.kept.with_azimuth().last().expect("it is kept");
+        let (last, [error, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
         assert!(last.report.seconds.0 > 1790.0, "{} s", last.report.seconds.0);
         // Gyros of 0.001 °/√h and 0.5 °/h, whose biases the alignment and the stops tell.
         assert!(error.abs().to_degrees() < 0.6, "seed {seed}: {}°", error.to_degrees());
         assert!(sigma.to_degrees() < 0.5, "seed {seed}: {}°", sigma.to_degrees());
-        assert_eq!(found.run.violations, [""; 0], "seed {seed}");
-        assert_eq!(found.run.health.faults(), 0, "seed {seed}");
+        assert_eq!(found.violations, [""; 0], "seed {seed}");
+        assert_eq!(found.health.faults(), 0, "seed {seed}");
     }
 }
 
 #[test]
 fn thirty_minutes_of_driving_on_two_frames_stay_within_three_sigma() {
     let found = keep(&frames(1, Hold::of(1800.0)), &KeptPlan::of(None));
-    let [worst, within] = sigmas(&found.run.kept);
+    let [worst, within] = sigmas(&found.kept);
     assert!(worst < 4.5 && within > 0.99, "{worst} σ, {within}");
-    let (_, [error, _]) = found.run.kept.with_azimuth().last().expect("it is kept");
+    let (_, [error, _]) = found.kept.with_azimuth().last().expect("it is kept");
     assert!(error.abs().to_degrees() < 1.0, "{}°", error.to_degrees());
     // On the way coarse gyros have the level to degrees; where it stands gravity shows it.
-    for point in found.run.kept.points[60..].iter().filter(|point| point.report.is_at_rest) {
+    for point in found.kept.points[60..].iter().filter(|point| point.report.is_at_rest) {
         let [pitch, roll] = point.level_error().map(f64::to_degrees);
         assert!(pitch.abs().max(roll.abs()) < 0.5, "{} s: {pitch}°, {roll}°", point.seconds());
     }
-    assert_eq!(found.run.violations, [""; 0]);
-    assert_eq!(found.run.health.unkept, 0);
+    assert_eq!(found.violations, [""; 0]);
+    assert_eq!(found.health.unkept, 0);
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn a_stage_keeps_by_its_coarse_gyros_alone_and_says_how_well() {
 fn keeping_changes_nothing_of_what_the_session_finds() {
     let verdict = |hold| {
         let found = drive(&vehicle(5, hold));
-        found.run.replay.conclusion().expect("it concludes").verdict.expect("a healthy run")
+        found.replay.conclusion().expect("it concludes").verdict.expect("a healthy run")
     };
     let (alone, kept) = (verdict(Hold::default()), verdict(Hold::of(60.0)));
     assert_eq!(alone.angle.0.to_bits(), kept.angle.0.to_bits());
@@ -74,7 +74,7 @@ fn keeping_changes_nothing_of_what_the_session_finds() {
 #[test]
 fn the_link_tells_attitude_once_a_second_and_no_line_is_cut() {
     let found = drive(&vehicle(1, Hold::of(120.0)));
-    let lines: Vec<&str> = found.run.lines.lines().collect();
+    let lines: Vec<&str> = found.lines.lines().collect();
     assert!(lines.iter().all(|line| line.ends_with(", faults 0")), "{lines:?}");
     let kept = lines.iter().filter(|line| line.contains(" pitch ")).count();
     assert!((118..=122).contains(&kept), "{kept} lines");
@@ -84,7 +84,7 @@ fn the_link_tells_attitude_once_a_second_and_no_line_is_cut() {
 #[test]
 fn the_frames_turn_the_precise_gyro_vertical_and_the_keeper_takes_it_there() {
     let found = keep(&frames(1, Hold::of(60.0)), &KeptPlan::of(None));
-    let lines = reported(&found.run);
+    let lines = reported(&found);
     let place = |words: &str| {
         let line = lines.iter().position(|line| line.contains(words));
         line.unwrap_or_else(|| panic!("{words} is reported: {lines:#?}"))
@@ -98,11 +98,10 @@ fn an_azimuth_from_outside_spares_the_alignment() {
     let azimuth = Scenario::default().azimuth_deg;
     let hold = Hold { handover: Some(([azimuth + 0.1, 0.16], 30.0)), ..Hold::of(300.0) };
     let found = keep(&frames(3, hold), &KeptPlan::of(None));
-    assert!(found.run.conclusion().is_none(), "no session has concluded");
-    let handed =
-        when(&found.run, |event| matches!(event, Event::Navigation(Progress::HandedOver(..))));
+    assert!(found.conclusion().is_none(), "no session has concluded");
+    let handed = when(&found, |event| matches!(event, Event::Navigation(Progress::HandedOver(..))));
     assert!(handed.is_some_and(|at| (30.0..32.0).contains(&at)), "{handed:?}");
-    let [worst, _] = sigmas(&found.run.kept);
+    let [worst, _] = sigmas(&found.kept);
     assert!(worst < 3.5, "{worst} σ");
-    assert!(reported(&found.run).iter().any(|line| line.contains("the precise gyro shows")));
+    assert!(reported(&found).iter().any(|line| line.contains("the precise gyro shows")));
 }

@@ -47,12 +47,12 @@ fn departure(scenario: &FramesScenario) -> f64 {
 }
 
 /// What was reported.
-fn reported<R>(run: &Run<R>) -> Vec<String> {
+fn reported<R, T>(run: &Run<R, T>) -> Vec<String> {
     run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
 /// When the first event of a kind was reported, s.
-fn when<R>(run: &Run<R>, is_it: impl Fn(&Event) -> bool) -> Option<f64> {
+fn when<R, T>(run: &Run<R, T>, is_it: impl Fn(&Event) -> bool) -> Option<f64> {
     let seconds = |at: &Instant| at.as_micros() as f64 * 1e-6;
     run.events.iter().find(|(_, event)| is_it(event)).map(|(at, _)| seconds(at))
 }

@@ -20,10 +20,10 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
             Event::Navigation(Progress::HandedOver(_, outcome)) => Some(*outcome),
             _ => None,
         };
-        let outcomes: Vec<Realigned> = found.run.events.iter().filter_map(handed).collect();
+        let outcomes: Vec<Realigned> = found.events.iter().filter_map(handed).collect();
         let is_fused = matches!(outcomes[..], [Realigned::Taken, Realigned::Fused { .. }, ..]);
         assert!(is_fused, "seed {seed}: {outcomes:?}");
-        let [worst, _] = sigmas(&found.run.kept);
+        let [worst, _] = sigmas(&found.kept);
         assert!(worst < 4.5, "seed {seed}: {worst} σ");
     }
 }
@@ -32,12 +32,12 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
 fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_vertical() {
     let hold = Hold { realigns: true, drive_s: 100.0, stop_s: Some(320.0), ..Hold::of(500.0) };
     let found = keep(&frames(1, hold), &KeptPlan::of(None));
-    let lines = reported(&found.run);
+    let lines = reported(&found);
     let fused = lines.iter().position(|line| line.starts_with("realigned: "));
     let fused = fused.unwrap_or_else(|| panic!("it is realigned: {lines:#?}"));
     assert!(lines[..fused].iter().any(|line| line == "the vehicle stands: aligning anew"));
     assert!(lines[fused..].iter().any(|line| line.starts_with("gyro vertical")));
-    let [worst, _] = sigmas(&found.run.kept);
+    let [worst, _] = sigmas(&found.kept);
     assert!(worst < 4.0, "{worst} σ");
 }
 
@@ -52,7 +52,7 @@ fn a_stage_and_a_turntable_align_anew_where_the_vehicle_stands_for_as_long_as_th
     let on_stage = Trial::of(&stage(hold)).run().expect("the scenario is possible");
     let usual = TurntableScenario::default();
     let turntable = TurntableScenario { base: stage(hold), turns: 4, ..usual };
-    let turning = Trial::of(&turntable).run().expect("the scenario is possible").run;
+    let turning = Trial::of(&turntable).run().expect("the scenario is possible");
     for (name, lines, kept) in [
         ("stage", reported(&on_stage), &on_stage.kept),
         ("turntable", reported(&turning), &turning.kept),
@@ -68,7 +68,7 @@ fn a_stage_and_a_turntable_align_anew_where_the_vehicle_stands_for_as_long_as_th
 fn the_truth_of_an_alignment_at_a_later_stop_is_that_of_the_stop() {
     let hold = Hold { realigns: true, drive_s: 100.0, ..Hold::of(400.0) };
     let scenario = frames(1, hold);
-    let run = keep(&scenario, &KeptPlan::of(None)).run;
+    let run = keep(&scenario, &KeptPlan::of(None));
     let found = run.conclusion().and_then(|conclusion| conclusion.verdict.ok());
     let azimuth = found.expect("it is aligned anew");
     let first_deg = scenario.base.azimuth_deg;
@@ -92,12 +92,12 @@ fn a_base_stays_until_an_alignment_in_a_stated_time_has_ended() {
 fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
     let hold = Hold { realigns: true, drive_s: 100.0, stop_s: Some(80.0), ..Hold::of(400.0) };
     let found = keep(&frames(2, hold), &KeptPlan::of(None));
-    let lines = reported(&found.run);
+    let lines = reported(&found);
     assert!(
         lines.iter().any(|line| line == "no azimuth: the vehicle drove on before it was aligned")
     );
-    assert!(found.run.kept.last().is_some_and(|point| point.report.azimuth.is_some()));
-    let [worst, _] = sigmas(&found.run.kept);
+    assert!(found.kept.last().is_some_and(|point| point.report.azimuth.is_some()));
+    let [worst, _] = sigmas(&found.kept);
     assert!(worst < 4.0, "{worst} σ");
 }
 
@@ -105,9 +105,9 @@ fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
 fn an_azimuth_that_disagrees_is_reported_and_never_fused() {
     let wrong = Hold { handover: Some(([12.0, 0.1], 1600.0)), ..Hold::of(300.0) };
     let found = drive(&vehicle(1, wrong));
-    let lines = reported(&found.run);
+    let lines = reported(&found);
     let line = lines.iter().find(|line| line.contains("disagrees with what was kept"));
     assert!(line.is_some_and(|line| line.ends_with("neither is believed")), "{lines:#?}");
     assert!(lines.iter().any(|line| line.contains("the azimuth is lost")));
-    assert!(found.run.kept.last().is_some_and(|point| point.report.azimuth.is_none()));
+    assert!(found.kept.last().is_some_and(|point| point.report.azimuth.is_none()));
 }

@@ -43,7 +43,7 @@ fn second(
 ) -> VehicleRun {
     // Another seed draws other biases, as a start does.
     let scenario = scenario(2, 20.0, gyro);
-    let truth = before.run.kept.last().expect("it was kept").truth;
+    let truth = before.kept.last().expect("it was kept").truth;
     let stop = Stop {
         seconds: 90.0,
         pitch_deg: truth.pitch_rad.to_degrees() + pitch,
@@ -64,15 +64,14 @@ fn second(
 }
 
 fn refusal(run: &VehicleRun) -> Option<RecallRefusal> {
-    run.run.events.iter().find_map(|(_, event)| match event {
+    run.events.iter().find_map(|(_, event)| match event {
         Event::Navigation(Progress::RecallRefused(refusal)) => Some(*refusal),
         _ => None,
     })
 }
 
 fn is_recalled(run: &VehicleRun) -> bool {
-    run.run
-        .events
+    run.events
         .iter()
         .any(|(_, event)| matches!(event, Event::Navigation(Progress::HeadingRecalled(_))))
 }
@@ -82,12 +81,11 @@ fn a_restart_without_motion_keeps_the_heading() {
     let mut store = Flash::default().store();
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
-    assert!(is_recalled(&after), "{:#?}", reported(&after.run));
-    let (point, [error, sigma]) =
-        after.run.kept.with_azimuth().next().expect("it is known at once");
+    assert!(is_recalled(&after), "{:#?}", reported(&after));
+    let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
     assert!(point.seconds() < 20.0, "after {} s", point.seconds());
     assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
-    assert!(after.run.lines.contains(", recalled"), "{}", after.run.lines);
+    assert!(after.lines.contains(", recalled"), "{}", after.lines);
 }
 
 #[test]
@@ -101,7 +99,7 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
             "{:?}",
             refusal(&after)
         );
-        assert_eq!(after.run.kept.with_azimuth().count(), 0);
+        assert_eq!(after.kept.with_azimuth().count(), 0);
     }
 }
 
@@ -111,7 +109,7 @@ fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.3], STEADY, &mut store);
     assert!(matches!(refusal(&after), Some(RecallRefusal::Tilted { .. })), "{:?}", refusal(&after));
-    assert_eq!(after.run.kept.with_azimuth().count(), 0);
+    assert_eq!(after.kept.with_azimuth().count(), 0);
 }
 
 #[test]
@@ -132,7 +130,7 @@ fn a_vehicle_that_has_set_off_since_is_forgotten() {
     // The supply is lost amid a drive.
     let before = first(90.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
-    assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", reported(&after.run));
+    assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", reported(&after));
 }
 
 #[test]
@@ -151,12 +149,12 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
             .ok()
             .flatten()
             .and_then(|bytes: [u8; Remembered::BYTES]| Remembered::from_bytes(&bytes));
-        let truth = before.run.kept.last().expect("it was kept").report;
+        let truth = before.kept.last().expect("it was kept").report;
         if let (Some(kept), Some(azimuth)) = (kept, truth.azimuth) {
             assert!((kept.azimuth.0 - azimuth.angle.0).abs() < 1e-3, "{words} words");
         }
         if words < 2 {
-            let reported = reported(&before.run);
+            let reported = reported(&before);
             assert!(reported.iter().any(|line| line.contains("cannot be kept")), "{reported:#?}");
         }
     }

@@ -67,13 +67,13 @@ fn healthy(scenario: &FramesScenario) -> FramesRun {
 
 /// Error and σ, °, or why there is none.
 fn found(scenario: &FramesScenario, run: &FramesRun) -> Result<[f64; 2], Refusal> {
-    let azimuth = run.run.conclusion().expect("every run concludes").verdict?;
+    let azimuth = run.conclusion().expect("every run concludes").verdict?;
     let error = azimuth_error(azimuth.angle.degrees(), scenario.base.azimuth_deg);
     Ok([error, azimuth.sigma.degrees()])
 }
 
 fn reported(run: &FramesRun) -> Vec<String> {
-    run.run.events.iter().map(|(_, event)| event.to_string()).collect()
+    run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
 campaigns! {
@@ -87,13 +87,13 @@ fn errors_are_those_that_sigma_says_and_the_gyro_ends_vertical(extent: Extent) {
         .map(|seed| {
             let scenario = drawn(seed);
             let run = healthy(&scenario);
-            assert_eq!(run.run.violations, Vec::<String>::new());
-            assert_eq!(run.run.health.faults(), 0, "seed {seed}: {:?}", run.run.health);
-            assert_eq!(run.run.replay.session.dwells().len(), 24);
-            assert!(run.run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))));
+            assert_eq!(run.violations, Vec::<String>::new());
+            assert_eq!(run.health.faults(), 0, "seed {seed}: {:?}", run.health);
+            assert_eq!(run.replay.session.dwells().len(), 24);
+            assert!(run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))));
             // Within what the drives tolerate, in both angles, of the base's vertical.
-            let [forward, right, down] = run.axis;
-            assert!(forward.hypot(right).atan2(down).to_degrees() < 0.05, "{:?}", run.axis);
+            let [forward, right, down] = run.truth;
+            assert!(forward.hypot(right).atan2(down).to_degrees() < 0.05, "{:?}", run.truth);
             found(&scenario, &run).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"))
         })
         .collect();
@@ -148,14 +148,14 @@ fn assert_refused(
         }
         other => panic!("{other:?}: {:#?}", reported(&run)),
     }
-    assert!(!run.run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))));
-    assert!(run.run.seconds < 400.0, "it takes {} s", run.run.seconds);
+    assert!(!run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))));
+    assert!(run.seconds < 400.0, "it takes {} s", run.seconds);
 }
 
 /// A second into a frame's first half turn, as a healthy run of this scenario has it.
 fn in_half_turn(scenario: &FramesScenario, device: Device) -> Instant {
     let mut before: Option<f64> = None;
-    for (at, event) in healthy(scenario).run.events {
+    for (at, event) in healthy(scenario).events {
         let Event::Turning(axis, angle) = event else { continue };
         let turns = axis == device && before.is_some_and(|before| (angle - before).abs() > 170.0);
         if turns {
@@ -292,15 +292,15 @@ fn the_log_tells_both_frames_and_the_storage_in_order() {
     ] {
         assert!(rest.any(|line| line.contains(part)), "{part} is missing in {reported:#?}");
     }
-    assert!(run.run.lines.contains("azimuth "), "{}", run.run.lines);
+    assert!(run.lines.contains("azimuth "), "{}", run.lines);
     // The frames turn the gyro about its own axis: nothing of that has come into a dwell.
-    assert_eq!(run.run.replay.session.repetitions.len(), 0);
+    assert_eq!(run.replay.session.repetitions.len(), 0);
 }
 
 #[test]
 fn a_seed_gives_one_run_and_another_seed_another() {
     let azimuth = |seed| {
-        let verdict = healthy(&short(seed)).run.conclusion().and_then(|c| c.verdict.ok());
+        let verdict = healthy(&short(seed)).conclusion().and_then(|c| c.verdict.ok());
         verdict.expect("a healthy run").angle.0.to_bits()
     };
     assert_eq!(azimuth(5), azimuth(5));

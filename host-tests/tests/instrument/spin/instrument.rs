@@ -29,28 +29,28 @@ fn short() -> SpinScenario {
 
 /// Error of the roll at the end, rad.
 fn error(run: &SpinRun) -> f64 {
-    wrapped(run.run.replay.spin.roll().rad() - run.truth.roll_rad)
+    wrapped(run.replay.spin.roll().rad() - run.truth.end.roll_rad)
 }
 
 #[test]
 fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
     let run = flown(&SpinScenario::default(), None);
-    let flight = &run.run.replay;
+    let flight = &run.replay;
     let sigma = flight.spin.sigma().expect("it is locked");
     assert!(error(&run).abs() < 4.0 * sigma.0, "{} {}", error(&run), sigma.0);
     assert!(sigma.degrees() < 0.3, "{sigma:?}");
     let [scale, of_scale] = flight.spin.scale().expect("two seconds tell it");
-    assert!((scale - run.truth.gyro_scale_error[0]).abs() < 4.0 * of_scale, "{scale}");
+    assert!((scale - run.truth.end.gyro_scale_error[0]).abs() < 4.0 * of_scale, "{scale}");
     // More lift than weight bends the flight upwards, and nothing to the side.
-    let risen = run.truth.flight.pitch_rad - run.start.flight.pitch_rad;
+    let risen = run.truth.end.flight.pitch_rad - run.truth.start.flight.pitch_rad;
     let pitch = flight.attitude.pitch.0 - risen;
-    let course = wrapped(flight.attitude.course.0 - run.truth.flight.course_rad);
+    let course = wrapped(flight.attitude.course.0 - run.truth.end.flight.course_rad);
     assert!(risen.to_degrees() > 5.0, "{risen}");
     assert!(pitch.abs().to_degrees() < 0.3 && course.abs().to_degrees() < 0.3, "{pitch} {course}");
-    let health = run.run.health;
-    assert_eq!((health.faults(), run.run.violations.len()), (0, 0), "{health:?}");
+    let health = run.health;
+    assert_eq!((health.faults(), run.violations.len()), (0, 0), "{health:?}");
     // Two seconds at 14 400 samples a second.
-    assert!(run.samples.len().abs_diff(28_800) < 10, "{}", run.samples.len());
+    assert!(run.truth.samples.len().abs_diff(28_800) < 10, "{}", run.truth.samples.len());
 }
 
 /// Whether an event tells that the roll has come into one of these conditions.
@@ -60,7 +60,7 @@ fn is_roll(event: &Event, of: &[Condition]) -> bool {
 
 #[test]
 fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
-    let run = flown(&short(), None).run;
+    let run = flown(&short(), None);
     let events: Vec<Event> = run.events.iter().map(|(_, event)| *event).collect();
     assert!(events.contains(&rolled!(Begun)));
     assert!(events.iter().any(|event| is_roll(event, &[Condition::Locked])), "{events:?}");
@@ -73,26 +73,26 @@ fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
 fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
     let scenario = short();
     let run = flown(&scenario, None);
-    let replay = follow(&run.samples, scenario.setting(), f64::INFINITY, Vec::new());
+    let replay = follow(&run.truth.samples, scenario.setting(), f64::INFINITY, Vec::new());
     let end = &replay.answer().end;
-    let flight = run.run.replay.spin;
+    let flight = run.replay.spin;
     assert_eq!(end.roll_rad.to_bits(), flight.roll().rad().to_bits());
     assert_eq!(end.sigma_rad.map(f64::to_bits), flight.sigma().map(|sigma| sigma.0.to_bits()));
     // One seed gives one run.
-    assert_eq!(flown(&scenario, None).samples, run.samples);
+    assert_eq!(flown(&scenario, None).truth.samples, run.truth.samples);
 }
 
 #[test]
 fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
     let run = flown(&SpinScenario::default(), Some(Fault::LiftFades));
-    let events: Vec<Event> = run.run.events.iter().map(|(_, event)| *event).collect();
+    let events: Vec<Event> = run.events.iter().map(|(_, event)| *event).collect();
     assert!(events.iter().any(|event| is_roll(event, &[Condition::Holding])), "{events:?}");
     let back = events.iter().find_map(|event| match event {
         rolled!(LiftBack(seconds)) => Some(*seconds),
         _ => None,
     });
     assert!(back.is_some_and(|seconds| (0.2..0.6).contains(&seconds.0)), "{events:?}");
-    let sigma = run.run.replay.spin.sigma().expect("it is back");
+    let sigma = run.replay.spin.sigma().expect("it is back");
     assert!(error(&run).abs() < 4.0 * sigma.0);
 }
 
@@ -100,8 +100,8 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
 fn a_spin_that_stops_is_reported() {
     let run = flown(&SpinScenario::default(), Some(Fault::SpinStops));
     let stopped = [Condition::NotSpinning, Condition::RotationLost];
-    let mut events = run.run.events.iter();
-    assert!(events.any(|(_, event)| is_roll(event, &stopped)), "{:?}", run.run.events);
+    let mut events = run.events.iter();
+    assert!(events.any(|(_, event)| is_roll(event, &stopped)), "{:?}", run.events);
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn no_fault_makes_a_roll_that_its_sigma_does_not_cover() {
     let scenario = short();
     for fault in Fault::all(Platform::Spin) {
         let run = flown(&scenario, Some(fault));
-        let Some(sigma) = run.run.replay.spin.sigma() else { continue };
+        let Some(sigma) = run.replay.spin.sigma() else { continue };
         // Held on the gyro alone, that is what its scale leaves.
         assert!(error(&run).abs() < 5.0 * sigma.0, "{fault}: {} {}", error(&run), sigma.0);
     }
@@ -122,7 +122,7 @@ fn a_chip_that_fails_for_good_ends_the_flight_with_its_name() {
         let name = fault.to_string();
         name.ends_with("-silent") || name.ends_with("bus-always") || name.ends_with("identity")
     }) {
-        let run = flown(&SpinScenario { seconds: 3.0, ..scenario }, Some(fault)).run;
+        let run = flown(&SpinScenario { seconds: 3.0, ..scenario }, Some(fault));
         let ended = run.events.iter().any(|(_, event)| matches!(event, rolled!(Ended(_))));
         assert!(ended, "{fault}: {:?}", run.events.last());
         assert!(

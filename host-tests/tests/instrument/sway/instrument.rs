@@ -6,6 +6,7 @@ use firmware::event::Event;
 use firmware::ports::{BaseReading, BaseSensors, Startable};
 use firmware::sway::SwayCompensation;
 use host::instrument::{Run, RunError, Trial, align_on};
+use host::methods::stepwise::Replay;
 use host::output::{azimuth_error, degrees};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise;
@@ -36,7 +37,7 @@ fn scenario(seed: u64) -> Scenario {
 }
 
 /// Error and σ of a run, °.
-fn found(scenario: &Scenario, run: &Run) -> Result<[f64; 2], Refusal> {
+fn found<T>(scenario: &Scenario, run: &Run<Replay, T>) -> Result<[f64; 2], Refusal> {
     let verdict = run.conclusion().expect("every run concludes").verdict;
     verdict.map(|azimuth| {
         let error = azimuth_error(azimuth.angle.degrees(), scenario.azimuth_deg);
@@ -253,11 +254,13 @@ fn a_sway_that_a_missing_imu_would_have_measured_is_refused_for_the_missing_imu(
         let frames = FramesScenario { base: scenario, passes: 2, ..FramesScenario::default() };
         // It never answers, on a stage and in two frames, or fails before it has seen enough.
         let never = Trial::of(&scenario).fault(fault).run().expect("possible");
-        let in_frames = Trial::of(&frames).fault(fault).run().expect("possible").run;
+        let in_frames = Trial::of(&frames).fault(fault).run().expect("possible");
         let mut base = Failing { until: Instant::from_secs(5), feels: false, count: 0 };
         let early = on_base(&mut base, &scenario).expect("possible");
-        for run in [&never, &in_frames, &early] {
-            let reason = found(&scenario, run).expect_err("nothing takes the sway off");
+        let found =
+            [found(&scenario, &never), found(&scenario, &in_frames), found(&scenario, &early)];
+        for found in found {
+            let reason = found.expect_err("nothing takes the sway off");
             assert_eq!(reason, Refusal::Stepwise(stepwise::Refusal::SwayUnmeasured), "seed {seed}");
             assert!(reason.to_string().contains("the coarse IMU is missing"), "{reason}");
         }
