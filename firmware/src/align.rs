@@ -4,13 +4,13 @@ use core::convert::Infallible;
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Timer};
-use orientation::alignment::{Method, Request};
+use orientation::alignment::{Method, Progress, Request};
 use orientation::navigation::Aligner;
 use orientation::navigation::aligner::{Input, State};
 use orientation::signal::Timed;
 
 use crate::ports::{Aiding, Recorder};
-use crate::shared::{Channels, QUEUE};
+use crate::shared::{Channels, QUEUE, Shared};
 
 /// Longest rest once the queue is empty. Samples of a fast gyro are then taken several at a time,
 /// because waking for each would cost more than processing it. A quarter of the queue's capacity at
@@ -25,18 +25,13 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     channels: &Channels<'_, S>,
 ) -> Infallible {
     let shared = &channels.shared;
-    let listener = &mut |progress| shared.progress(progress);
     let mut aligner = Aligner::new(method);
-    let give = |aligner: &mut Aligner<'_, S>, input: Input| {
-        shared.observer.aligns(&input);
-        aligner.take(&input, &mut |progress| shared.progress(progress))
-    };
-    let mut request = aligner.begin(listener);
+    let mut request = aligner.begin(&mut listener(shared));
     loop {
         request = match request {
-            Request::Compute => aligner.compute(listener),
+            Request::Compute => aligner.compute(&mut listener(shared)),
             Request::Locate => match aiding.displacement() {
-                Some(place) => give(&mut aligner, Input::Displaced(place)),
+                Some(place) => give(&mut aligner, Input::Displaced(place), shared),
                 None => Request::Continue,
             },
             Request::Done => {
@@ -46,7 +41,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             }
             Request::Continue | Request::MayDrive => {
                 if aligner.state == State::Homing && shared.homed.signaled() {
-                    let first = give(&mut aligner, Input::Homed(shared.sway.get()));
+                    let first = give(&mut aligner, Input::Homed(shared.sway.get()), shared);
                     if first != Request::Continue {
                         request = first;
                         continue;
@@ -60,13 +55,13 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 match &select(shared.orders.wait(), channels.samples.receive()).await {
                     Either::First(order) => {
                         shared.obey(order);
-                        give(&mut aligner, Input::Ordered(*order))
+                        give(&mut aligner, Input::Ordered(*order), shared)
                     }
                     Either::Second(sample) => {
                         if aligner.state == State::Aligning {
                             recorder.record(sample).await;
                         }
-                        aligner.sample(sample, listener)
+                        aligner.sample(sample, &mut listener(shared))
                     }
                 }
             }
@@ -76,4 +71,15 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             }
         };
     }
+}
+
+/// Gives the aligner an input beside its samples.
+fn give<S: Timed>(aligner: &mut Aligner<'_, S>, input: Input, shared: &Shared<'_>) -> Request {
+    shared.observer.aligns(&input);
+    aligner.take(&input, &mut listener(shared))
+}
+
+/// What the aligner reports its progress to.
+fn listener(shared: &Shared<'_>) -> impl FnMut(Progress) {
+    |progress| shared.progress(progress)
 }

@@ -19,7 +19,7 @@ use crate::event::Event;
 use crate::mechanism::Mechanism;
 use crate::motor::Axis;
 use crate::ports::{Actuator, Frames};
-use crate::shared::{LatestAngle, Shared};
+use crate::shared::Shared;
 use crate::stage::Stage;
 use crate::status::Status;
 
@@ -45,11 +45,10 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
     pub fn new(
         actuators: &'a mut Frames<M>,
         configuration: &'a FramesConfiguration,
-        latest: &'a Frames<LatestAngle>,
         shared: &'a Shared<'a>,
     ) -> Self {
         let Frames { outer, inner } = actuators;
-        let drives = &configuration.drives;
+        let (drives, latest) = (&configuration.drives, &shared.angles);
         Self {
             outer: Stage::of(OUTER, outer, &drives.outer, &latest.outer, shared),
             inner: Stage::of(INNER, inner, &drives.inner, &latest.inner, shared),

@@ -9,8 +9,6 @@
 //! not change while a frame moves, so while either frame moves, or the axis is not level, the
 //! reported heading jumps by a quarter of a turn from sample to sample.
 
-use core::cell::Cell;
-
 use embassy_time::{Duration, Instant};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
@@ -238,10 +236,10 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
         encoders: &'a mut Frames<E>,
         configuration: &Configuration,
         frames: &FramesConfiguration,
-        latest: &'a Frames<LatestAngle>,
         shared: &'a Shared<'a>,
     ) -> Self {
         let Frames { outer, inner } = encoders;
+        let latest = &shared.angles;
         let Frames { outer: outer_error, inner: inner_error } = frames.encoders;
         let shaft = |encoder, name, harmonics, latest| {
             Shaft::new(encoder, name, harmonics, configuration, latest, shared)
@@ -321,15 +319,5 @@ impl<E: Encoder> Pointing for FrameShafts<'_, E> {
 
     fn elevation(&self) -> Option<Angle> {
         self.aim.elevation.filter(|_| self.since.elapsed() >= self.rest)
-    }
-}
-
-/// Latest angles of the two frames.
-impl Frames<LatestAngle> {
-    /// Angles without any reading yet.
-    #[must_use]
-    pub fn unread() -> Self {
-        let unread = || Cell::new((Angle(0), Instant::MIN));
-        Self { outer: unread(), inner: unread() }
     }
 }

@@ -18,7 +18,7 @@ use orientation::units::{self, Angle};
 
 use crate::event::Event;
 use crate::health::Health;
-use crate::ports::Observer;
+use crate::ports::{Frames, Observer};
 use crate::retry_budget::{RETRY, Symptom};
 use crate::status::Status;
 
@@ -96,8 +96,8 @@ pub struct Shared<'a> {
     pub is_at_rest: Cell<bool>,
     /// Sampling period; one second until acquisition has stated it.
     pub period: Cell<Duration>,
-    /// The latest angle of the stage's encoder.
-    pub angle: LatestAngle,
+    /// The latest angles of the encoders; the one axis of a stage is the outer one.
+    pub angles: Frames<LatestAngle>,
     /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
     pub sway: Cell<SwayNoise>,
     /// Counters of faults.
@@ -111,6 +111,7 @@ pub struct Shared<'a> {
 impl<'a> Shared<'a> {
     /// Signals and cells without any message.
     pub fn new(observer: &'a dyn Observer) -> Self {
+        let unread = || Cell::new((Angle(0), Instant::MIN));
         Self {
             wanted: Signal::new(),
             orders: Signal::new(),
@@ -125,7 +126,7 @@ impl<'a> Shared<'a> {
             is_kept: Cell::new(false),
             is_at_rest: Cell::new(false),
             period: Cell::new(Duration::from_secs(1)),
-            angle: Cell::new((Angle(0), Instant::MIN)),
+            angles: Frames { outer: unread(), inner: unread() },
             sway: Cell::new(SwayNoise::NONE),
             health: Cell::default(),
             status: Cell::new(Status::Starting),

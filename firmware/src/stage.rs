@@ -45,7 +45,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
         configuration: &StageConfiguration,
         shared: &'a Shared<'a>,
     ) -> Self {
-        Self::of(Axis::ONLY, actuator, configuration, &shared.angle, shared)
+        Self::of(Axis::ONLY, actuator, configuration, &shared.angles.outer, shared)
     }
 
     /// Takes the motor of an axis whose encoder writes its angle to `latest`; nothing moves yet.

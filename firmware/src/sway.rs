@@ -104,10 +104,8 @@ pub struct SwayCompensation<'a, B> {
     axis: [f32; 2],
     /// Whether the sway is observed and subtracted at all.
     compensates: bool,
-    /// Whether the base unit has been given up.
-    is_lost: bool,
-    /// Time at which it was given up.
-    lost: Instant,
+    /// Time at which the base unit was given up.
+    lost: Option<Instant>,
 }
 
 impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
@@ -126,8 +124,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             stage: Angle(0),
             axis: [1.0, 0.0],
             compensates: true,
-            is_lost: false,
-            lost: Instant::MIN,
+            lost: None,
         }
     }
 
@@ -228,16 +225,15 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         if !self.is_decided() {
             shared.sway.set(SwayNoise::UNMEASURED);
         }
-        self.is_lost = true;
-        self.lost = Instant::now();
+        self.lost = Some(Instant::now());
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
     fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
-        if self.is_lost && shared.is_holding() && self.lost.elapsed() >= RETRY {
+        if self.lost.is_some_and(|lost| shared.is_holding() && lost.elapsed() >= RETRY) {
             self.renew();
         }
-        self.is_lost
+        self.lost.is_some()
     }
 
     /// Reports the decision; called when the decision may have been taken.
@@ -271,7 +267,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        self.is_lost = false;
+        self.lost = None;
         if self.base.start(shared).await.is_err() {
             self.lose(shared);
         }
@@ -280,7 +276,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     }
 
     fn is_decided(&self) -> bool {
-        !self.compensates || self.is_lost || self.sway.decision != Decision::Watching
+        !self.compensates || self.lost.is_some() || self.sway.decision != Decision::Watching
     }
 
     async fn follow(&mut self, is_angle_read: bool, shared: &Shared<'_>) -> Result<(), Refusal> {
@@ -297,7 +293,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
 
     fn renew(&mut self) {
         self.base.renew();
-        self.is_lost = false;
+        self.lost = None;
     }
 
     fn compensated(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {

@@ -60,7 +60,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         shared: &'a Shared<'a>,
     ) -> Self {
         Self {
-            motor: Motor::new(Axis::ONLY, actuator, &shared.angle, shared),
+            motor: Motor::new(Axis::ONLY, actuator, &shared.angles.outer, shared),
             configuration: *configuration,
             comparison: Comparison::default(),
             looked: Instant::MIN,

@@ -18,7 +18,7 @@ use crate::configuration::{Configuration, FramesConfiguration, period};
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
 use crate::retry_budget::RETRY;
-use crate::shared::{Channels, LatestAngle};
+use crate::shared::Channels;
 use crate::sway::CompensatesSway;
 
 /// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
@@ -28,23 +28,21 @@ pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     channels: &'a Channels<'a>,
 ) -> impl Source<'a> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
-    let (harmonics, latest) = (configuration.encoder, &channels.shared.angle);
+    let (harmonics, latest) = (configuration.encoder, &channels.shared.angles.outer);
     let shared = &channels.shared;
     let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
     Acquisition::new(gyro, accelerometer, shaft, base, configuration, channels)
 }
 
-/// The sensors of a two-frame mount as a source of samples; nothing is started yet. The latest
-/// frame angles are written to `latest`.
+/// The sensors of a two-frame mount as a source of samples; nothing is started yet.
 pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     sensors: &'a mut Sensors<G, A, Frames<E>, B>,
     configuration: &Configuration,
     frames: &FramesConfiguration,
-    latest: &'a Frames<LatestAngle>,
     channels: &'a Channels<'a>,
 ) -> impl Source<'a> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
-    let shafts = FrameShafts::new(encoder, configuration, frames, latest, &channels.shared);
+    let shafts = FrameShafts::new(encoder, configuration, frames, &channels.shared);
     Acquisition::new(gyro, accelerometer, shafts, base, configuration, channels)
 }
 

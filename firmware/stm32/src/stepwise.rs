@@ -7,7 +7,6 @@ use firmware::configuration::FramesConfiguration;
 use firmware::gimbal::Gimbal;
 use firmware::ports::{Frames, NoRecorder};
 use firmware::run::navigate;
-use firmware::shared::LatestAngle;
 use firmware::stage::Stage;
 use firmware::sway::SwayCompensation;
 use orientation::alignment::stepwise::session::procedure::Procedure;
@@ -22,9 +21,6 @@ use crate::{
     Channels, OnBase, begun, channels, configuration, keeping, on_base, ports, report_conclusion,
     stage_acquisition,
 };
-
-/// The two frames, and the latest angles of their encoders.
-type Mount = (FramesConfiguration, Frames<LatestAngle>);
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
@@ -50,7 +46,7 @@ pub async fn on_a_stage(spawner: Spawner, wires: AxisPlatformWires) {
 /// axis vertical.
 #[embassy_executor::task]
 pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
-    static MOUNT: StaticCell<Mount> = StaticCell::new();
+    static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let frames = match configuration::frames() {
         Ok(frames) => frames,
         Err(error) => return defmt::error!("board: no mount: {}", error),
@@ -60,13 +56,13 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
     let FramesWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
     let (Outlets { mut link, flash }, Frames { outer, inner }) = (outlets, axes);
-    let (mount, channels) = (&*MOUNT.init((frames, Frames::unread())), channels());
+    let (frames, channels) = (&*FRAMES.init(frames), channels());
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
     let base = SwayCompensation::new(on_base(base));
     let inputs = ports::inputs(converter, accelerometer, encoders, base);
-    spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, mount, channels)));
+    spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, frames, channels)));
     let mut motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
-    let mut gimbal = Gimbal::new(&mut motors, &mount.0, &mount.1, &channels.shared);
+    let mut gimbal = Gimbal::new(&mut motors, frames, &channels.shared);
     let outside = (&mut link, &mut NoRecorder);
     let health =
         navigate(&mut gimbal, session, keeping(store(flash)), &(), outside, channels).await;
@@ -77,11 +73,10 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
 #[embassy_executor::task]
 async fn mount_acquisition(
     mut inputs: MountInputs<OnBase>,
-    mount: &'static Mount,
+    frames: &'static FramesConfiguration,
     channels: &'static Channels,
 ) {
-    let ((frames, latest), configuration) = (mount, configuration::instrument());
-    acquire(&mut on_mount(&mut inputs, &configuration, frames, latest, channels)).await;
+    acquire(&mut on_mount(&mut inputs, &configuration::instrument(), frames, channels)).await;
 }
 
 /// Creates the session at its final place in memory; logs why, if there is none.

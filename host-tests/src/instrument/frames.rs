@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use firmware::acquire::{acquire, on_mount};
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, NoBase, Recorder, Store};
+use firmware::ports::{NoBase, Recorder, Store};
 use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::plant::journey::JourneyConfiguration;
 use orientation::alignment::stepwise::session::Session;
@@ -60,7 +60,6 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let board = RefCell::new(scenario.board(journey, injection));
     let harness = Harness::new(watch);
     let channels = harness.channels();
-    let latest = Frames::unread();
     let configuration = scenario.base.configuration();
     let wires = Wires(&board, injection);
     let mut sensors = wires.frame_sensors(scenario).with_base(base);
@@ -68,8 +67,8 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy();
     let ended = harness.run(
-        acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
-        &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
+        acquire(&mut on_mount(&mut sensors, &configuration, &frames, &channels)),
+        &mut Gimbal::new(&mut actuator, &frames, &channels.shared),
         (&mut session, Some(Keeping { keeper: &mut keeper, policy, store })),
         (&scenario.base.hold.aiding(), FaultyRecorder::new(recorder, injection.hang)),
         &channels,

@@ -12,11 +12,12 @@ use orientation::roll as spin;
 use orientation::roll::{Signal, Spin};
 use orientation::signal::{InertialSample, SpinSample};
 use orientation::units::{
-    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds,
-    SpecificForce, SpinForce, TURN,
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds, SpinForce,
+    TURN,
 };
 
 use crate::report::{Report, figure, mean_and_greatest};
+use crate::samples::inertial;
 use firmware::budget::{
     HEADING_INSTRUCTIONS, SPIN_INSTRUCTIONS, VERTICAL_GREATEST_INSTRUCTIONS, VERTICAL_INSTRUCTIONS,
 };
@@ -100,14 +101,8 @@ fn moving(index: u64, rate: u64, noise: &mut Generator, carried: &mut [f64; 3]) 
     let swing = if is_moving { libm::sin(TURN * SWING_HZ * seconds) } else { 0.0 };
     let rates = [0.0, 0.0, RATE * swing];
     let force = [ACCELERATION * swing, 0.0, -9.81];
-    InertialSample {
-        time: Instant((index + 1) * 1_000_000 / rate),
-        turned: core::array::from_fn(|axis| {
-            let angle = (rates[axis] + 1e-5 * noise.gaussian()) / rate as f64;
-            AngleIncrement::from_rad(angle, &mut carried[axis])
-        }),
-        force: Some(force.map(|f| SpecificForce::from_m_per_s2(f + 1e-3 * noise.gaussian()))),
-    }
+    let rates = rates.map(|rate| rate + 1e-5 * noise.gaussian());
+    inertial(index, rate, rates, force.map(|force| force + 1e-3 * noise.gaussian()), carried)
 }
 
 /// Measures a spinning body with noise, in phase lock.

@@ -4,9 +4,9 @@ use core::hint::black_box;
 
 use hal_mock::noise::Generator;
 use orientation::filter::{Coefficients, DesignError, Filter};
-use orientation::signal::Sample;
 use orientation::signal::dwell::DwellAverage;
-use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
+use orientation::signal::{InertialSample, Sample};
+use orientation::units::{Angle, AngleIncrement, AngularRate, Instant, SpecificForce, Temperature};
 
 use crate::report::{Report, figure, mean_and_greatest};
 use firmware::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
@@ -90,5 +90,23 @@ fn sample(index: u64, noise: &mut Generator) -> Sample {
         }),
         temperature: is_slow.then_some(Temperature(25_000 + (index & 0x70) as i32)),
         elevation: None,
+    }
+}
+
+/// Sample number `index` of a body at `rate` samples per second, by its rates of rotation, rad/s, and its
+/// specific force, m/s²; `carried` are the remainders of whole steps.
+pub fn inertial(
+    index: u64,
+    rate: u64,
+    rates: [f64; 3],
+    force: [f64; 3],
+    carried: &mut [f64; 3],
+) -> InertialSample {
+    InertialSample {
+        time: Instant((index + 1) * 1_000_000 / rate),
+        turned: core::array::from_fn(|axis| {
+            AngleIncrement::from_rad(rates[axis] / rate as f64, &mut carried[axis])
+        }),
+        force: Some(force.map(SpecificForce::from_m_per_s2)),
     }
 }

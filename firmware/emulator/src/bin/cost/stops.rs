@@ -11,12 +11,10 @@ use orientation::alignment::stops::stop_detector::{Rests, StopDetector};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
-use orientation::units::{
-    AngleIncrement, DEGREE, DEGREE_PER_HOUR, ForceNoise, Instant, RadiansPerSecond, Seconds,
-    SpecificForce,
-};
+use orientation::units::{DEGREE, DEGREE_PER_HOUR, ForceNoise, RadiansPerSecond, Seconds};
 
 use crate::report::{Report, figure, mean_and_greatest};
+use crate::samples::inertial;
 use firmware::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
 use measure::counter::Counter;
 use measure::stack;
@@ -63,7 +61,7 @@ fn sample(counter: &Counter, report: &mut Report) {
     let mut carried = [0.0; 3];
     let [mean, worst] = mean_and_greatest(SAMPLES, |index| {
         let rates = [0.02, -0.03, 0.4].map(|rate| rate * libm::sin(index as f64 / 700.0));
-        let sample = inertial(index, RATE_HZ, rates, &mut carried);
+        let sample = inertial(index, RATE_HZ, rates, gravity(), &mut carried);
         counter.measure(|| push(&mut stop_detector, &sample)).0
     });
     report.budget("strapdown of three gyros, a sample at 2 kHz", mean, STRAPDOWN_INSTRUCTIONS);
@@ -136,19 +134,12 @@ fn drive() -> StopDetector {
         azimuth += step;
         let north = earth.horizontal_rate();
         let rates = [north.0 * cosine, -north.0 * sine, turning - earth.vertical_rate().0];
-        stop_detector.push(&inertial(index, DRIVE_HZ, rates, &mut carried));
+        stop_detector.push(&inertial(index, DRIVE_HZ, rates, gravity(), &mut carried));
     }
     stop_detector
 }
 
-/// Sample with these rates, rad/s, and gravity as the only force.
-fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> InertialSample {
-    let gravity = setting().site.latitude.gravity();
-    InertialSample {
-        time: Instant((index + 1) * 1_000_000 / rate),
-        turned: core::array::from_fn(|axis| {
-            AngleIncrement::from_rad(rates[axis] / rate as f64, &mut carried[axis])
-        }),
-        force: Some([0.0, 0.0, -gravity.0].map(SpecificForce::from_m_per_s2)),
-    }
+/// The only force of a level vehicle, m/s².
+fn gravity() -> [f64; 3] {
+    [0.0, 0.0, -setting().site.latitude.gravity().0]
 }

@@ -17,7 +17,7 @@ use firmware::keep::Keeping;
 use firmware::mechanism::{Mechanism, Strapdown};
 use firmware::ports::{Aiding, Frames, NoRecorder};
 use firmware::run::navigate;
-use firmware::shared::{Channels, LatestAngle};
+use firmware::shared::Channels;
 use firmware::spin::configuration::SpinConfiguration;
 use firmware::stage::Stage;
 use firmware::turntable::Turntable;
@@ -48,8 +48,6 @@ use crate::outside::{Log, Metering, NoLink};
 /// Injection without faults, for every carrier.
 static HEALTHY: Injection = Injection::NONE;
 
-/// The two frames, and the latest angles of their encoders.
-type Mount = (FramesConfiguration, Frames<LatestAngle>);
 /// The motor of an axis.
 type AxisMotor = SimulatedMotor<'static, Metering>;
 /// The channels between the two halves of an instrument.
@@ -59,7 +57,7 @@ type Lines<S = Sample> = &'static Channels<'static, S>;
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Ground {
     Stage(RefCell<Chips<'static>>, Channels<'static>),
-    Frames(RefCell<GimbalBoard<'static>>, Mount, Channels<'static>),
+    Frames(RefCell<GimbalBoard<'static>>, FramesConfiguration, Channels<'static>),
     Vehicle(RefCell<VehicleBoard<'static>>, Channels<'static, InertialSample>),
     Spin(RefCell<SpinBoard<'static>>, Channels<'static, SpinSample>),
 }
@@ -78,7 +76,7 @@ pub enum Sampling {
     /// On a stage or on a turntable.
     Stage(SimulatedSensors<'static, Metering>, Configuration, Lines),
     /// On a two-frame mount.
-    Frames(FrameSensors<'static, Metering>, Configuration, &'static Mount, Lines),
+    Frames(FrameSensors<'static, Metering>, Configuration, &'static FramesConfiguration, Lines),
     /// In a vehicle.
     Vehicle(SimulatedTriad<'static, Metering>, VehicleConfiguration, Lines<InertialSample>),
     /// On a spinning body.
@@ -92,9 +90,8 @@ impl Sampling {
             Self::Stage(sensors, configuration, channels) => {
                 acquire(&mut acquire::on_stage(sensors, configuration, channels)).await;
             }
-            Self::Frames(sensors, configuration, (frames, latest), channels) => {
-                acquire(&mut acquire::on_mount(sensors, configuration, frames, latest, channels))
-                    .await;
+            Self::Frames(sensors, configuration, frames, channels) => {
+                acquire(&mut acquire::on_mount(sensors, configuration, frames, channels)).await;
             }
             Self::Vehicle(sensors, configuration, channels) => {
                 acquire(&mut TriadAcquisition::new(sensors, configuration, channels)).await;
@@ -112,7 +109,7 @@ pub enum Running {
     /// Multi-position alignment on a stage.
     Stage(AxisMotor, Configuration, Lines, &'static mut stepwise::Session),
     /// Multi-position alignment on a two-frame mount.
-    Frames(Frames<AxisMotor>, &'static Mount, Lines, &'static mut stepwise::Session),
+    Frames(Frames<AxisMotor>, &'static FramesConfiguration, Lines, &'static mut stepwise::Session),
     /// Continuous rotation on a turntable.
     Turntable(AxisMotor, Lines, &'static mut rotating::Session),
     /// Inertial-frame alignment from stop to stop in a vehicle, which then holds its result.
@@ -134,8 +131,8 @@ impl Running {
                 let mut stage = Stage::new(motor, &configuration.stage, &channels.shared);
                 run(&mut stage, *session, None, &(), channels).await;
             }
-            Self::Frames(motors, (frames, latest), channels, session) => {
-                let mut gimbal = Gimbal::new(motors, frames, latest, &channels.shared);
+            Self::Frames(motors, frames, channels, session) => {
+                let mut gimbal = Gimbal::new(motors, frames, &channels.shared);
                 run(&mut gimbal, *session, None, &(), channels).await;
             }
             Self::Turntable(motor, channels, session) => {
@@ -257,16 +254,16 @@ fn on_stage(scenario: &Scenario, (around, log): Outside<'_>) -> Option<Halves> {
 #[inline(never)]
 fn on_mount(scenario: &FramesScenario, (around, log): Outside<'_>) -> Option<Halves> {
     let session = stepwise(|| scenario.prepared())?;
-    let mount = (scenario.frames().ok()?, Frames::unread());
+    let frames = scenario.frames().ok()?;
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    let ground = place(&GROUND, || Ground::Frames(board(), mount, Channels::new(log)));
-    let Ground::Frames(board, mount, channels) = &*ground else { return None };
+    let ground = place(&GROUND, || Ground::Frames(board(), frames, Channels::new(log)));
+    let Ground::Frames(board, frames, channels) = &*ground else { return None };
     let wires = Wires(board, around);
     let sensors = || wires.frame_sensors(scenario);
     let configuration = scenario.base.configuration();
     Some((
-        place(&SAMPLING, || Sampling::Frames(sensors(), configuration, mount, channels)),
-        place(&RUNNING, || Running::Frames(wires.actuators(), mount, channels, session)),
+        place(&SAMPLING, || Sampling::Frames(sensors(), configuration, frames, channels)),
+        place(&RUNNING, || Running::Frames(wires.actuators(), frames, channels, session)),
     ))
 }
 
