@@ -330,14 +330,6 @@ pub struct Sensors<G, A, E, B = NoBase> {
     pub base: B,
 }
 
-impl<G, A, E> Sensors<G, A, E> {
-    /// Adds the compensation of the base's sway.
-    pub fn with_base<B>(self, base: B) -> Sensors<G, A, E, B> {
-        let Self { gyro, accelerometer, encoder, base: NoBase } = self;
-        Sensors { gyro, accelerometer, encoder, base }
-    }
-}
-
 /// The sensors fixed to a vehicle (strapdown), owned by acquisition.
 #[derive(Debug)]
 pub struct VehicleSensors<G, A> {

@@ -45,7 +45,7 @@ use hal_mock::tmc5160::{Oscillator, Tmc5160 as MotorDriverChip};
 use self::fault::{Injection, PortWrapper};
 use self::scenario::Scenario;
 use firmware::chips::AnalogueGyro;
-use firmware::ports::{NoBase, Sensors};
+use firmware::ports::Sensors;
 
 /// Bus clock of the gyro's converter, Hz; it allows 8 MHz.
 const CONVERTER_HERTZ: u32 = 5_000_000;
@@ -111,9 +111,9 @@ type SimulatedAccelerometer<'a, A> = Adxl355<Bus<'a, A>, Delay>;
 /// An encoder behind a simulated port.
 type SimulatedEncoder<'a, A> = Mt6835<Bus<'a, A>, Delay>;
 
-/// The sensors of a simulated board with one encoder, or others.
-pub type SimulatedSensors<'a, A, E = SimulatedEncoder<'a, A>> =
-    Sensors<SimulatedGyro<'a, A>, SimulatedAccelerometer<'a, A>, E>;
+/// The sensors of a simulated board with these encoders, and of its base.
+type SimulatedSensors<'a, A, E, B> =
+    Sensors<SimulatedGyro<'a, A>, SimulatedAccelerometer<'a, A>, E, B>;
 
 /// The motor of an axis of a simulated board.
 pub type SimulatedMotor<'a, A> = Tmc5160<Bus<'a, A>, Delay>;
@@ -123,14 +123,19 @@ pub type SimulatedMotor<'a, A> = Tmc5160<Bus<'a, A>, Delay>;
 pub struct Wires<'a, 'w, A>(pub &'a RefCell<dyn Rig + 'a>, pub &'w A);
 
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
-    /// The sensors of a stage or a turntable, whose accelerometer is given this.
+    /// The sensors of a stage or a turntable, whose accelerometer is given this, beside those of its base.
     #[must_use]
-    pub fn sensors(&self, scenario: &Scenario, force: OutputRate) -> SimulatedSensors<'a, A> {
+    pub fn sensors<B>(
+        &self,
+        scenario: &Scenario,
+        force: OutputRate,
+        base: B,
+    ) -> SimulatedSensors<'a, A, SimulatedEncoder<'a, A>, B> {
         Sensors {
             gyro: self.gyro(Select::Gyro, scenario),
             accelerometer: self.accelerometer(force),
             encoder: self.encoder(Select::Encoder),
-            base: NoBase,
+            base,
         }
     }
 

@@ -224,15 +224,16 @@ fn frame<'a>(
     FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
 }
 
-/// The sensors of a two-frame mount on simulated chips.
-pub type FrameSensors<'a, A> = SimulatedSensors<'a, A, Frames<SimulatedEncoder<'a, A>>>;
-
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
-    /// The sensors of a two-frame mount.
+    /// The sensors of a two-frame mount, beside those of its base.
     #[must_use]
-    pub fn frame_sensors(&self, scenario: &FramesScenario) -> FrameSensors<'a, A> {
+    pub fn frame_sensors<B>(
+        &self,
+        scenario: &FramesScenario,
+        base: B,
+    ) -> SimulatedSensors<'a, A, Frames<SimulatedEncoder<'a, A>>, B> {
         let Sensors { gyro, accelerometer, encoder: outer, base } =
-            self.sensors(&scenario.base, scenario::FORCE);
+            self.sensors(&scenario.base, scenario::FORCE, base);
         let inner = self.encoder(Select::InnerEncoder);
         Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
     }

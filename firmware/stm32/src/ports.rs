@@ -1,6 +1,7 @@
 //! The chips on their wires, as the instrument's ports.
 
 use drivers::ads1262::Ads1262;
+use drivers::ads1262::configuration::Configuration as Conversion;
 use drivers::adxl355::Adxl355;
 use drivers::adxl355::registers::OutputRate;
 use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate as BaseRate};
@@ -45,7 +46,7 @@ pub fn inputs<E, B>(
     encoder: E,
     base: B,
 ) -> Sensors<Gyro, Accelerometer, E, B> {
-    let gyro = gyro(self::converter(converter));
+    let gyro = gyro(self::converter(converter, configuration::CONVERTER));
     Sensors { gyro, accelerometer: accelerometer(force), encoder, base }
 }
 
@@ -68,7 +69,7 @@ pub fn base(bus: BaseBus) -> Base {
 /// Connects the sensors of a vehicle to their wires.
 pub fn triad(converters: [ConverterWires; 3], accelerometer: Device) -> Triad {
     VehicleSensors {
-        gyros: converters.map(|wires| gyro(converter(wires).clocked())),
+        gyros: converters.map(|wires| gyro(converter(wires, configuration::CONVERTER).clocked())),
         accelerometer: self::accelerometer(accelerometer),
     }
 }
@@ -76,15 +77,12 @@ pub fn triad(converters: [ConverterWires; 3], accelerometer: Device) -> Triad {
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
 /// along y and z.
 pub fn spinning(converters: [ConverterWires; 5]) -> Spinning {
-    SpinSensors(converters.map(|wires| {
-        let rate = configuration::SPIN_CONVERTER;
-        Ads1262::new(wires.bus, wires.ready, Delay, rate).clocked()
-    }))
+    SpinSensors(converters.map(|wires| converter(wires, configuration::SPIN_CONVERTER).clocked()))
 }
 
 /// Converter with its data-ready line.
-fn converter(wires: ConverterWires) -> Converter {
-    Ads1262::new(wires.bus, wires.ready, Delay, configuration::CONVERTER)
+fn converter(wires: ConverterWires, configuration: Conversion) -> Converter {
+    Ads1262::new(wires.bus, wires.ready, Delay, configuration)
 }
 
 /// Gyro with its scale and saturation limit.

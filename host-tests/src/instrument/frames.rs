@@ -62,7 +62,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let channels = harness.channels();
     let configuration = scenario.base.configuration();
     let wires = Wires(&board, injection);
-    let mut sensors = wires.frame_sensors(scenario).with_base(base);
+    let mut sensors = wires.frame_sensors(scenario, base);
     let mut actuator = wires.actuators();
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy();

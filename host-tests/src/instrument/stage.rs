@@ -61,7 +61,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let channels = harness.channels();
     let configuration = scenario.configuration();
     let wires = Wires(&board, injection);
-    let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
+    let mut sensors = wires.sensors(scenario, scenario::FORCE, base);
     let mut actuator = wires.actuator(Motor::default());
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let ended = harness.run(

@@ -71,7 +71,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let configuration = scenario.base.configuration();
     let platform = TurntableConfiguration::default();
     let wires = Wires(&board, injection);
-    let mut sensors = wires.sensors(&scenario.base, turntable::FORCE).with_base(base);
+    let mut sensors = wires.sensors(&scenario.base, turntable::FORCE, base);
     let mut actuator = wires.actuator(turntable::motor());
     let mut keeper = Keeper::new(&scenario.base.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy();

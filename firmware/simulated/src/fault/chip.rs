@@ -164,14 +164,9 @@ impl Chip {
 
     /// Whether the chip has a data-ready line: a converter does.
     pub(super) fn has_line(&self) -> bool {
-        let without = [
-            Select::Accelerometer,
-            Select::Encoder,
-            Select::InnerEncoder,
-            Select::Actuator,
-            Select::InnerActuator,
-        ];
-        self.select.is_some_and(|select| !without.contains(&select))
+        use Select::{ForceRight, ForceUp, Gyro, GyroDown, GyroRight, GyroUp};
+        let converters = [Gyro, GyroUp, GyroRight, GyroDown, ForceUp, ForceRight];
+        self.select.is_some_and(|select| converters.contains(&select))
     }
 
     /// The faults of the chip: on an I²C bus the device answers, or does not.

@@ -34,7 +34,8 @@ use static_cell::StaticCell;
 
 use job::Job;
 use meter::{Meter, Task};
-use setup::{Running, Sampling};
+use outside::Metering;
+use setup::{AnyMethod, Ground};
 
 /// Reason for which there is no result.
 #[derive(defmt::Format)]
@@ -56,10 +57,11 @@ struct Harness {
     meter: Meter,
     acquisition: Task,
     instrument: Task,
-    /// Processing half of the instrument, once it has come to its end.
-    finished: OnceCell<&'static Running>,
+    /// Method of the instrument, once it has come to its end.
+    finished: OnceCell<&'static AnyMethod>,
 }
 
+static JOB: StaticCell<Job> = StaticCell::new();
 static HARNESS: StaticCell<Harness> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
@@ -78,7 +80,7 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs results and costs.
 fn run() -> Result<(), Failure> {
-    let job = Job::from_host().ok_or(Failure::NoJob)?;
+    let job: &'static Job = JOB.init(Job::from_host().ok_or(Failure::NoJob)?);
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let harness: &'static Harness = HARNESS.init(Harness {
         meter: Meter::new(Counter::start(peripherals.SYST)),
@@ -87,10 +89,10 @@ fn run() -> Result<(), Failure> {
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    let (sampling, running) = job.begin(&harness.meter).ok_or(Failure::Session)?;
+    let (ground, method) = job.begin(&harness.meter).ok_or(Failure::Session)?;
     let spawner = executor.spawner();
-    spawner.spawn(acquisition(harness, sampling).map_err(|_| Failure::NotStarted)?);
-    spawner.spawn(instrument(harness, running).map_err(|_| Failure::NotStarted)?);
+    spawner.spawn(acquisition(harness, ground).map_err(|_| Failure::NotStarted)?);
+    spawner.spawn(instrument(harness, ground, method).map_err(|_| Failure::NotStarted)?);
     let finished = || harness.finished.get();
     let finished = executor::run(executor, &harness.meter, finished).ok_or(Failure::Deadlock)?;
     finished.log();
@@ -101,17 +103,21 @@ fn run() -> Result<(), Failure> {
 }
 
 #[embassy_executor::task]
-async fn acquisition(harness: &'static Harness, sampling: &'static mut Sampling) {
-    let future = pin!(sampling.run());
+async fn acquisition(harness: &'static Harness, ground: &'static Ground) {
+    let future = pin!(ground.sample(Metering(&harness.meter)));
     harness.acquisition.run(&harness.meter, future).await;
 }
 
 #[embassy_executor::task]
-async fn instrument(harness: &'static Harness, running: &'static mut Running) {
+async fn instrument(
+    harness: &'static Harness,
+    ground: &'static Ground,
+    method: &'static mut AnyMethod,
+) {
     let future = pin!(async move {
-        running.run().await;
+        method.run(ground, Metering(&harness.meter)).await;
         // The task runs once, so nothing was set before.
-        let _ = harness.finished.set(running);
+        let _ = harness.finished.set(method);
     });
     harness.instrument.run(&harness.meter, future).await;
 }

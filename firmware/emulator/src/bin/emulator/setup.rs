@@ -1,21 +1,19 @@
-//! The parts of a run in static memory: the simulated board with the channels, and the two halves of
-//! the instrument.
+//! The parts of a run in static memory: the method, and the simulated board with the channels.
 //!
 //! Every carrier has its variant of one `enum`, so the carriers share the same memory, and a part
-//! that is built lies where it stays.
+//! that is built lies where it stays. Sensors and mechanism belong to the halves of the instrument,
+//! which the tasks run.
 
 use core::cell::RefCell;
 
 use defmt::println;
 use drivers::tmc5160::configuration::Configuration as Motor;
-use firmware::acquire::{self, SpinAcquisition, TriadAcquisition, acquire};
-use firmware::configuration::{
-    Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
-};
+use firmware::acquire::{SpinAcquisition, TriadAcquisition, acquire, on_mount, on_stage};
+use firmware::configuration::{FramesConfiguration, TurntableConfiguration};
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::mechanism::{Mechanism, Strapdown};
-use firmware::ports::{Aiding, Frames, NoRecorder};
+use firmware::ports::{Aiding, NoBase, NoRecorder};
 use firmware::run::navigate;
 use firmware::shared::Channels;
 use firmware::spin::configuration::SpinConfiguration;
@@ -24,20 +22,18 @@ use firmware::turntable::Turntable;
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::spin::plant::SpinBoard;
 use hal_mock::vehicle::plant::VehicleBoard;
-use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::{Method, rotating, stepwise, stops};
 use orientation::attitude::Keeper;
-use orientation::navigation::Policy;
 use orientation::roll::Flight;
 use orientation::signal::{InertialSample, Sample, SpinSample, Timed};
 use simulated::fault::Injection;
-use simulated::mount::{FrameSensors, FramesScenario};
+use simulated::mount::FramesScenario;
 use simulated::scenario::Scenario;
-use simulated::spin::{Course, SimulatedSpin, SpinScenario};
+use simulated::spin::{Course, SpinScenario};
 use simulated::trace::{AZIMUTH, Trace};
 use simulated::turntable::TurntableScenario;
-use simulated::vehicle::{self, SimulatedTriad, VehicleAiding, VehicleScenario};
-use simulated::{self, Chips, SimulatedMotor, SimulatedSensors, Wires, scenario, turntable};
+use simulated::vehicle::{self, VehicleAiding, VehicleScenario};
+use simulated::{self, Chips, Wires, scenario, turntable};
 use static_cell::StaticCell;
 
 use crate::job::Job;
@@ -48,116 +44,117 @@ use crate::outside::{Log, Metering, NoLink};
 /// Injection without faults, for every carrier.
 static HEALTHY: Injection = Injection::NONE;
 
-/// The motor of an axis.
-type AxisMotor = SimulatedMotor<'static, Metering>;
-/// The channels between the two halves of an instrument.
-type Lines<S = Sample> = &'static Channels<'static, S>;
-
-/// What both halves of an instrument use: the simulated board of a carrier, and the channels.
+/// What both halves of an instrument use: the scenario of a carrier, its simulated board, and the
+/// channels.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
-enum Ground {
-    Stage(RefCell<Chips<'static>>, Channels<'static>),
-    Frames(RefCell<GimbalBoard<'static>>, FramesConfiguration, Channels<'static>),
-    Vehicle(RefCell<VehicleBoard<'static>>, Channels<'static, InertialSample>),
-    Spin(RefCell<SpinBoard<'static>>, Channels<'static, SpinSample>),
+pub enum Ground {
+    /// A stage.
+    Stage(&'static Scenario, RefCell<Chips<'static>>, Channels<'static>),
+    /// A two-frame mount, with its geometry.
+    Frames(
+        (&'static FramesScenario, FramesConfiguration),
+        RefCell<GimbalBoard<'static>>,
+        Channels<'static>,
+    ),
+    /// A turntable.
+    Turntable(&'static TurntableScenario, RefCell<Chips<'static>>, Channels<'static>),
+    /// A vehicle.
+    Vehicle(
+        &'static VehicleScenario,
+        RefCell<VehicleBoard<'static>>,
+        Channels<'static, InertialSample>,
+    ),
+    /// A spinning body, with the configuration of its sensors.
+    Spin(SpinConfiguration, RefCell<SpinBoard<'static>>, Channels<'static, SpinSample>),
 }
 
-/// The method of any carrier, the largest object in memory.
-#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
-enum AnyMethod {
-    Stepwise(stepwise::Session),
-    Rotating(rotating::Session),
-    Stops(stops::Session),
-    Flight(Flight),
-}
-
-/// The sampling half of an instrument: sensors, configuration and channels.
-pub enum Sampling {
-    /// On a stage or on a turntable.
-    Stage(SimulatedSensors<'static, Metering>, Configuration, Lines),
-    /// On a two-frame mount.
-    Frames(FrameSensors<'static, Metering>, Configuration, &'static FramesConfiguration, Lines),
-    /// In a vehicle.
-    Vehicle(SimulatedTriad<'static, Metering>, VehicleConfiguration, Lines<InertialSample>),
-    /// On a spinning body.
-    Spin(SimulatedSpin<'static, Metering>, SpinConfiguration, Lines<SpinSample>),
-}
-
-impl Sampling {
-    /// Samples for ever; never returns.
-    pub async fn run(&mut self) {
+impl Ground {
+    /// The sampling half of the instrument: samples for ever; never returns.
+    pub async fn sample(&'static self, around: Metering) {
         match self {
-            Self::Stage(sensors, configuration, channels) => {
-                acquire(&mut acquire::on_stage(sensors, configuration, channels)).await;
+            Self::Stage(scenario, board, channels) => {
+                let mut sensors = Wires(board, &around).sensors(scenario, scenario::FORCE, NoBase);
+                let configuration = scenario.configuration();
+                acquire(&mut on_stage(&mut sensors, &configuration, channels)).await;
             }
-            Self::Frames(sensors, configuration, frames, channels) => {
-                acquire(&mut acquire::on_mount(sensors, configuration, frames, channels)).await;
+            Self::Frames((scenario, frames), board, channels) => {
+                let mut sensors = Wires(board, &around).frame_sensors(scenario, NoBase);
+                let configuration = scenario.base.configuration();
+                acquire(&mut on_mount(&mut sensors, &configuration, frames, channels)).await;
             }
-            Self::Vehicle(sensors, configuration, channels) => {
-                acquire(&mut TriadAcquisition::new(sensors, configuration, channels)).await;
+            Self::Turntable(TurntableScenario { base, .. }, board, channels) => {
+                let mut sensors = Wires(board, &around).sensors(base, turntable::FORCE, NoBase);
+                let configuration = base.configuration();
+                acquire(&mut on_stage(&mut sensors, &configuration, channels)).await;
             }
-            Self::Spin(sensors, configuration, channels) => {
-                acquire(&mut SpinAcquisition::new(sensors, configuration, channels)).await;
+            Self::Vehicle(scenario, board, channels) => {
+                let mut sensors = Wires(board, &around).triad(scenario);
+                let configuration = scenario.configuration();
+                acquire(&mut TriadAcquisition::new(&mut sensors, &configuration, channels)).await;
+            }
+            Self::Spin(configuration, board, channels) => {
+                let mut sensors = Wires(board, &around).spinning();
+                acquire(&mut SpinAcquisition::new(&mut sensors, configuration, channels)).await;
             }
         }
     }
 }
 
-/// The processing half of an instrument: mechanism, channels and method.
+/// The method of any carrier, the largest object in memory.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
-pub enum Running {
-    /// Multi-position alignment on a stage.
-    Stage(AxisMotor, Configuration, Lines, &'static mut stepwise::Session),
-    /// Multi-position alignment on a two-frame mount.
-    Frames(Frames<AxisMotor>, &'static FramesConfiguration, Lines, &'static mut stepwise::Session),
+pub enum AnyMethod {
+    /// Multi-position alignment on a stage or on a two-frame mount.
+    Stepwise(stepwise::Session),
     /// Continuous rotation on a turntable.
-    Turntable(AxisMotor, Lines, &'static mut rotating::Session),
-    /// Inertial-frame alignment from stop to stop in a vehicle, which then holds its result.
-    Vehicle(
-        VehicleAiding<'static, 'static>,
-        (Keeper, Policy),
-        Lines<InertialSample>,
-        &'static mut stops::Session,
-    ),
+    Rotating(rotating::Session),
+    /// Inertial-frame alignment from stop to stop in a vehicle, with the keeper of its result.
+    Stops(stops::Session, Keeper),
     /// Tracking of the roll of a spinning body.
-    Spin(Lines<SpinSample>, &'static mut Flight),
+    Flight(Flight),
 }
 
-impl Running {
-    /// Runs the instrument to its end.
-    pub async fn run(&mut self) {
-        match self {
-            Self::Stage(motor, configuration, channels, session) => {
-                let mut stage = Stage::new(motor, &configuration.stage, &channels.shared);
-                run(&mut stage, *session, None, &(), channels).await;
+impl AnyMethod {
+    /// The processing half of the instrument: runs it to its end.
+    pub async fn run(&mut self, ground: &'static Ground, around: Metering) {
+        match (ground, self) {
+            (Ground::Stage(scenario, board, channels), Self::Stepwise(session)) => {
+                let mut motor = Wires(board, &around).actuator(Motor::default());
+                let configuration = scenario.configuration().stage;
+                let mut stage = Stage::new(&mut motor, &configuration, &channels.shared);
+                run(&mut stage, session, None, &(), channels).await;
             }
-            Self::Frames(motors, frames, channels, session) => {
-                let mut gimbal = Gimbal::new(motors, frames, &channels.shared);
-                run(&mut gimbal, *session, None, &(), channels).await;
+            (Ground::Frames((_, frames), board, channels), Self::Stepwise(session)) => {
+                let mut motors = Wires(board, &around).actuators();
+                let mut gimbal = Gimbal::new(&mut motors, frames, &channels.shared);
+                run(&mut gimbal, session, None, &(), channels).await;
             }
-            Self::Turntable(motor, channels, session) => {
+            (Ground::Turntable(_, board, channels), Self::Rotating(session)) => {
+                let mut motor = Wires(board, &around).actuator(turntable::motor());
                 let tolerances = TurntableConfiguration::default();
-                let mut platform = Turntable::new(motor, &tolerances, &channels.shared);
-                run(&mut platform, *session, None, &(), channels).await;
+                let mut platform = Turntable::new(&mut motor, &tolerances, &channels.shared);
+                run(&mut platform, session, None, &(), channels).await;
             }
-            Self::Vehicle(aiding, (keeper, policy), channels, session) => {
-                let keeping = Keeping { keeper, policy: *policy, store: () };
+            (Ground::Vehicle(scenario, board, channels), Self::Stops(session, keeper)) => {
+                let keeping = Some(Keeping { keeper, policy: scenario.policy(), store: () });
+                let aiding = VehicleAiding::new(board, scenario);
                 let mut body = Strapdown::new(&channels.shared);
-                run(&mut body, *session, Some(keeping), aiding, channels).await;
+                run(&mut body, session, keeping, &aiding, channels).await;
             }
-            Self::Spin(channels, flight) => {
-                run(&mut Strapdown::new(&channels.shared), *flight, None, &(), channels).await;
+            (Ground::Spin(.., channels), Self::Flight(flight)) => {
+                run(&mut Strapdown::new(&channels.shared), flight, None, &(), channels).await;
             }
+            // Every method is built with the ground that it is for.
+            _ => {}
         }
     }
 
     /// Logs what was found.
     pub fn log(&self) {
         match self {
-            Self::Stage(.., session) | Self::Frames(.., session) => log::<Sample, _>(*session),
-            Self::Turntable(.., session) => log::<Sample, _>(*session),
-            Self::Vehicle(.., session) => log::<InertialSample, _>(*session),
-            Self::Spin(_, flight) => log::<SpinSample, _>(*flight),
+            Self::Stepwise(session) => log::<Sample, _>(session),
+            Self::Rotating(session) => log::<Sample, _>(session),
+            Self::Stops(session, _) => log::<InertialSample, _>(session),
+            Self::Flight(flight) => log::<SpinSample, _>(flight),
         }
     }
 }
@@ -188,15 +185,10 @@ fn log<S, T: Method<S> + Trace>(method: &T) {
     }
 }
 
-/// The two halves of an instrument at their final place in memory.
-type Halves = (&'static mut Sampling, &'static mut Running);
-
 static METHOD: StaticCell<AnyMethod> = StaticCell::new();
 static GROUND: StaticCell<Ground> = StaticCell::new();
 static COURSE: StaticCell<Course> = StaticCell::new();
 static LOG: StaticCell<Log> = StaticCell::new();
-static SAMPLING: StaticCell<Sampling> = StaticCell::new();
-static RUNNING: StaticCell<Running> = StaticCell::new();
 
 /// Builds a part in static memory. Not inlined, so that temporary copies on the stack are gone when
 /// the method runs.
@@ -205,119 +197,69 @@ fn place<T>(cell: &'static StaticCell<T>, build: impl FnOnce() -> T) -> &'static
     cell.init_with(build)
 }
 
+/// What a run uses, at its final place in memory.
+type Parts = (&'static Ground, &'static mut AnyMethod);
+
 impl Job {
     /// Builds the whole run at its final place in memory; `None` where the scenario does not allow a
     /// start.
-    pub fn begin(&self, meter: &'static Meter) -> Option<Halves> {
-        let outside = (&Metering(meter), &*LOG.init(Log(meter)));
+    pub fn begin(&'static self, meter: &'static Meter) -> Option<Parts> {
+        let log = &*LOG.init(Log(meter));
         match self {
-            Self::Stage(scenario) => on_stage(scenario, outside),
-            Self::Frames(scenario) => on_mount(scenario, outside),
-            Self::Turntable(scenario) => on_turntable(scenario, outside),
-            Self::Vehicle(scenario) => in_vehicle(scenario, outside),
-            Self::Spin(scenario) => on_spinning_body(scenario, outside),
+            Self::Stage(scenario) => for_stage(scenario, log),
+            Self::Frames(scenario) => for_frames(scenario, log),
+            Self::Turntable(scenario) => for_turntable(scenario, log),
+            Self::Vehicle(scenario) => for_vehicle(scenario, log),
+            Self::Spin(scenario) => for_spinning_body(scenario, log),
         }
-    }
-}
-
-/// The meter around every port, and the observer.
-type Outside<'m> = (&'m Metering, &'static Log);
-
-/// Builds the session of a multi-position alignment.
-#[inline(never)]
-fn stepwise(prepared: impl FnOnce() -> Option<Prepared>) -> Option<&'static mut stepwise::Session> {
-    let prepared = prepared()?;
-    match place(&METHOD, || AnyMethod::Stepwise(prepared.into())) {
-        AnyMethod::Stepwise(session) => Some(session),
-        _ => None,
     }
 }
 
 /// Builds a multi-position alignment on a stage.
 #[inline(never)]
-fn on_stage(scenario: &Scenario, (around, log): Outside<'_>) -> Option<Halves> {
-    let session = stepwise(|| scenario.prepared())?;
+fn for_stage(scenario: &'static Scenario, log: &'static Log) -> Option<Parts> {
+    let prepared = scenario.prepared()?;
     let board = || RefCell::new(simulated::board(scenario, None, &HEALTHY));
-    let ground = place(&GROUND, || Ground::Stage(board(), Channels::new(log)));
-    let Ground::Stage(board, channels) = &*ground else { return None };
-    let wires = Wires(board, around);
-    let sensors = || wires.sensors(scenario, scenario::FORCE);
-    let motor = || wires.actuator(Motor::default());
-    let configuration = scenario.configuration();
-    Some((
-        place(&SAMPLING, || Sampling::Stage(sensors(), configuration, channels)),
-        place(&RUNNING, || Running::Stage(motor(), configuration, channels, session)),
-    ))
+    let ground = || Ground::Stage(scenario, board(), Channels::new(log));
+    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Stepwise(prepared.into()))))
 }
 
 /// Builds a multi-position alignment on a two-frame mount.
 #[inline(never)]
-fn on_mount(scenario: &FramesScenario, (around, log): Outside<'_>) -> Option<Halves> {
-    let session = stepwise(|| scenario.prepared())?;
-    let frames = scenario.frames().ok()?;
+fn for_frames(scenario: &'static FramesScenario, log: &'static Log) -> Option<Parts> {
+    let (prepared, frames) = (scenario.prepared()?, scenario.frames().ok()?);
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    let ground = place(&GROUND, || Ground::Frames(board(), frames, Channels::new(log)));
-    let Ground::Frames(board, frames, channels) = &*ground else { return None };
-    let wires = Wires(board, around);
-    let sensors = || wires.frame_sensors(scenario);
-    let configuration = scenario.base.configuration();
-    Some((
-        place(&SAMPLING, || Sampling::Frames(sensors(), configuration, frames, channels)),
-        place(&RUNNING, || Running::Frames(wires.actuators(), frames, channels, session)),
-    ))
+    let ground = || Ground::Frames((scenario, frames), board(), Channels::new(log));
+    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Stepwise(prepared.into()))))
 }
 
 /// Builds an alignment on a rotating platform.
 #[inline(never)]
-fn on_turntable(scenario: &TurntableScenario, (around, log): Outside<'_>) -> Option<Halves> {
+fn for_turntable(scenario: &'static TurntableScenario, log: &'static Log) -> Option<Parts> {
     let (setting, procedure) = scenario.checked()?;
-    let method = place(&METHOD, || AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
-    let AnyMethod::Rotating(session) = method else { return None };
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    let ground = place(&GROUND, || Ground::Stage(board(), Channels::new(log)));
-    let Ground::Stage(board, channels) = &*ground else { return None };
-    let wires = Wires(board, around);
-    let sensors = || wires.sensors(&scenario.base, turntable::FORCE);
-    let motor = || wires.actuator(turntable::motor());
-    let configuration = scenario.base.configuration();
-    Some((
-        place(&SAMPLING, || Sampling::Stage(sensors(), configuration, channels)),
-        place(&RUNNING, || Running::Turntable(motor(), channels, session)),
-    ))
+    let ground = || Ground::Turntable(scenario, board(), Channels::new(log));
+    let method = || AnyMethod::Rotating(rotating::Session::of(setting, procedure));
+    Some((place(&GROUND, ground), place(&METHOD, method)))
 }
 
 /// Builds an alignment in a vehicle.
 #[inline(never)]
-fn in_vehicle(scenario: &VehicleScenario, (around, log): Outside<'_>) -> Option<Halves> {
-    let (setting, procedure) = scenario.checked()?;
-    let method = place(&METHOD, || AnyMethod::Stops(stops::Session::of(setting, procedure)));
-    let AnyMethod::Stops(session) = method else { return None };
-    let setting = scenario.keeper()?;
+fn for_vehicle(scenario: &'static VehicleScenario, log: &'static Log) -> Option<Parts> {
+    let ((setting, procedure), keeper) = (scenario.checked()?, scenario.keeper()?);
     let board = || RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY));
-    let ground = place(&GROUND, || Ground::Vehicle(board(), Channels::new(log)));
-    let Ground::Vehicle(board, channels) = &*ground else { return None };
-    let sensors = || Wires(board, around).triad(scenario);
-    let aiding = || VehicleAiding::new(board, scenario);
-    let keeping = || (Keeper::new(&setting), scenario.policy());
-    Some((
-        place(&SAMPLING, || Sampling::Vehicle(sensors(), scenario.configuration(), channels)),
-        place(&RUNNING, || Running::Vehicle(aiding(), keeping(), channels, session)),
-    ))
+    let ground = || Ground::Vehicle(scenario, board(), Channels::new(log));
+    let session = || stops::Session::of(setting, procedure);
+    let method = || AnyMethod::Stops(session(), Keeper::new(&keeper));
+    Some((place(&GROUND, ground), place(&METHOD, method)))
 }
 
 /// Builds the tracking of the roll of a spinning body.
 #[inline(never)]
-fn on_spinning_body(scenario: &SpinScenario, (around, log): Outside<'_>) -> Option<Halves> {
+fn for_spinning_body(scenario: &'static SpinScenario, log: &'static Log) -> Option<Parts> {
     let configuration = scenario.configuration()?;
-    let method = place(&METHOD, || AnyMethod::Flight(scenario.flight()));
-    let AnyMethod::Flight(flight) = method else { return None };
     let course = &*COURSE.init_with(|| scenario.course(None));
     let board = || RefCell::new(scenario.board(course, &HEALTHY));
-    let ground = place(&GROUND, || Ground::Spin(board(), Channels::new(log)));
-    let Ground::Spin(board, channels) = &*ground else { return None };
-    let sensors = || Wires(board, around).spinning();
-    Some((
-        place(&SAMPLING, || Sampling::Spin(sensors(), configuration, channels)),
-        place(&RUNNING, || Running::Spin(channels, flight)),
-    ))
+    let ground = || Ground::Spin(configuration, board(), Channels::new(log));
+    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Flight(scenario.flight()))))
 }
