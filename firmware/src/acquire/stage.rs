@@ -88,15 +88,12 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
         self.pointing.renew();
     }
 
-    /// Reads the coarse sensors, where this is their moment, and passes a reading on to attitude and
-    /// heading.
-    async fn follow(&mut self, is_angle_read: bool) -> Result<(), Refusal> {
+    /// Passes a coarse reading on to attitude and heading.
+    fn pass_on(&mut self) {
         let shared = self.outlet.shared();
-        self.compensation.follow(is_angle_read, shared).await?;
         if let Some((at, reading)) = self.compensation.reading() {
             self.coarse.pass_on(at, &reading, shared);
         }
-        Ok(())
     }
 }
 
@@ -127,15 +124,17 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             Ok(rate) => rate,
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None)?,
         };
+        self.compensation.follow(false, shared).await?;
         self.coarse.turn(time, rate);
-        self.follow(false).await?;
+        self.pass_on();
         if !self.compensation.is_decided() {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         let shown = self.pointing.read().await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
-        self.follow(true).await?;
+        self.compensation.follow(true, shared).await?;
+        self.pass_on();
         if P::FORCE_ON_BASE {
             self.coarse.feel(force.map(|reading| reading.force));
         }
@@ -165,8 +164,9 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
-            self.follow(false).await?;
-            self.follow(true).await?;
+            self.compensation.follow(false, shared).await?;
+            self.compensation.follow(true, shared).await?;
+            self.pass_on();
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.is_idle() {
                 shared.fail(reason);

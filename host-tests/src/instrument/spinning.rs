@@ -92,11 +92,12 @@ impl Carrier for SpinScenario {
             plant.truth_at(embassy_time::Instant::from_micros(time.0))
         };
         let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
-        let (start, flown) = (at(&fresh, time(kept.taken.first())), &board.borrow().plant);
-        let rolls_rad = kept.taken.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
-        let end = at(flown, time(kept.taken.last()));
+        let (start, flown) = (at(&fresh, time(kept.taken.first())), board.borrow());
+        let roll = |sample: &SpinSample| at(&flown.plant, sample.time).roll_rad;
+        let rolls_rad = kept.taken.iter().map(roll).collect();
+        let end = at(&flown.plant, time(kept.taken.last()));
         let truth = Flown { samples: kept.taken, rolls_rad, start, end };
-        drop(channels);
+        drop((channels, flown));
         Ok(harness.clear(ended, &board, flight, truth))
     }
 }

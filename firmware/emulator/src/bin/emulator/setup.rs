@@ -22,6 +22,7 @@ use firmware::turntable::Turntable;
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::spin::plant::SpinBoard;
 use hal_mock::vehicle::plant::VehicleBoard;
+use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::{Method, rotating, stepwise, stops};
 use orientation::attitude::Keeper;
 use orientation::roll::Flight;
@@ -215,51 +216,55 @@ impl Job {
     }
 }
 
+/// Builds the session of a multi-position alignment.
+#[inline(never)]
+fn stepwise(prepared: impl FnOnce() -> Option<Prepared>) -> Option<&'static mut AnyMethod> {
+    let prepared = prepared()?;
+    Some(place(&METHOD, || AnyMethod::Stepwise(prepared.into())))
+}
+
 /// Builds a multi-position alignment on a stage.
 #[inline(never)]
 fn for_stage(scenario: &'static Scenario, log: &'static Log) -> Option<Parts> {
-    let prepared = scenario.prepared()?;
+    let method = stepwise(|| scenario.prepared())?;
     let board = || RefCell::new(simulated::board(scenario, None, &HEALTHY));
-    let ground = || Ground::Stage(scenario, board(), Channels::new(log));
-    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Stepwise(prepared.into()))))
+    Some((place(&GROUND, || Ground::Stage(scenario, board(), Channels::new(log))), method))
 }
 
 /// Builds a multi-position alignment on a two-frame mount.
 #[inline(never)]
 fn for_frames(scenario: &'static FramesScenario, log: &'static Log) -> Option<Parts> {
-    let (prepared, frames) = (scenario.prepared()?, scenario.frames().ok()?);
+    let method = stepwise(|| scenario.prepared())?;
+    let mount = (scenario, scenario.frames().ok()?);
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    let ground = || Ground::Frames((scenario, frames), board(), Channels::new(log));
-    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Stepwise(prepared.into()))))
+    Some((place(&GROUND, || Ground::Frames(mount, board(), Channels::new(log))), method))
 }
 
 /// Builds an alignment on a rotating platform.
 #[inline(never)]
 fn for_turntable(scenario: &'static TurntableScenario, log: &'static Log) -> Option<Parts> {
     let (setting, procedure) = scenario.checked()?;
+    let method = place(&METHOD, || AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    let ground = || Ground::Turntable(scenario, board(), Channels::new(log));
-    let method = || AnyMethod::Rotating(rotating::Session::of(setting, procedure));
-    Some((place(&GROUND, ground), place(&METHOD, method)))
+    Some((place(&GROUND, || Ground::Turntable(scenario, board(), Channels::new(log))), method))
 }
 
 /// Builds an alignment in a vehicle.
 #[inline(never)]
 fn for_vehicle(scenario: &'static VehicleScenario, log: &'static Log) -> Option<Parts> {
     let ((setting, procedure), keeper) = (scenario.checked()?, scenario.keeper()?);
-    let board = || RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY));
-    let ground = || Ground::Vehicle(scenario, board(), Channels::new(log));
     let session = || stops::Session::of(setting, procedure);
-    let method = || AnyMethod::Stops(session(), Keeper::new(&keeper));
-    Some((place(&GROUND, ground), place(&METHOD, method)))
+    let method = place(&METHOD, || AnyMethod::Stops(session(), Keeper::new(&keeper)));
+    let board = || RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY));
+    Some((place(&GROUND, || Ground::Vehicle(scenario, board(), Channels::new(log))), method))
 }
 
 /// Builds the tracking of the roll of a spinning body.
 #[inline(never)]
 fn for_spinning_body(scenario: &'static SpinScenario, log: &'static Log) -> Option<Parts> {
     let configuration = scenario.configuration()?;
+    let method = place(&METHOD, || AnyMethod::Flight(scenario.flight()));
     let course = &*COURSE.init_with(|| scenario.course(None));
     let board = || RefCell::new(scenario.board(course, &HEALTHY));
-    let ground = || Ground::Spin(configuration, board(), Channels::new(log));
-    Some((place(&GROUND, ground), place(&METHOD, || AnyMethod::Flight(scenario.flight()))))
+    Some((place(&GROUND, || Ground::Spin(configuration, board(), Channels::new(log))), method))
 }
