@@ -55,7 +55,7 @@ pub fn of_stage(session: &Session) -> Vec<String> {
     let Some((conclusion, fit)) = found.and_then(|found| Some((found, found.fit.as_ref()?))) else {
         return Vec::new();
     };
-    let setting = session.setting();
+    let setting = &session.setting;
     let tilt = &conclusion.tilt;
     let is_level =
         tilt.magnitude() < LEVEL * tilt.covariance[0][0].max(tilt.covariance[1][1]).sqrt();
@@ -92,9 +92,9 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         sigma: azimuth.sigma.0,
         ratio: fit.ratio,
         unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
-        felt: felt(&session.setting().site, fit.tilt),
+        felt: felt(&session.setting.site, fit.tilt),
     };
-    let is_one_lag = !session.setting().sensor.is_flat && conclusion.pairs.len() < 2;
+    let is_one_lag = !session.setting.sensor.is_flat && conclusion.pairs.len() < 2;
     let assumed = [
         (is_one_lag, LAG_OF_ONE_SPEED),
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
@@ -111,7 +111,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
 
 /// What it rests on that a sensor of unknown lag lags at a speed without a rate-modulated turn as one pole does.
 fn pole(session: &rotating::Session, conclusion: &PlatformConclusion) -> Option<String> {
-    let setting = session.setting();
+    let setting = &session.setting;
     let horizontal = setting.site.latitude.horizontal_rate();
     let off = |pair: &Pair| {
         let misalignment = misalignment::nearest(&conclusion.misalignments, pair.speed())?;

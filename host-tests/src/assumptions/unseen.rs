@@ -34,7 +34,7 @@ pub struct Unseen {
 pub fn of_stage(session: &Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
-    let slow = conclusion.slow_motions(session.setting(), session.dwells());
+    let slow = conclusion.slow_motions(&session.setting, session.dwells());
     let motions = [TURNING, TILTING].into_iter().zip(slow);
     motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma.0)).collect()
 }
@@ -43,7 +43,7 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
 pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
     let Some((conclusion, azimuth)) = found else { return Vec::new() };
-    let turn = conclusion.slow_turn(session.setting(), &session.turn_accumulator);
+    let turn = conclusion.slow_turn(&session.setting, &session.turn_accumulator);
     Unseen::of(TURNING, turn, azimuth.sigma.0).into_iter().collect()
 }
 

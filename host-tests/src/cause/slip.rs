@@ -32,7 +32,7 @@ pub fn of(session: &Session, refusal: &Refusal) -> Option<String> {
             | Refusal::EarthRateMismatch { .. }
             | Refusal::Stepwise(Stepwise::NoiseNotAsStated { .. } | Stepwise::Disturbed { .. })
     );
-    let (dwells, rate) = (session.dwells(), session.setting().site.latitude.horizontal_rate());
+    let (dwells, rate) = (session.dwells(), session.setting.site.latitude.horizontal_rate());
     if !is_scattered || dwells.len() < 5 + FREE {
         return None;
     }

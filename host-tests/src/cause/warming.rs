@@ -33,7 +33,7 @@ pub fn of(session: &Session, refusal: &Refusal, is_reversed: bool) -> Option<Str
         Refusal::AccelerometerDisagrees { .. }
             | Refusal::Stepwise(stepwise::Refusal::TiltStepped { .. })
     );
-    let (dwells, gravity) = (session.dwells(), session.setting().site.latitude.gravity());
+    let (dwells, gravity) = (session.dwells(), session.setting.site.latitude.gravity());
     let steady = fit(dwells, gravity.0, 1.0, Column::Absent)?;
     let drifting = fit(dwells, gravity.0, 1.0, Column::Free)?;
     let reversed = fit(dwells, gravity.0, -1.0, Column::Absent).filter(|_| is_reversed);

@@ -331,7 +331,7 @@ fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
         let [_, (_, found), ..] = session.surveyed.expect("there was a survey").in_field_units();
         let n = found.value().expect("N is observable");
         assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
-        let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };
+        let Schedule::Planned(plan) = session.procedure.schedule else { panic!("no plan") };
         assert!(
             (plan.seconds.0 - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions()
         );

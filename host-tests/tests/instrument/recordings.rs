@@ -87,7 +87,7 @@ fn compare_stage<T, C: Recorded<Run = Run<stepwise::Replay, T>>>(
     let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(reported_of_stage(&again), reported_of_stage(&run.replay));
-    assert_eq!(again.session.setting(), run.replay.session.setting());
+    assert_eq!(again.session.setting, run.replay.session.setting);
 }
 
 fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {

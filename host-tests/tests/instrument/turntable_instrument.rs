@@ -66,8 +66,7 @@ fn the_default_run_finds_north_and_breaks_no_rule_of_a_chip() {
     assert_north(&scenario, &run);
     assert_eq!(run.violations, Vec::<String>::new());
     assert_eq!(run.health.faults(), 0, "{:?}", run.health);
-    let misalignment =
-        run.replay.misalignments().next().expect("the rate-modulated turns show it");
+    let misalignment = run.replay.misalignments().next().expect("the rate-modulated turns show it");
     let off = misalignment.angle().degrees() - scenario.elevation_deg;
     assert!(off.abs() < 1e-3, "the axis is found {off}° beside its elevation");
     assert_eq!(run.replay.turns(), (20, 20));

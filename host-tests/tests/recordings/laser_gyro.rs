@@ -138,7 +138,7 @@ fn a_minute_gives_north_to_a_tenth_of_a_degree_with_n_from_the_recording() {
 #[test]
 fn dither_and_increments_are_not_taken_for_angle_random_walk() {
     let replay = replayed(&parked(HALF_AN_HOUR_S, 1.0), 3, None);
-    let walk = replay.session.setting().site.noise.model().angle_random_walk;
+    let walk = replay.session.setting.site.noise.model().angle_random_walk;
     let n = walk.0 / orientation::units::DEGREE_PER_SQRT_HOUR;
     println!("N {n:.5} °/√h");
     assert!((n / GYRO[0] - 1.0).abs() < 0.25, "{n} °/√h");

@@ -46,7 +46,7 @@ fn a_rate_that_the_times_contradict_by_more_than_a_per_cent_is_refused_with_both
     header.rate_hz = Some(25.1);
     let replay = replayed(&header, &rows).expect("within a per cent");
     // What is left of the contradiction is a scale error.
-    assert!(replay.session.setting().site.scale_sigma >= 0.003);
+    assert!(replay.session.setting.site.scale_sigma >= 0.003);
 }
 
 /// A session that is given one period and given another, s.
@@ -169,7 +169,7 @@ fn noise_that_was_stated_too_small_is_taken_as_the_recording_shows_it() {
         let (mut header, rows) = recorded(name);
         header.gyro_n_deg_sqrt_h = Some(true_n / 10.0);
         let replay = replayed(&header, &rows).expect("it replays");
-        let walk = replay.session.setting().site.noise.model().angle_random_walk;
+        let walk = replay.session.setting.site.noise.model().angle_random_walk;
         let n = walk.0 / orientation::units::DEGREE_PER_SQRT_HOUR;
         println!("{name}: {n:.4} °/√h of {true_n}");
         assert!((n / true_n - 1.0).abs() < 0.3, "{name}: {n}");

@@ -46,7 +46,7 @@ fn write(
     of: &[Sample],
 ) -> io::Result<()> {
     let setting = setting.ok_or(io::ErrorKind::InvalidInput)?;
-    let setting = Setting { sway: run.replay.session.setting().sway, ..setting };
+    let setting = Setting { sway: run.replay.session.setting.sway, ..setting };
     let ended = run.conclusion().and_then(|conclusion| conclusion.verdict.err());
     let mut head = Vec::new();
     header(&mut head, Kind::Stage, scenario, &setting.site)?;

@@ -15,7 +15,7 @@ const COLUMNS: &str = "t_s,stage_rad,stage_rate_rad_s,g_rad_s,a_m_s2,a_across_m_
 impl Recorded for TurntableScenario {
     fn write(&self, to: &mut impl Write, run: &TurntableRun, of: &[Sample]) -> io::Result<()> {
         let session = &run.replay;
-        let (setting, procedure) = (*session.setting(), session.procedure().clone());
+        let (setting, procedure) = (session.setting, session.procedure.clone());
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
         let mut head = Vec::new();
         header(&mut head, Kind::Rotating, &self.base, &setting.site)?;

@@ -20,7 +20,7 @@ impl Recorded for VehicleScenario {
         of: &[InertialSample],
     ) -> io::Result<()> {
         let session = &run.replay;
-        let (setting, procedure) = (*session.setting(), session.procedure().clone());
+        let (setting, procedure) = (session.setting, session.procedure.clone());
         let period_s = procedure.sample_seconds;
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
         let mut head = Vec::new();

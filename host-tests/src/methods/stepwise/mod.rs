@@ -39,7 +39,7 @@ pub const POSITIONS: &str = "positions";
 
 /// The name of a session that ran by itself: a planned schedule goes through positions in passes.
 pub(crate) fn name_of(session: &Session) -> &'static str {
-    match session.procedure().schedule {
+    match session.procedure.schedule {
         Schedule::Planned(_) => POSITIONS,
         Schedule::Listed(_) | Schedule::TowardMaximum { .. } => STEPWISE,
     }
@@ -62,12 +62,12 @@ pub struct Replay {
 impl Replay {
     /// The criterion as the command line names it.
     pub(crate) fn criterion_name(&self) -> String {
-        crate::criterion::name(self.session.procedure().criterion)
+        crate::criterion::name(self.session.procedure.criterion)
     }
 
     /// Whether the gyro's white noise was stated rather than estimated.
     pub(crate) fn noise_is_known(&self) -> bool {
-        self.session.setting().site.noise.is_white_known()
+        self.session.setting.site.noise.is_white_known()
             || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
     }
 }
@@ -138,7 +138,7 @@ fn again(
     drive(&mut session, rows.iter().map(given), end, progress);
     let shown = if is_mounted { POSITIONS } else { name_of(&session) };
     let method = asked.method.unwrap_or(shown);
-    let assumed = given_with(session.setting().half);
+    let assumed = given_with(session.setting.half);
     Ok(Replay { method, session, assumed })
 }
 

@@ -58,7 +58,7 @@ pub fn autocompensation(session: &Session, conclusion: &Conclusion) -> Autocompe
 /// By how much the azimuth of plain least squares differs, rad: what the weighted fit's residuals,
 /// drift included, still show of the Earth rate.
 fn shift(session: &Session, conclusion: &Conclusion) -> Option<f64> {
-    let rate = session.setting().site.latitude.horizontal_rate();
+    let rate = session.setting.site.latitude.horizontal_rate();
     let fit = conclusion.fit.as_ref()?;
     let mut regression = Regression::<3>::default();
     let dwells = session.dwells().iter().zip(&conclusion.residuals);

@@ -141,7 +141,7 @@ fn check_way(of: &Question, mut replay: Replay) -> Result<Replay, ReplayError> {
     let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(of.body), found) else { return Ok(replay) };
     let period_s = period_s(of.header.rate_hz, &rows, |row| row.time_s);
-    let site = &replay.session.setting().site;
+    let site = &replay.session.setting.site;
     let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
     let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle.0);
     if let Some(leg) = legs.iter().position(|leg| !leg.is_as_stated()) {
@@ -276,7 +276,7 @@ fn displacements(of: &Question) -> Result<Few<[Metres; 2], STOPS>, ReplayError> 
 
 /// Refuses displacements that are not one for each stop that was found.
 fn check_displacements(session: &Session) -> Result<(), ReplayError> {
-    let procedure = session.procedure();
+    let procedure = &session.procedure;
     let (stated, stops) = (procedure.displacements.len(), session.stops().len());
     if stated == 0 || stated == stops || procedure.rests != Rests::Found {
         Ok(())

@@ -40,7 +40,7 @@ fn bus_error(select: Select, when: When) -> Injection {
 /// No error is greater than is said, and the level is found again at the end.
 fn check(found: &FramesRun) {
     let [worst, within] = sigmas(&found.kept);
-    assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", reported(&found));
+    assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", reported(found));
     let last = found.kept.last().expect("it was kept");
     let [pitch, roll] = last.level_error().map(f64::to_degrees);
     // Where it stands gravity shows the level; on the road coarse gyros have it within what they say.
@@ -49,7 +49,7 @@ fn check(found: &FramesRun) {
 }
 
 fn has(found: &FramesRun, words: &str) -> bool {
-    reported(&found).iter().any(|line| line.contains(words))
+    reported(found).iter().any(|line| line.contains(words))
 }
 
 #[test]

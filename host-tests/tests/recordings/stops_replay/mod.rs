@@ -261,5 +261,5 @@ fn what_is_not_known_is_said() {
         assert!(says(words), "{words}: {:?}", replay.assumed);
     }
     assert!(!says("encoder"), "{:?}", replay.assumed);
-    assert!(!replay.session.setting().site.noise.is_white_known());
+    assert!(!replay.session.setting.site.noise.is_white_known());
 }

@@ -12,8 +12,8 @@ use orientation::roll as spin;
 use orientation::roll::{Signal, Spin};
 use orientation::signal::{InertialSample, SpinSample};
 use orientation::units::{
-    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds, SpinForce,
-    TURN,
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, Radians, RadiansPerSecond, Seconds,
+    SpinForce, TURN,
 };
 
 use crate::report::{Report, figure, mean_and_greatest};

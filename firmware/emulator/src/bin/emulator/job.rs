@@ -9,6 +9,7 @@ use simulated::scenario::Scenario;
 use simulated::spin::SpinScenario;
 use simulated::turntable::TurntableScenario;
 use simulated::vehicle::VehicleScenario;
+use static_cell::StaticCell;
 
 /// Length of the longest command line, bytes; the emulator begins it with the image's path.
 const LONGEST: usize = 4096;
@@ -28,25 +29,27 @@ pub enum Job {
 }
 
 impl Job {
-    /// Job that the host requests; `None` without a valid one.
+    /// Job that the host requests, in static memory; `None` without a valid one. Not inlined, so that
+    /// its copies on the stack are gone when it runs.
     #[inline(never)]
-    pub fn from_host() -> Option<Self> {
+    pub fn from_host() -> Option<&'static Self> {
+        static JOB: StaticCell<Job> = StaticCell::new();
         let mut line = [MaybeUninit::uninit(); LONGEST];
         let line = sys_get_cmdline_uninit(&mut line).ok()?;
         let line = line.split(|&byte| byte == 0).next()?;
         let word = str::from_utf8(line.rsplit(|&byte| byte == b' ').next()?).ok()?;
         let (seed, run) = word.split_once('/')?;
         let seed = seed.parse().ok()?;
-        match run {
-            "stage" => Some(Self::Stage(Scenario::usual(seed))),
-            "brief" => Some(Self::Stage(Scenario::brief(seed))),
-            "survey" => Some(Self::Stage(Scenario::surveying(seed))),
-            "two-frame" => Some(Self::Frames(FramesScenario::brief(seed))),
-            "turntable" => Some(Self::Turntable(TurntableScenario::brief(seed))),
-            "vehicle" => Some(Self::Vehicle(VehicleScenario::brief(seed))),
-            "spin" => Some(Self::Spin(SpinScenario::brief(seed))),
-            _ => None,
-        }
+        Some(JOB.init(match run {
+            "stage" => Self::Stage(Scenario::usual(seed)),
+            "brief" => Self::Stage(Scenario::brief(seed)),
+            "survey" => Self::Stage(Scenario::surveying(seed)),
+            "two-frame" => Self::Frames(FramesScenario::brief(seed)),
+            "turntable" => Self::Turntable(TurntableScenario::brief(seed)),
+            "vehicle" => Self::Vehicle(VehicleScenario::brief(seed)),
+            "spin" => Self::Spin(SpinScenario::brief(seed)),
+            _ => return None,
+        }))
     }
 
     /// Sample rate of the gyros, Hz.

@@ -61,7 +61,6 @@ struct Harness {
     finished: OnceCell<&'static AnyMethod>,
 }
 
-static JOB: StaticCell<Job> = StaticCell::new();
 static HARNESS: StaticCell<Harness> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
@@ -80,7 +79,7 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs results and costs.
 fn run() -> Result<(), Failure> {
-    let job: &'static Job = JOB.init(Job::from_host().ok_or(Failure::NoJob)?);
+    let job = Job::from_host().ok_or(Failure::NoJob)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let harness: &'static Harness = HARNESS.init(Harness {
         meter: Meter::new(Counter::start(peripherals.SYST)),

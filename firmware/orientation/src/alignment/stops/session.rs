@@ -106,9 +106,9 @@ impl Procedure {
 #[derive(Clone, Debug)]
 pub struct Session {
     /// Configuration of the alignment.
-    setting: Setting,
+    pub setting: Setting,
     /// Procedure.
-    procedure: Procedure,
+    pub procedure: Procedure,
     /// Stops so far.
     stop_detector: StopDetector,
     /// State of the session, and the time since when.
@@ -161,17 +161,6 @@ impl Session {
             is_reported: false,
             conclusion: None,
         }
-    }
-
-    /// Configuration of the alignment.
-    #[must_use]
-    pub fn setting(&self) -> &Setting {
-        &self.setting
-    }
-
-    /// Procedure of the session.
-    pub fn procedure(&self) -> &Procedure {
-        &self.procedure
     }
 
     /// Stops so far; the last one may still continue.

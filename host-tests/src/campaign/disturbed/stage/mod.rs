@@ -168,7 +168,7 @@ fn aligned(session: &Session, truth_deg: f64) -> Aligned {
 
 /// The azimuth of plain least squares, °.
 fn plain_deg(session: &Session) -> Option<f64> {
-    let setting = session.setting();
+    let setting = &session.setting;
     let dwells = session.dwells();
     let tilt = level::tilt(setting, dwells.iter());
     let mut regression = Regression::<3>::default();

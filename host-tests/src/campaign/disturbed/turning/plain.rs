@@ -19,14 +19,14 @@ type Pair<'a> = [&'a Stretch; 2];
 
 /// The azimuth, °; `None` where a stretch has no turns.
 pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
-    let latitude = session.setting().site.latitude;
+    let latitude = session.setting.site.latitude;
     let pairs = pairs(&session.turn_accumulator.stretches)?;
     let first = *pairs.first()?;
     let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
     let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity().0);
     let felt = tilt.scaled(latitude.vertical_rate().0);
     let misalignments = &session.conclusion()?.misalignments;
-    let sensor = session.setting().sensor;
+    let sensor = session.setting.sensor;
     let azimuth = if sensor.is_flat {
         let earth = mean(first.map(|stretch| rate(stretch, misalignments, 0)));
         Lean::of(tilt).azimuth(earth - felt).0

@@ -68,12 +68,12 @@ fn pitch_and_roll(fit: &Fit) -> [f64; 2] {
 impl Replay {
     /// Whether the sensor is a gyro, not a molecular-electronic one.
     fn is_flat(&self) -> bool {
-        self.session.setting().sensor.is_flat
+        self.session.setting.sensor.is_flat
     }
 
     /// Whether the sensor may have a g-sensitivity that integrates acceleration.
     fn is_molecular(&self) -> bool {
-        self.session.setting().sensor.molecular_sigma.0 > 0.0
+        self.session.setting.sensor.molecular_sigma.0 > 0.0
     }
 
     /// The names of the columns that the fits used.
@@ -109,7 +109,7 @@ impl Replay {
 
     /// Cramér–Rao bounds where the noise was stated, °: of the sensor, and of one whose gain, lag and g-sensitivity are known.
     fn limits_deg(&self, conclusion: &Conclusion) -> Option<[f64; 2]> {
-        let is_known = self.session.setting().site.noise.is_white_known();
+        let is_known = self.session.setting.site.noise.is_white_known();
         let fit = conclusion.fit.as_ref().filter(|_| is_known);
         fit.map(|fit| [fit.limit, fit.plain_limit].map(Radians::degrees))
     }

@@ -91,7 +91,7 @@ impl StopDetails {
 impl Replay {
     /// The names of what a solution finds, all of it together.
     fn columns(&self) -> Vec<&'static str> {
-        let setting = self.session.setting();
+        let setting = &self.session.setting;
         let site = &setting.site;
         let parts = [
             (true, "azimuth"),
@@ -167,7 +167,7 @@ impl Finished for Replay {
         let Some(conclusion) = self.session.conclusion() else {
             return Outcome::unfinished(self.method);
         };
-        let is_noise_known = self.session.setting().site.noise.is_white_known();
+        let is_noise_known = self.session.setting.site.noise.is_white_known();
         let found = conclusion.found.as_ref();
         let stops = self.session.stops();
         let (details, lines) = self.details(found, conclusion.verdict.is_ok(), truth);
@@ -196,7 +196,7 @@ impl Finished for Replay {
         let mut page = Vec::from_iter(figures::azimuths(outcome, found));
         if let Some(Found { plain, .. }) = found {
             page.extend(figures::inclinations(plain));
-            let latitude = self.session.setting().site.latitude;
+            let latitude = self.session.setting.site.latitude;
             let drive = seconds(&self.stops()).map(|seconds| (plain, seconds));
             page.push(figures::heading_error(latitude, drive));
         }

@@ -54,9 +54,9 @@ const GAP: f64 = 3.5;
 #[derive(Clone, Debug)]
 pub struct Session {
     /// Configuration of the alignment.
-    setting: Setting,
+    pub setting: Setting,
     /// Procedure.
-    procedure: Procedure,
+    pub procedure: Procedure,
     /// Accumulator of the turns that have been made.
     pub turn_accumulator: TurnAccumulator,
     /// State of the session.
@@ -137,17 +137,6 @@ impl Session {
             return Request::Done;
         }
         self.sample(sample, Some(turning), &mut |_| ())
-    }
-
-    /// Configuration of the alignment.
-    #[must_use]
-    pub fn setting(&self) -> &Setting {
-        &self.setting
-    }
-
-    /// Procedure of the session.
-    pub fn procedure(&self) -> &Procedure {
-        &self.procedure
     }
 
     /// Number of turns at constant rate that are done, and planned.

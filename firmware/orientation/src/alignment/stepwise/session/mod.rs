@@ -85,9 +85,9 @@ pub struct Repetition {
 #[derive(Clone, Debug)]
 pub struct Session {
     /// Site, instrument and requirements.
-    setting: Setting,
+    pub setting: Setting,
     /// Procedure.
-    procedure: Procedure,
+    pub procedure: Procedure,
     /// Coefficients of the stage filter.
     coefficients: Coefficients<SECTIONS>,
     /// Procedure in the units of the sample path.
@@ -119,17 +119,6 @@ impl Session {
     /// [`SetupError`] for a procedure that the filter or the stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
         Prepared::new(setting, procedure).map(Self::from)
-    }
-
-    /// Site, instrument and requirements.
-    #[must_use]
-    pub fn setting(&self) -> &Setting {
-        &self.setting
-    }
-
-    /// Procedure of the session.
-    pub fn procedure(&self) -> &Procedure {
-        &self.procedure
     }
 
     /// Dwells so far.
