@@ -12,7 +12,6 @@ use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
-use orientation::alignment::rotating::session as rotating;
 use orientation::alignment::rotating::session::Procedure;
 use orientation::alignment::rotating::turn::SPEEDS;
 use orientation::alignment::rotating::{Sensor, Setting};
@@ -145,7 +144,7 @@ impl TurntableScenario {
     #[must_use]
     pub fn checked(&self) -> Option<(Setting, Procedure)> {
         let procedure = self.procedure();
-        rotating::check(&procedure).ok()?;
+        procedure.check().ok()?;
         Some((self.setting()?, procedure))
     }
 

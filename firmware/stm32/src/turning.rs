@@ -6,7 +6,7 @@ use firmware::run::navigate;
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
 use firmware::turntable::Turntable;
-use orientation::alignment::rotating::session::{Session, check};
+use orientation::alignment::rotating::session::Session;
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
@@ -46,7 +46,7 @@ async fn session(
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting();
     let mut procedure = configuration::turning_procedure();
-    begun(check(&procedure))?;
+    begun(procedure.check())?;
     load_calibration(&mut store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))
 }

@@ -7,6 +7,7 @@ mod support;
 mod alignment;
 mod allan;
 mod butterworth;
+mod configurations;
 mod dwell;
 mod etalon;
 mod foundations;

@@ -14,12 +14,15 @@ use orientation::alignment::stepwise::session::procedure::Survey;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule, StopRule};
 use orientation::alignment::stepwise::session::{Phase, Session};
 use orientation::alignment::stepwise::setting::Setting;
+use orientation::alignment::{Input, Method};
+use orientation::device::{Device, Trouble};
 use orientation::earth::Latitude;
 use orientation::noise::fit::FitError;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
-use orientation::units::{Radians, Seconds};
+use orientation::signal::Sample;
+use orientation::units::{AngularRate, Instant, Radians, Seconds};
 
 const N_DEG_SQRT_H: f64 = 0.001;
 const LATITUDE_DEG: f64 = 47.58;
@@ -145,6 +148,23 @@ fn a_platform_that_is_not_level_enough_is_refused_before_anything_turns() {
     assert_eq!(sent, [0.0; 0]);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::TiltTooGreat { .. })), "{verdict:?}");
+}
+
+#[test]
+fn samples_without_a_force_are_refused_long_before_the_sessions_time_is_over() {
+    let procedure = circle();
+    let longest = procedure.longest_seconds.0;
+    let mut session = session(procedure);
+    let mut number = 0_u32;
+    while session.verdict().is_none() {
+        number += 1;
+        let rate = AngularRate((1000.0 * f64::from(number).sin()) as i32);
+        let time = Instant(u64::from(number) * 10_000);
+        session.feed(Input::Sample(&Sample { time, rate, ..Sample::default() }));
+    }
+    let accelerometer = Refusal::Device { device: Device::Accelerometer, trouble: Trouble::Silent };
+    assert_eq!(session.verdict(), Some(Err(accelerometer)));
+    assert!(0.01 * f64::from(number) < 0.1 * longest, "{number}");
 }
 
 fn ascending(positions: usize) -> Procedure {

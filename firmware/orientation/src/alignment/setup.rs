@@ -7,6 +7,8 @@ use crate::words::Rounded;
 /// Reason for which an alignment cannot begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SetupError {
+    /// A quantity of the configuration is out of its range, or not a number.
+    OutOfRange(Quantity),
     /// The filter cannot be designed for this sample rate.
     Filter(DesignError),
     /// Dwells of this many samples are too short for the filter's lag.
@@ -23,16 +25,50 @@ pub enum SetupError {
     /// A rotating platform lacks speeds above zero, two turns in each sense, or a modulation of its
     /// rate-modulated turns.
     NoSpeed,
-    /// The stops of a vehicle lack a sample period or a length, or there are fewer than two or too
+    /// The stops of a vehicle lack a length, or there are fewer than two or too
     /// many of them.
     NoStops,
     /// The reference table (etalon) in flash fails its CRC: the firmware must be programmed again.
     TableCorrupt,
 }
 
+/// A quantity of a configuration, in SI units, with the range in which it makes sense.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    /// Name of its field.
+    pub name: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Least and greatest value.
+    pub range: [f64; 2],
+}
+
+/// Longest time of a configuration, s: eleven days, which samples count in microseconds and periods.
+pub(crate) const LONGEST: f64 = 1e6;
+/// Shortest and longest sample period, s.
+pub(crate) const PERIODS: [f64; 2] = [1e-6, 1e3];
+/// Greatest quantity for which no better limit is known: its square is finite with room to spare.
+pub(crate) const GREATEST: f64 = 1e9;
+
+/// Refuses the first quantity, given by name, value and range, that is out of its range or not a number.
+///
+/// # Errors
+/// [`SetupError::OutOfRange`].
+#[inline(never)]
+pub(crate) fn check_ranges(quantities: &[(&'static str, f64, [f64; 2])]) -> Result<(), SetupError> {
+    for &(name, value, range @ [least, greatest]) in quantities {
+        if !(least..=greatest).contains(&value) {
+            return Err(SetupError::OutOfRange(Quantity { name, value, range }));
+        }
+    }
+    Ok(())
+}
+
 impl core::error::Error for SetupError {}
 
 crate::words! { SetupError:
+    Self::OutOfRange(Quantity { name, value, range: [least, greatest] }) =>
+        "{} is {}, which is not from {} to {}", name, value, least, greatest;
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;
@@ -40,7 +76,7 @@ crate::words! { SetupError:
         "position {}° is beyond the stage's travel", Rounded::<2>(angle.0 / TURN * 360.0);
     Self::NoPosition => "there is no position";
     Self::NoStops =>
-        "stops need a sample period and a length above zero, and two to eight of them";
+        "stops need a length above zero, and two to eight of them";
     Self::NoSpeed =>
         "a turning platform needs one or two speeds above zero, two turns in either sense, a modulation";
     Self::TableCorrupt => "the etalon table fails its checksum";

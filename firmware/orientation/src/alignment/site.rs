@@ -2,6 +2,7 @@
 
 use super::budget::Source;
 use super::refusal::{Passed, Refusal, refuse_if};
+use super::setup::{GREATEST, SetupError, check_ranges};
 use crate::earth::Latitude;
 use crate::noise::{GyroNoise, StatedNoise};
 use crate::units::{
@@ -76,6 +77,32 @@ impl Site {
             required_sigma: Radians(10.0 / 360.0 * TURN),
             allowed_tilt: Radians(15.0 / 360.0 * TURN),
         }
+    }
+
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        let [along, across] = self.g_sensitivity.map(|part| part.0);
+        let (positive, either) = ([0.0, GREATEST], [-GREATEST, GREATEST]);
+        let [q, n, b, k, r] = self.noise.model().coefficients();
+        check_ranges(&[
+            ("quantisation", q, positive),
+            ("angle_random_walk", n, positive),
+            ("bias_instability", b, positive),
+            ("rate_random_walk", k, positive),
+            ("rate_ramp", r, positive),
+            ("latitude_sigma", self.latitude_sigma.0, [0.0, TURN]),
+            ("scale_sigma", self.scale_sigma, positive),
+            ("g_sensitivity", along, either),
+            ("g_sensitivity", across, either),
+            ("g_sensitivity_sigma", self.g_sensitivity_sigma.0, positive),
+            ("accelerometer_bias_sigma", self.accelerometer_bias_sigma.0, positive),
+            ("encoder_sigma", self.encoder_sigma.0, [0.0, TURN]),
+            ("required_sigma", self.required_sigma.0, [0.0, GREATEST]),
+            ("allowed_tilt", self.allowed_tilt.0, [0.0, TURN]),
+        ])
     }
 
     /// Standard deviation of either part of κ, 1σ, for a gyro with this N.

@@ -1,5 +1,6 @@
 //! Configuration of the roll estimation: the gyro of the spinning body, and the method.
 
+use crate::alignment::setup::{GREATEST, PERIODS, SetupError, check_ranges};
 use crate::units::{RadiansPerRootSecond, RadiansPerSecond, Seconds};
 
 /// Method by which the roll is corrected.
@@ -34,6 +35,20 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        let positive = [0.0, GREATEST];
+        check_ranges(&[
+            ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("angle_random_walk", self.angle_random_walk.0, positive),
+            ("scale_sigma", self.scale_sigma, positive),
+            ("bias_sigma", self.bias_sigma.0, positive),
+        ])
+    }
+
     /// Configuration of a phase-locked gyro of 0.06 °/√s, with its scale known to 1 % and its bias
     /// to 0.06 °/s.
     #[must_use]

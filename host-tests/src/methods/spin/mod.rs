@@ -97,7 +97,8 @@ impl Replay {
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
     let required_sigma = asked.required_sigma();
-    if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
+    if let Some(given) = Given::<Setting>::of(header).map_err(ReplayError::Session)? {
+        given.setting.check()?;
         return Ok(again(&given, rows, required_sigma));
     }
     let steps = Steps::of(rows, |row| row.time_s);

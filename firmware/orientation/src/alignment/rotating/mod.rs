@@ -34,8 +34,9 @@ pub use session::Session;
 use self::misalignment::AxisMisalignment;
 use self::turn::SPEEDS;
 use super::refusal::{Passed, refuse_if};
+use super::setup::{GREATEST, LONGEST, SetupError, check_ranges};
 use super::site::Site;
-use crate::units::{Degrees, Radians, RadiansPerSecond, Seconds};
+use crate::units::{Degrees, Radians, RadiansPerSecond, Seconds, TURN};
 
 /// Kind of sensor on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +109,21 @@ impl Setting {
             harmonics_known: true,
             rate_step: RadiansPerSecond(0.0),
         }
+    }
+
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        self.site.check()?;
+        check_ranges(&[
+            ("molecular_sigma", self.sensor.molecular_sigma.0, [0.0, f64::INFINITY]),
+            ("settle_seconds", self.sensor.settle_seconds.0, [0.0, LONGEST]),
+            ("misalignment_limit", self.misalignment_limit.0, [0.0, TURN]),
+            ("encoder_zero_sigma", self.encoder_zero_sigma.0, [0.0, TURN]),
+            ("rate_step", self.rate_step.0, [0.0, GREATEST]),
+        ])
     }
 
     /// Checks that the axis misalignment is within its limit.

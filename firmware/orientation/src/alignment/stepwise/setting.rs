@@ -1,6 +1,7 @@
 //! Configuration of a multi-position alignment: site, mount, and what is known beforehand.
 
 use super::mount::Mount;
+use crate::alignment::setup::{GREATEST, SetupError, check_ranges};
 use crate::alignment::site::Site;
 use crate::earth::Latitude;
 use crate::signal::SwayNoise;
@@ -61,6 +62,20 @@ impl Setting {
     #[must_use]
     pub fn at(latitude: Latitude) -> Self {
         Self::new(Site::at(latitude))
+    }
+
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        let (positive, sway) = ([0.0, GREATEST], &self.sway);
+        self.site.check()?;
+        check_ranges(&[
+            ("angle_variance", sway.angle_variance, positive),
+            ("correlation", sway.correlation.0, [0.0, f64::INFINITY]),
+            ("residual_variance", sway.residual_variance, positive),
+        ])
     }
 
     /// Prior knowledge of the horizontal Earth rate.

@@ -33,6 +33,7 @@ pub use progress::Progress;
 pub use refusal::Refusal;
 pub use session::Session;
 
+use super::setup::{GREATEST, SetupError, check_ranges};
 use super::site::Site;
 use crate::signal::rest::Sensors;
 use crate::units::{ForceNoise, Metres, MetresPerSecond, RadiansPerSecond};
@@ -73,6 +74,21 @@ impl Setting {
             displacement_sigma: DISPLACEMENT_SIGMA,
             speed_sigma: SPEED_SIGMA,
         }
+    }
+
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        let positive = [0.0, GREATEST];
+        self.site.check()?;
+        check_ranges(&[
+            ("bias_sigma", self.bias_sigma().0, positive),
+            ("force_noise", self.force_noise.0, positive),
+            ("displacement_sigma", self.displacement_sigma.0, positive),
+            ("speed_sigma", self.speed_sigma.0, positive),
+        ])
     }
 
     /// Prior 1σ of the gyros' biases, bias instability included.

@@ -17,6 +17,7 @@ use super::stop_detector::{Rests, StopDetector};
 use super::{Progress, Setting};
 use crate::alignment::period::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, contradiction};
 use crate::alignment::progress::Progress::Stops;
+use crate::alignment::setup::{LONGEST, PERIODS, check_ranges};
 use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, Solution, Verdict};
 use crate::device::TRIAD;
 use crate::signal::InertialSample;
@@ -93,11 +94,16 @@ impl Procedure {
     /// Checks the procedure.
     ///
     /// # Errors
-    /// [`SetupError::NoStops`], as for [`Session::new`].
+    /// [`SetupError::OutOfRange`] and [`SetupError::NoStops`], as for [`Session::new`].
     pub fn check(&self) -> Result<(), SetupError> {
-        let is_period = self.sample_seconds.0 > 0.0 && self.sample_seconds.0.is_finite();
+        check_ranges(&[
+            ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("stop_seconds", self.stop_seconds.0, [0.0, LONGEST]),
+            ("longest_seconds", self.longest_seconds.0, [0.0, f64::INFINITY]),
+            ("period_tolerance", self.period_tolerance, [0.0, 1.0]),
+        ])?;
         let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
-        let is_possible = is_period && has_stops && self.stop_seconds.0 > 0.0;
+        let is_possible = has_stops && self.stop_seconds.0 > 0.0;
         is_possible.then_some(()).ok_or(SetupError::NoStops)
     }
 }
@@ -133,9 +139,10 @@ impl Session {
     /// Creates a session before its first event.
     ///
     /// # Errors
-    /// [`SetupError::NoStops`]: no sample period, no length of a stop, a single stop, or too
-    /// many.
+    /// [`SetupError::OutOfRange`], and [`SetupError::NoStops`] for stops without a length, a single
+    /// stop, or too many.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
+        setting.check()?;
         procedure.check()?;
         Ok(Self::of(setting, procedure))
     }

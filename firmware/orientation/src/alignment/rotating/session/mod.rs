@@ -9,7 +9,7 @@
 
 mod procedure;
 
-pub use procedure::{Procedure, check};
+pub use procedure::Procedure;
 
 use super::conclusion::Conclusion;
 use super::misalignment::AxisMisalignment;
@@ -105,10 +105,11 @@ impl Session {
     /// Creates a session before its first event.
     ///
     /// # Errors
-    /// [`SetupError::TableCorrupt`], and [`SetupError::NoSpeed`] for a speed of zero, too
-    /// few turns or no modulation.
+    /// [`SetupError::TableCorrupt`], [`SetupError::OutOfRange`], and [`SetupError::NoSpeed`] for a
+    /// speed of zero, too few turns or no modulation.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
-        check(&procedure)?;
+        setting.check()?;
+        procedure.check()?;
         Ok(Self::of(setting, procedure))
     }
 

@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use crate::alignment::rotating::turn::SPEEDS;
-use crate::alignment::setup::SetupError;
+use crate::alignment::setup::{LONGEST, PERIODS, SetupError, check_ranges};
 use crate::math::Table;
 use crate::units::{RadiansPerSecond, Seconds, TURN};
 
@@ -78,6 +78,28 @@ impl Procedure {
         libm::round(f64::from(self.turns) * faster * faster * faster).min(1e6) as u32
     }
 
+    /// Checks the procedure.
+    ///
+    /// # Errors
+    /// [`SetupError::TableCorrupt`], [`SetupError::OutOfRange`], and [`SetupError::NoSpeed`] for a
+    /// speed of zero, too few turns or no modulation.
+    pub fn check(&self) -> Result<(), SetupError> {
+        Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
+        let time = [0.0, LONGEST];
+        check_ranges(&[
+            ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("block_seconds", self.block_seconds.0, time),
+            ("level_seconds", self.level_seconds.0, time),
+            ("ramp_seconds", self.ramp_seconds.0, time),
+        ])?;
+        let are_speeds = self.speeds.iter().all(|speed| speed.0 > 0.0 && speed.0.is_finite());
+        let is_modulation_possible =
+            self.modulated_turns == 0 || (self.modulation > 0.0 && self.modulation < 1.0);
+        let has_turns = f64::from(self.turns) >= LEAST_TURNS;
+        let is_possible = are_speeds && is_modulation_possible && has_turns;
+        is_possible.then_some(()).ok_or(SetupError::NoSpeed)
+    }
+
     /// Number of sample periods in a block.
     pub(super) fn periods(&self) -> u32 {
         libm::round(self.block_seconds.0 / self.sample_seconds.0).clamp(1.0, 1e6) as u32
@@ -106,21 +128,4 @@ fn default_turns(speeds: &[RadiansPerSecond], slowest: f64) -> u32 {
     let share = speeds.len() as f64 * slowest * slowest / squares;
     let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN);
     if turns > LEAST_TURNS { turns.min(1e6) as u32 } else { LEAST_TURNS as u32 }
-}
-
-/// Checks a procedure.
-///
-/// # Errors
-/// [`SetupError::TableCorrupt`], and [`SetupError::NoSpeed`] for a speed of zero, too few
-/// turns or no modulation.
-pub fn check(procedure: &Procedure) -> Result<(), SetupError> {
-    Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
-    let are_speeds = procedure.speeds.iter().all(|speed| speed.0 > 0.0 && speed.0.is_finite());
-    let is_modulation_possible = procedure.modulated_turns == 0
-        || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
-    let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
-    let period = procedure.sample_seconds.0;
-    let has_period = period > 0.0 && period.is_finite();
-    let is_possible = are_speeds && is_modulation_possible && has_turns && has_period;
-    is_possible.then_some(()).ok_or(SetupError::NoSpeed)
 }

@@ -31,6 +31,7 @@ use super::{Progress, Refusal};
 use crate::alignment::period::contradiction;
 use crate::alignment::progress::Progress::Stepwise;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
+use crate::device::{Device, Trouble};
 use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
 use crate::signal::dwell::DwellAverage;
@@ -42,6 +43,10 @@ const WHOLE: f64 = 0.99;
 
 /// Greatest number of repetitions that are recorded: two at each of twelve positions.
 const REPETITIONS: usize = 24;
+
+/// Refusal of samples without a force.
+const FORCELESS: alignment::Refusal =
+    alignment::Refusal::Device { device: Device::Accelerometer, trouble: Trouble::Silent };
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,9 +200,10 @@ impl Session {
     /// Tests the tilt once there are enough samples and a force, then goes to the first position.
     fn level(&mut self, now: Instant, listener: Listener) -> Request {
         let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.timing.level;
-        let Some(force) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
-        else {
-            return Request::Continue;
+        let Some(average) = self.average.as_ref().filter(is_long) else { return Request::Continue };
+        let Some(force) = average.force() else {
+            let is_silent = average.count() >= self.timing.forceless;
+            return if is_silent { self.conclude(Some(FORCELESS)) } else { Request::Continue };
         };
         listener(alignment::Progress::levelled(force));
         let ([x, y, _], site) = (force, &self.setting.site);

@@ -34,6 +34,8 @@ impl Prepared {
     /// stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, SetupError> {
         Table::built_in().verify().map_err(|_| SetupError::TableCorrupt)?;
+        setting.check()?;
+        procedure.check()?;
         let (coefficients, target) = designed(&procedure)?;
         Ok(Self { setting, procedure, coefficients, target })
     }

@@ -2,6 +2,7 @@
 
 use super::schedule::{Schedule, StopRule};
 use crate::alignment::period::PERIOD_TOLERANCE;
+use crate::alignment::setup::{GREATEST, LONGEST, PERIODS, SetupError, check_ranges};
 use crate::alignment::stepwise::criterion::Criterion;
 use crate::planner::order::Order;
 use crate::planner::{POSITIONS, Rotation};
@@ -115,6 +116,26 @@ impl Procedure {
         let retry_budget = 2.0 * seconds.0 + 30.0 * POSITIONS as f64 + 60.0;
         let longest_seconds = Seconds(self.longest_seconds.0.max(retry_budget));
         Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
+    }
+
+    /// Checks that every quantity is one.
+    ///
+    /// # Errors
+    /// [`SetupError::OutOfRange`].
+    pub fn check(&self) -> Result<(), SetupError> {
+        let (time, angle, [lowest, highest]) = ([0.0, LONGEST], [0.0, TURN], self.travel);
+        check_ranges(&[
+            ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("period_tolerance", self.period_tolerance, [0.0, 1.0]),
+            ("level_seconds", self.level_seconds.0, time),
+            ("settle_seconds", self.settle_seconds.0, time),
+            ("longest_seconds", self.longest_seconds.0, [0.0, f64::INFINITY]),
+            ("longest_rotation", self.longest_rotation.0, [0.0, f64::INFINITY]),
+            ("travel", lowest.0, [-GREATEST, highest.0]),
+            ("travel", highest.0, [lowest.0, GREATEST]),
+            ("still", self.still.0, angle),
+            ("arrival", self.arrival.0, angle),
+        ])
     }
 
     /// Cut-off of the filter for this schedule, Hz.

@@ -11,6 +11,10 @@ use crate::units::{Angle, Instant, RadiansPerSecond, Seconds};
 /// Number of second-order sections of the stage filter: order six (Sokolov 2019).
 pub(super) const SECTIONS: usize = 3;
 
+/// Time within which an accelerometer gives a force after the gyro's samples are enough, s: many
+/// times what its restart takes.
+const FORCE_SECONDS: f64 = 10.0;
+
 /// Commanded position and length of its dwell, in the units of the sample path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
@@ -39,6 +43,8 @@ pub(super) struct Timing {
     pub(super) arrival: Angle,
     /// Number of samples before the tilt is first tested.
     pub(super) level: u32,
+    /// Number of samples before the tilt without any force, after which there will be none.
+    pub(super) forceless: u32,
     /// Number of samples of a survey.
     pub(super) survey: u32,
     /// Number of samples of standstill that make an arrival.
@@ -57,6 +63,7 @@ impl Timing {
             still: Angle::from_rad(procedure.still.0),
             arrival: Angle::from_rad(procedure.arrival.0),
             level: samples(procedure.level_seconds),
+            forceless: samples(Seconds(procedure.level_seconds.0 + FORCE_SECONDS)),
             survey: procedure.survey.map_or(0, |survey| samples(survey.seconds)),
             settle: samples(procedure.settle_seconds),
             longest: Instant::from_seconds(procedure.longest_seconds.0).0,
