@@ -75,6 +75,14 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
             }
         })
     });
+    // At the lower limit of its range in every other sample.
+    assert_refused(&["Device"], |seed, case| {
+        edited(seed, &case, |samples| {
+            for sample in samples.iter_mut().step_by(2) {
+                sample.force_m_s2[0] = f64::from(i32::MIN) * 1e-6;
+            }
+        })
+    });
     assert_refused(&["Device"], |seed, case| {
         edited(seed, &case, |samples| {
             for sample in samples {

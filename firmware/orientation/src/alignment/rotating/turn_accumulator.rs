@@ -36,7 +36,7 @@ const SLIP: f64 = 0.3 / 360.0 * WHOLE_TURN;
 const LONGEST_BREAK: f64 = 0.375 * WHOLE_TURN;
 
 /// Force at which an accelerometer of ±2 g clips, µm/s²: 97 % of its range.
-const FORCE_LIMIT: i32 = 19_000_000;
+const FORCE_LIMIT: u32 = 19_000_000;
 /// Number of forces at the limit, or equal in succession, that may be chance.
 const FEW_FORCES: u32 = 64;
 
@@ -234,7 +234,7 @@ impl TurnAccumulator {
         self.repeated = if along == self.last_force { self.repeated + 1 } else { 0 };
         self.most_repeated = self.most_repeated.max(self.repeated);
         self.last_force = along;
-        if along.0.abs() >= FORCE_LIMIT {
+        if along.0.unsigned_abs() >= FORCE_LIMIT {
             self.clipped += 1;
         } else {
             let phasor = Table::built_in().at(stage);
