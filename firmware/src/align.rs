@@ -57,12 +57,14 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                         shared.obey(order);
                         give(&mut aligner, Input::Ordered(*order), shared)
                     }
-                    Either::Second(sample) => {
-                        if aligner.state == State::Aligning {
+                    Either::Second(sample) => match aligner.state {
+                        State::Homing => give(&mut aligner, Input::Passed(sample.time()), shared),
+                        State::Aligning => {
                             recorder.record(sample).await;
+                            aligner.sample(sample, &mut listener(shared))
                         }
-                        aligner.sample(sample, &mut listener(shared))
-                    }
+                        State::Idle => Request::Continue,
+                    },
                 }
             }
             movement => {

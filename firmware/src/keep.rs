@@ -86,16 +86,18 @@ impl<T: Store> Keep for Option<Keeping<'_, T>> {
 async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, shared: &Shared<'_>) {
     let Keeping { keeper, policy, store } = keeping;
     let mut has_failed = false;
-    let remembered = load(store).await.unwrap_or_else(|fault| {
-        fail(fault, &mut has_failed, shared);
-        None
-    });
+    let loaded = load(store).await;
     let to_save = Cell::new(None);
-    let mut navigator = Navigator::new(keeper, policy, remembered);
+    let mut navigator = Navigator::new(keeper, policy);
     let give = |navigator: &mut Navigator, input: Input| {
         shared.observer.navigates(&input);
         navigator.take(&input, &mut |output| execute(output, &to_save, shared));
     };
+    match loaded {
+        Ok(Some(heading)) => give(&mut navigator, Input::Remembered(heading)),
+        Ok(None) => {}
+        Err(fault) => fail(fault, &mut has_failed, shared),
+    }
     let mut latest = Instant::MIN;
     while !navigator.is_over() {
         select(shared.caught_up.wait(), Timer::after(REST)).await;

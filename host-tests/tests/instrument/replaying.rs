@@ -61,7 +61,7 @@ fn replayed<S: Timed>(
     inputs: &[Input<S>],
 ) -> Done {
     let (mut keeper, mut reports, mut given) = (Keeper::new(setting), Vec::new(), Vec::new());
-    let mut navigator = Navigator::new(&mut keeper, policy, None);
+    let mut navigator = Navigator::new(&mut keeper, policy);
     let mut aligner = Aligner::new(method);
     let mut request = aligner.begin(&mut |_| ());
     let mut orders = 0;

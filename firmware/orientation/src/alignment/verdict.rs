@@ -5,6 +5,7 @@ use crate::units::Radians;
 
 /// An azimuth that passed every test.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Azimuth {
     /// Azimuth of body x from true north, clockwise from above, [0, 2π).
     pub angle: Radians,

@@ -26,6 +26,7 @@ const VERSION: u32 = 1;
 
 /// State that is saved against a loss of supply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Remembered {
     /// Azimuth of body x.
     pub azimuth: Radians,

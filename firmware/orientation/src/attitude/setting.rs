@@ -6,6 +6,7 @@ use crate::units::{DEGREE, MetresPerSecondSquared, RadiansPerSecond, Seconds};
 
 /// Configured properties of a gyro.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gyro {
     /// Noise model of the gyro.
     pub noise: GyroNoise,
@@ -19,6 +20,7 @@ pub struct Gyro {
 /// Configuration of three gyros and accelerometers on a body, and its site.
 #[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Geodetic latitude.
     pub latitude: Latitude,

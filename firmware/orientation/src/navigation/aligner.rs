@@ -12,6 +12,8 @@ const LONGEST_HOMING: u64 = 900_000_000;
 
 /// Input of the aligner beside the samples. What it does follows from both and their order alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Input {
     /// The mechanism's angles are valid; noise that the compensated sway of the base leaves in the
     /// samples.
@@ -20,6 +22,8 @@ pub enum Input {
     Displaced([Metres; 2]),
     /// An order.
     Ordered(Order),
+    /// A sample of this time came while the mechanism's angles were not valid.
+    Passed(Instant),
 }
 
 /// State of the aligner.
@@ -80,26 +84,29 @@ impl<'m, S: Timed> Aligner<'m, S> {
             Input::Homed(_) => Request::Continue,
             Input::Displaced(place) => self.pass(method::Input::Displaced(place), listener),
             Input::Ordered(order) => self.obey(order, listener),
+            Input::Passed(now) => self.wait(*now, listener),
         }
     }
 
     /// Takes a sample.
     pub fn sample(&mut self, sample: &S, listener: Listener) -> Request {
-        let now = sample.time();
-        match self.state {
-            State::Aligning => {
-                self.taken = Some(now);
-                self.pass(method::Input::Sample(sample), listener)
-            }
-            State::Homing => {
-                let since = *self.since.get_or_insert(now);
-                if now.0.saturating_sub(since.0) <= LONGEST_HOMING {
-                    return Request::Continue;
-                }
-                self.fail(&Refusal::TimeExhausted, listener)
-            }
-            State::Idle => Request::Continue,
+        if self.state != State::Aligning {
+            return self.wait(sample.time(), listener);
         }
+        self.taken = Some(sample.time());
+        self.pass(method::Input::Sample(sample), listener)
+    }
+
+    /// Passes a sample by, and ends an alignment that waits for the mechanism for too long.
+    fn wait(&mut self, now: Instant, listener: Listener) -> Request {
+        if self.state != State::Homing {
+            return Request::Continue;
+        }
+        let since = *self.since.get_or_insert(now);
+        if now.0.saturating_sub(since.0) <= LONGEST_HOMING {
+            return Request::Continue;
+        }
+        self.fail(&Refusal::TimeExhausted, listener)
     }
 
     /// Obeys an order. An alignment that is over cannot fail, and one in progress is not begun.

@@ -26,6 +26,8 @@ use crate::alignment::Refusal;
 
 /// Order to the aligner.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Order {
     /// End the alignment in progress, because the instrument has failed or the vehicle has set off.
     Fail(Refusal),

@@ -53,6 +53,8 @@ pub struct Attitude {
 
 /// Motion of the body, as its inertial sensors show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Motion {
     /// An increment of rotation and velocity.
     Moved(InertialSample),
@@ -62,7 +64,11 @@ pub enum Motion {
 
 /// Input of the navigator. What it does follows from its inputs and their order alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Input {
+    /// The heading that was saved before the restart; before all others.
+    Remembered(Remembered),
     /// Whether no alignment runs.
     Idle(bool),
     /// The azimuth of an alignment, which belongs to a sample of this time.
@@ -143,13 +149,12 @@ pub struct Navigator<'k> {
 }
 
 impl<'k> Navigator<'k> {
-    /// Takes an estimator that has had no sample, and the heading that was saved before the
-    /// restart, if there is one.
-    pub fn new(keeper: &'k mut Keeper, policy: &Policy, remembered: Option<Remembered>) -> Self {
+    /// Takes an estimator that has had no sample.
+    pub fn new(keeper: &'k mut Keeper, policy: &Policy) -> Self {
         Self {
             keeper,
             policy: *policy,
-            remembered,
+            remembered: None,
             saved: None,
             now: Instant::default(),
             moved: None,
@@ -188,6 +193,7 @@ impl<'k> Navigator<'k> {
     /// Takes an input, within bounded time.
     pub fn take(&mut self, input: &Input, outlet: Outlet) {
         match input {
+            Input::Remembered(heading) => self.remembered = Some(*heading),
             Input::Idle(is_idle) => self.is_idle = *is_idle,
             Input::Found(at, azimuth) => self.found = Some((*at, *azimuth)),
             Input::Motion(Motion::Moved(sample)) => self.push(sample, outlet),

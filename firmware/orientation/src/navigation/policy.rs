@@ -5,6 +5,7 @@ use crate::units::Seconds;
 
 /// The policy that renews a held azimuth, whose σ grows with time (heading hold).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Realignment {
     /// The azimuth is not renewed by the instrument; only one from outside renews it.
     Never,
@@ -17,9 +18,11 @@ pub enum Realignment {
 
 /// Operation after, and beside, the alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Policy {
     /// Duration for which the azimuth is held after the first alignment; infinite for ever, zero
     /// for not at all.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::units::or_infinite"))]
     pub hold_seconds: Seconds,
     /// The policy at stops.
     pub realignment: Realignment,

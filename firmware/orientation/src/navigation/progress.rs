@@ -7,6 +7,8 @@ use crate::words::Rounded;
 
 /// The gyro that measures the rotation about the body's down axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum VerticalGyro {
     /// The coarse gyro that is read beside the other two.
     Coarse,

@@ -24,8 +24,11 @@ pub trait Timed {
 
 /// One sample of the stage path: the precise gyro and the values that belong to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Sample {
     /// Time at which the sample was taken.
+    #[cfg_attr(feature = "serde", serde(rename = "t"))]
     pub time: Instant,
     /// Encoder angle of the stage: heading θ of the sensitive axis in the base plane. While the
     /// stage moves, the angle differs from sample to sample.
@@ -35,25 +38,32 @@ pub struct Sample {
     /// Accelerometer, where a fresh reading came with this sample (it is read less often than the
     /// gyro). On a stage's platform: x along the sensitive axis, y 90° clockwise of it, z down; on the
     /// base: forward, right, down.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub force: Option<[SpecificForce; 3]>,
     /// Temperature at the gyro, where a fresh reading came with this sample.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub temperature: Option<Temperature>,
     /// Elevation of the sensitive axis above the base plane, up positive; none where the stage keeps
     /// it in that plane. It counts with samples that bring a force.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub elevation: Option<Angle>,
 }
 
 /// Measurements of three gyros and three accelerometers fixed to the vehicle since the previous
 /// sample; axes forward, right, down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct InertialSample {
     /// Time at which the sample interval ended.
+    #[cfg_attr(feature = "serde", serde(rename = "t"))]
     pub time: Instant,
     /// Angles turned about the axes, the integrals of the rates. A component stands at the limit of
     /// its range where the gyro did.
     pub turned: [AngleIncrement; 3],
     /// Mean specific force since the last force reading, where a fresh reading came with this
     /// sample; none where the accelerometer stood at the limit of its range.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub force: Option<[SpecificForce; 3]>,
 }
 

@@ -45,13 +45,14 @@ pub fn wrapped(angle: f64) -> f64 {
     if wrapped < TURN { wrapped } else { 0.0 }
 }
 
-/// Reads a rate that text holds as a missing number where it is infinite.
+/// Reads a quantity that text holds as a missing number where it is infinite.
 #[cfg(feature = "serde")]
-pub(crate) fn or_infinite<'de, D: serde::Deserializer<'de>>(
+pub(crate) fn or_infinite<'de, D: serde::Deserializer<'de>, Q: serde::Deserialize<'de>>(
     text: D,
-) -> Result<RadiansPerSecond, D::Error> {
+) -> Result<Q, D::Error> {
     let number: Option<f64> = serde::Deserialize::deserialize(text)?;
-    Ok(RadiansPerSecond(number.unwrap_or(f64::INFINITY)))
+    let number = number.unwrap_or(f64::INFINITY);
+    Q::deserialize(serde::de::IntoDeserializer::into_deserializer(number))
 }
 
 /// A number that may be missing, in the memory of one number: `Option<f64>` takes twice as much.

@@ -17,6 +17,7 @@ fn to_i32(value: f64) -> i32 {
 /// Angular rate, 1 LSB = 1 nrad/s, range ±2.147 rad/s (±123 °/s).
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AngularRate(pub i32);
 
 impl AngularRate {
@@ -44,6 +45,7 @@ impl AngularRate {
 /// any number of increments is off by at most one LSB.
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AngleIncrement(pub i32);
 
 impl AngleIncrement {
@@ -90,6 +92,7 @@ impl AngleIncrement {
 /// Specific force, 1 LSB = 1 µm/s², range ±2147 m/s².
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpecificForce(pub i32);
 
 impl SpecificForce {
@@ -133,6 +136,7 @@ impl SpinForce {
 /// Temperature, 1 LSB = 1 m°C.
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Temperature(pub i32);
 
 impl Temperature {
@@ -151,6 +155,7 @@ impl Temperature {
 /// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); arithmetic wraps at whole turns.
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Angle(pub u32);
 
 impl Angle {
@@ -188,6 +193,7 @@ impl Sub for Angle {
 /// A point in time, 1 LSB = 1 µs since the start of the session's clock.
 #[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Instant(pub u64);
 
 impl Instant {

@@ -54,7 +54,7 @@ fn keeper() -> Keeper {
 fn azimuth_after(later: u64) -> f64 {
     let mut keeper = keeper();
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
-    let mut navigator = Navigator::new(&mut keeper, &policy(), None);
+    let mut navigator = Navigator::new(&mut keeper, &policy());
     let azimuth =
         Azimuth { angle: Radians::from_degrees(100.0), sigma: Radians::from_degrees(0.01) };
     navigator.take(&Input::Found(Instant(505 * 10_000), azimuth), &mut |_| ());
@@ -78,7 +78,7 @@ fn what_turns_between_the_sessions_last_sample_and_the_handing_over_counts() {
 #[test]
 fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
     let (mut keeper, mut shown) = (keeper(), Vec::new());
-    let mut navigator = Navigator::new(&mut keeper, &policy(), None);
+    let mut navigator = Navigator::new(&mut keeper, &policy());
     for index in 1..=500 {
         let mut outlet = |output| {
             if let Output::Report(_, attitude) = output {
