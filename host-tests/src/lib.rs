@@ -15,6 +15,7 @@ mod median;
 pub mod methods;
 pub mod outcome;
 pub mod output;
+pub mod packed;
 pub mod planning;
 pub mod recording;
 mod reference;

@@ -40,8 +40,8 @@ enum Command {
     /// Runs the whole board application on simulated chips.
     #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]")]
     Run(RunOptions),
-    /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, or finds
-    /// the roll of a spinning body on one of kind `spin`.
+    /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, finds the
+    /// roll of a spinning body on one of kind `spin`, or does again all that a run did by its inputs.
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
     Plan(PlanOptions),

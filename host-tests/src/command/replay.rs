@@ -1,14 +1,16 @@
-//! `meridian replay`: the alignment on a recording.
+//! `meridian replay`: the alignment on a recording, or a whole run by its inputs.
 
 use std::path::PathBuf;
 
 use clap::Args;
+use host::instrument::replay::{Done, Replayed, replay as replay_inputs};
 use host::methods::asked::{Asked, Question};
 use host::methods::vertical::write_attitude;
 use host::methods::{self, METHODS, Method};
+use host::outcome::run::RunDetails;
 use host::outcome::{Outcome, Source};
 use host::output::progress::Progress;
-use host::recording::{self, Recording};
+use host::recording::{self, Recording, inputs};
 use host::unwritten;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::setting::Half;
@@ -20,7 +22,8 @@ use super::{Answer, Failure, HALVES, Shown, explained, files, latitude, named, r
 /// Which recording, and how it is taken.
 #[derive(Args)]
 pub struct ReplayOptions {
-    /// The recording, CSV, also gzip-compressed.
+    /// The recording: CSV, or inputs of a run as JSON lines (FILE.jsonl, which also tells what was kept); also
+    /// gzip-compressed.
     file: PathBuf,
     /// Method; the default follows from the kind.
     #[arg(long, value_parser = registered(&METHODS, |of| [of.name, of.meaning]))]
@@ -77,6 +80,12 @@ impl ReplayOptions {
     /// # Errors
     /// The options, and why.
     fn check(&self, stated: &Stated) -> Result<(), String> {
+        if let Some(option) = stated.beside(&ALWAYS).filter(|_| inputs::is_named(&self.file)) {
+            let option = long(option);
+            return Err(format!(
+                "{option}: inputs of a run replay as its board took them; leave it out"
+            ));
+        }
         self.method.map_or(Ok(()), |method| check(stated, method))?;
         let attitude = ("--attitude-out", "the attitude", self.attitude_out.clone());
         let report = ("--report", "the page", self.report.clone());
@@ -93,6 +102,9 @@ const SPECIAL: [(&str, &str); 5] = [
     ("attitude_out", "only method vertical keeps an attitude"),
 ];
 
+/// What may be asked for with inputs of a run, too: they hold everything else.
+const ALWAYS: [&str; 3] = ["file", "json", "report"];
+
 /// Refuses the first option that a method does not take.
 ///
 /// # Errors
@@ -108,6 +120,9 @@ fn check(stated: &Stated, method: &Method) -> Result<(), String> {
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
     options.check(stated).map_err(Failure::misuse)?;
+    if inputs::is_named(&options.file) {
+        return Ok(again(options, as_json)?);
+    }
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let method = options.method.unwrap_or_else(|| methods::usual(&recording));
     // Without a method stated, that the options do not suit shows only now.
@@ -116,6 +131,20 @@ pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<An
     replay(options, method, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
+}
+
+/// Replays a whole run by its inputs.
+fn again(options: &ReplayOptions, as_json: bool) -> Result<Answer, String> {
+    let replayed = replay_inputs(&options.file);
+    let Replayed { finished, body, done: Done { kept, realigned, truth, warning } } =
+        replayed.map_err(|error| error.to_string())?;
+    let name = options.file.display().to_string();
+    let details = RunDetails::of_kept(&kept, realigned);
+    let outcome = finished.outcome(&truth).of_run(Source::File(name.clone()), details);
+    let shown = Shown { name: &name, finished, truth, body };
+    let answer = shown.answer(&outcome, options.report.as_deref(), as_json)?;
+    let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
+    Ok(Answer { refusal, ..answer }.with_warnings(Vec::from_iter(warning)))
 }
 
 /// Replays what was read.

@@ -74,7 +74,7 @@ impl KeptPlan {
 pub struct Point {
     /// What the keeper reported.
     pub report: Report,
-    /// What was true.
+    /// What was true; not numbers where that is not known.
     pub truth: Attitude,
 }
 

@@ -5,6 +5,7 @@ mod frames;
 mod harness;
 pub mod kept;
 pub mod recorder;
+pub mod replay;
 mod spinning;
 mod stage;
 mod trial;
@@ -33,6 +34,7 @@ use thiserror::Error;
 use self::kept::Kept;
 use crate::methods::stepwise::Replay;
 use crate::output::degrees;
+use crate::recording::Truth;
 
 /// A finished run of one kind of session, with what was true of its carrier.
 #[derive(Clone, Debug)]
@@ -88,6 +90,13 @@ impl<R, T> Run<R, T> {
     pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
         let again = self.kept_azimuth_rad().filter(|_| self.conclusions().count() > 1);
         again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
+    }
+
+    /// What was kept on a base that stood at an azimuth, °, until the first alignment concluded, and what was true of the
+    /// latest one.
+    fn end(&self, first_deg: f64) -> (&Kept, Truth) {
+        let azimuth_deg = Some(self.azimuth_deg(first_deg));
+        (&self.kept, Truth { azimuth_deg, ..Truth::default() })
     }
 }
 

@@ -11,6 +11,12 @@ use crate::recording::Truth;
 #[derive(Clone, Copy, Debug)]
 pub struct KeptAzimuth;
 
+/// What an alignment found, or that its azimuth was kept where none of a run stands.
+#[must_use]
+pub fn finished(is_aligned: bool, alignment: impl Finished + 'static) -> Box<dyn Finished> {
+    if is_aligned { Box::new(alignment) } else { Box::new(KeptAzimuth) }
+}
+
 impl Finished for KeptAzimuth {
     fn outcome(&self, _: &Truth) -> Outcome {
         Outcome::new("kept", Keys::default(), Vec::new())
@@ -23,18 +29,19 @@ impl Finished for KeptAzimuth {
 
 impl Outcome {
     /// The outcome with what only a run has; what was kept stands for an alignment where there is none.
-    pub fn of_run(self, seed: u64, run: RunDetails) -> Self {
-        let this = Self { source: Some(Source::Seed(seed)), ..self };
+    pub fn of_run(self, source: Source, run: RunDetails) -> Self {
+        let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
             return Self { run: Some(run), ..this };
         }
         let last = run.kept.as_ref();
         let azimuth = last.and_then(Point::azimuth_deg);
-        let reason = azimuth.is_none().then(|| "the azimuth is not known any more".to_owned());
+        let until = if run.was_known { "any more" } else { "yet" };
+        let reason = azimuth.is_none().then(|| format!("the azimuth is not known {until}"));
         Self {
             azimuth_deg: azimuth.map(|[azimuth, ..]| azimuth),
             sigma_deg: azimuth.map(|[_, sigma, _]| sigma),
-            error_deg: azimuth.map(|[.., error]| error),
+            error_deg: azimuth.map(|[.., error]| error).filter(|error| !error.is_nan()),
             pitch_deg: last.map(|last| last.report.pitch.degrees()),
             roll_deg: last.map(|last| last.report.roll.degrees()),
             seconds: last.map_or(0.0, |last| last.report.seconds.0),

@@ -28,6 +28,9 @@ pub struct RunDetails {
     /// What was kept at last, where anything was.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
+    /// Whether an azimuth was known at any time.
+    #[serde(skip)]
+    pub(super) was_known: bool,
 }
 
 /// What only the run of a single platform has; nothing by default.
@@ -72,17 +75,29 @@ impl RunDetails {
     /// What a finished run of so many samples a second was like, which took so long on this machine.
     #[must_use]
     pub fn of<R, T>(run: &Run<R, T>, rate_hz: f64, wall: Duration, beside: OfPlatform) -> Self {
-        let kept = run.kept.last().copied();
         let health =
             Keys::default().with_all(Some(&run.health)).with("violations", &run.violations);
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
-        let lines = kept.iter().map(|last| in_words(run, last)).chain([board]).map(Part::from);
+        Self::with(keys, Some(board), &run.kept, realigned(run))
+    }
+
+    /// What was kept, and how often a later azimuth agreed with it.
+    #[must_use]
+    pub fn of_kept(kept: &Kept, realigned: usize) -> Self {
+        Self::with(Keys::default(), None, kept, realigned)
+    }
+
+    /// What was kept, with further keys, and lines behind those of what was kept.
+    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, realigned: usize) -> Self {
+        let last = kept.last().copied();
+        let lines = last.iter().map(|last| in_words(kept, last, realigned)).chain(board);
         Self {
-            keys: keys.with_found("kept", kept.map(|last| of_kept(run, &last))),
-            parts: lines.chain(figures(&run.kept).into_iter().map(Part::from)).collect(),
-            kept,
+            keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
+            parts: lines.map(Part::from).chain(figures(kept).into_iter().map(Part::from)).collect(),
+            kept: last,
+            was_known: kept.with_azimuth().next().is_some(),
         }
     }
 }
@@ -106,7 +121,7 @@ fn board<R, T>(run: &Run<R, T>, rate: f64, wall: f64, beside: OfPlatform) -> Lin
 }
 
 /// What was kept at last, and how well on the way.
-fn of_kept<R, T>(run: &Run<R, T>, last: &Point) -> Keys {
+fn of_kept(kept: &Kept, last: &Point, realigned: usize) -> Keys {
     let azimuth = last.azimuth_deg();
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     Keys::default()
@@ -114,36 +129,38 @@ fn of_kept<R, T>(run: &Run<R, T>, last: &Point) -> Keys {
         .with("azimuth_deg", azimuth.map(|[azimuth, ..]| azimuth))
         .with("sigma_deg", azimuth.map(|[_, sigma, _]| sigma))
         .with("error_deg", azimuth.map(|[.., error]| error))
-        .with("greatest_sigmas", greatest_sigmas(&run.kept))
+        .with("greatest_sigmas", greatest_sigmas(kept))
         .with("pitch_deg", pitch.degrees())
         .with("roll_deg", roll.degrees())
         .with("level_sigma_deg", level_sigma.degrees())
         .with("level_error_deg", last.level_error().map(degrees))
-        .with("level_rms_deg", level_rms(&run.kept).map(degrees))
+        .with("level_rms_deg", level_rms(kept).map(degrees))
         .with("state", last.report.state.to_string())
-        .with("realigned", realigned(run))
+        .with("realigned", realigned)
 }
 
 /// What was kept at last, in words.
-fn in_words<R, T>(run: &Run<R, T>, last: &Point) -> Lines {
+fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
         |[azimuth, sigma, _]| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"),
     );
-    let error = last.azimuth_deg().map(|[_, sigma, error]| {
-        let (sigmas, greatest) = (error / sigma, greatest_sigmas(&run.kept).unwrap_or(0.0));
+    let known = last.azimuth_deg().filter(|[.., error]| !error.is_nan());
+    let error = known.map(|[_, sigma, error]| {
+        let (sigmas, greatest) = (error / sigma, greatest_sigmas(kept).unwrap_or(0.0));
         format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way")
     });
     let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle.degrees(), 5e-4));
     let sigma = level_sigma.degrees();
-    let [pitch_rms, roll_rms] = level_rms(&run.kept).map(degrees);
-    let times = Some(realigned(run)).filter(|times| *times > 0);
+    let [pitch_rms, roll_rms] = level_rms(kept).map(degrees);
+    let level_rms = format!("{pitch_rms:.3}°, {roll_rms:.3}° RMS on the way");
+    let times = Some(realigned).filter(|times| *times > 0);
     Lines::new(&format!("Kept for {:.0} s", seconds.0))
         .with("azimuth of body x", azimuth)
         .with_found("its error", error)
         .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))
-        .with("their errors", format!("{pitch_rms:.3}°, {roll_rms:.3}° RMS on the way"))
+        .with_found("their errors", (!last.truth.pitch_rad.is_nan()).then_some(level_rms))
         .with("state", last.report.state.to_string())
         .with_found("realigned", times.map(|times| format!("{times} time(s)")))
 }
@@ -166,9 +183,9 @@ fn level_rms(kept: &Kept) -> [f64; 2] {
     [0, 1].map(|axis: usize| rms(kept.with_azimuth().map(|(point, _)| point.level_error()[axis])))
 }
 
-/// The figures: the azimuth's error against its σ, and pitch and roll.
+/// The figures: the azimuth's error against its σ, and pitch and roll; none where no truth is known.
 fn figures(kept: &Kept) -> Vec<Figure> {
-    if kept.with_azimuth().next().is_none() {
+    if kept.with_azimuth().all(|(_, [error, _])| error.is_nan()) {
         return Vec::new();
     }
     vec![heading(kept), level(kept)]

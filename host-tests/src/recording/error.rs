@@ -1,5 +1,7 @@
 //! What is wrong with a recording, where, and what to do about it, in one line.
 
+use std::io::ErrorKind;
+
 use thiserror::Error;
 
 use super::problem::Problem;
@@ -72,6 +74,11 @@ impl Fault {
     /// A problem of one header key.
     pub fn key(line: u64, name: &str, problem: Problem) -> Self {
         Self::new(Place::Key(line, name.to_owned()), problem)
+    }
+
+    /// Whether the compressed data end too early.
+    pub fn is_cut_short(&self) -> bool {
+        matches!(self.problem, Problem::Io(ErrorKind::UnexpectedEof, _))
     }
 
     /// Names the file.

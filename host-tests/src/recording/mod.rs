@@ -14,6 +14,7 @@ mod columns;
 mod error;
 mod given;
 mod header;
+pub mod inputs;
 mod lines;
 mod number;
 pub mod period;
@@ -245,6 +246,9 @@ fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
     let mut is_empty = true;
     while let Some(line) = lines.next()? {
         is_empty = false;
+        if line.text.starts_with('{') {
+            return Err(Fault::line(line.number, Problem::Inputs));
+        }
         if !line.text.starts_with('#') {
             return Ok((entries, Some((line.number, line.text.to_owned()))));
         }

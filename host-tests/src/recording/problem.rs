@@ -5,7 +5,8 @@ use std::{fmt, io};
 use thiserror::Error;
 
 use super::KINDS;
-use super::quote::{printable, quoted};
+use super::inputs::VERSION;
+use super::quote::{printable, quoted, shortened};
 use super::range::{Range, Short};
 
 /// What is wrong with a recording. Times are in seconds, displacements in metres.
@@ -49,6 +50,11 @@ pub enum Problem {
     /// Neither `gyro` nor `met`.
     #[error("{} is not a sensor; use gyro or met", quoted(.0))]
     UnknownSensor(String),
+    /// The inputs of a run, which are no CSV.
+    #[error(
+        "these are inputs of a run, which `replay` takes in a file whose name ends in .jsonl or .jsonl.gz"
+    )]
+    Inputs,
     /// The header ends without a line of column names.
     #[error("the file ends without a line of column names")]
     NoColumnNames,
@@ -151,6 +157,32 @@ pub enum Problem {
         /// Times of the first and the last row.
         recording: [f64; 2],
     },
+    /// The first line is no header.
+    #[error("is not the header of a run's inputs, with which such a file begins")]
+    NoInputs,
+    /// The header is of another version of the format, by this program.
+    #[error("inputs of version {0}, of {program}; this program replays version {VERSION}", program = shortened(.1))]
+    InputsVersion(u64, String),
+    /// The header lacks something, or nothing can begin with what it holds.
+    #[error("the header does not do: {0}")]
+    InputsHeader(String),
+    /// Not a line, or one of an instrument of another carrier.
+    #[error("is no input of the carrier that the header names: {0}")]
+    NoInput(String),
+    /// A line behind that of the end.
+    #[error("stands behind the line of the end; remove it")]
+    AfterEnd,
+    /// The halves have not come to what they came to in the run.
+    #[error(
+        "the replay has not come to this: a line before it is missing or was changed, or another version of the \
+         program wrote it"
+    )]
+    Diverged,
+    /// The file ends before the run did.
+    #[error(
+        "the inputs break off here, before the end of their run; the replay goes as far as they do"
+    )]
+    BrokenOff,
 }
 
 /// The system's refusals that a user meets have words of their own.

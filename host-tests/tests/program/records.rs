@@ -4,7 +4,9 @@
 use serde_json::Value;
 
 use crate::support::files::Scratch;
-use crate::support::program::{code, meridian, object, reason, text};
+use crate::support::program::{
+    assert_drawn, assert_misuse, code, meridian, object, page, reason, text,
+};
 
 /// Short runs of every platform, with every option that a session is given beside its samples.
 const RUNS: [&[&str]; 16] = [
@@ -36,6 +38,34 @@ fn found(mut object: Value) -> Value {
     object
 }
 
+/// Short runs of every platform that keep what they found, align anew, take it from outside, or fail.
+const KEEPING: [&[&str]; 15] = [
+    &["stage", "--rate=50", "--dwell=2", "--positions=6", "--hold=9", "--sway=0.1"],
+    &["stage", "--rate=50", "--dwell=2", "--realign", "--hold=700"],
+    &["stage", "--rate=50", "--sigma=0.5", "--survey=60", "--hold=20"],
+    &["stage", "--rate=50", "--dwell=20", "--positions=2", "--half=west", "--gyro=mems"],
+    &["stage", "--latitude=90"],
+    &["two-frame", "--rate=50", "--dwell=2", "--passes=1", "--realign", "--hold=700"],
+    &["two-frame", "--rate=50", "--handover=213.7,0.16", "--hold=100"],
+    &["two-frame", "--rate=50", "--sigma=0.5", "--survey=60", "--fault=base-nudge", "--hold=9"],
+    &["turntable", "--rate=50", "--turns=3", "--realign", "--hold=700"],
+    &["turntable", "--rate=50", "--handover=213.7,0.2"],
+    &["turntable", "--rate=50", "--turns=3", "--modulated-turns=0"],
+    &["turntable", "--rate=50", "--turns=4", "--fault=saturation-always", "--hold=9"],
+    &["vehicle", "--rate=50", "--stops=2", "--stop-seconds=30", "--realign", "--hold=700"],
+    &["vehicle", "--rate=50", "--handover=213.7,0.16", "--realign", "--hold=700"],
+    &["vehicle", "--rate=50", "--stops=2", "--no-displacement", "--fault=never-drives"],
+];
+
+/// What both halves find: all keys but those of source and board.
+fn of_halves(mut object: Value) -> Value {
+    let keys = object.as_object_mut().expect("it is an object");
+    let of_the_source = ["seed", "file", "simulated_seconds", "health", "recalled"];
+    let of_the_mechanism = ["stored", "truth_off_vertical_deg"];
+    keys.retain(|key, _| !of_the_source.iter().chain(&of_the_mechanism).any(|other| key == other));
+    object
+}
+
 /// The object of a command.
 fn answered(arguments: &[&str]) -> Value {
     let output = meridian(&[arguments, &["--json"]].concat());
@@ -55,6 +85,94 @@ fn a_run_gives_the_same_with_and_without_a_recording_and_its_replay_gives_it_aga
         let replayed = answered(&["replay", &path]);
         assert_eq!(found(replayed), found(plain), "{options:?}");
     }
+}
+
+#[test]
+fn inputs_of_a_run_replay_to_all_that_it_came_to_keeping_included() {
+    let scratch = Scratch::new("inputs");
+    for (options, name) in KEEPING.iter().zip(["run.jsonl", "run.JSONL.gz"].iter().cycle()) {
+        let path = scratch.path(name);
+        let run = [&["run"], *options].concat();
+        let recorded = answered(&[&run[..], &["--record", &path]].concat());
+        assert_eq!(recorded, answered(&run), "{options:?}");
+        let replayed = answered(&["replay", &path]);
+        let [of_replay, of_run] = [replayed, recorded].map(of_halves);
+        assert_eq!(of_replay.to_string(), of_run.to_string(), "{options:?}");
+    }
+}
+
+#[test]
+fn what_a_board_recalled_from_its_flash_is_in_its_inputs() {
+    let scratch = Scratch::new("recalled");
+    let (flash, path) = (scratch.path("flash.gz"), scratch.path("run.jsonl"));
+    let run =
+        ["run", "turntable", "--rate=50", "--turns=4", "--flash", &flash, "--date=2026-03-14"];
+    assert_eq!(answered(&run)["status"], "ok");
+    let again = ["--modulated-turns=0", "--record", &path];
+    let recorded = answered(&[&run[..], &again].concat());
+    assert_eq!(recorded["recalled"].as_array().map(Vec::len), Some(1));
+    assert_eq!(of_halves(answered(&["replay", &path])), of_halves(recorded));
+}
+
+#[test]
+fn text_and_page_of_replayed_inputs_say_what_was_kept() {
+    let scratch = Scratch::new("said");
+    let path = scratch.path("run.jsonl");
+    let run = ["run", "turntable", "--rate=50", "--turns=3", "--hold=60", "--record", &path];
+    let said = text(&meridian(&run).stdout);
+    let (output, drawn) = page(&["replay", &path]);
+    // Below the title everything but how the board did.
+    let said = said.split_once("\n  The simulated board").map_or("", |(said, _)| said);
+    let below = |text: &str| text.trim().lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    let replayed = text(&output.stdout);
+    assert_eq!(below(&replayed), below(said));
+    assert!(replayed.contains(&format!("True north found in {path}")), "{replayed}");
+    assert_drawn(&drawn, &["Error of the kept azimuth", "true pitch"]);
+}
+
+#[test]
+fn inputs_of_a_run_that_was_stopped_say_so_and_what_was_known_by_then() {
+    let scratch = Scratch::new("stopped");
+    let path = scratch.path("run.jsonl");
+    answered(&["run", "--rate=50", "--dwell=2", "--positions=4", "--record", &path]);
+    let inputs = scratch.read("run.jsonl");
+    let of_alignment = inputs.find("\"found\"").expect("north was found");
+    for (length, reason) in [
+        (of_alignment / 2, Value::from("the azimuth is not known yet")),
+        (of_alignment + 5000, Value::Null),
+    ] {
+        let replayed = answered(&["replay", &scratch.with("cut.jsonl", &inputs[..length])]);
+        assert_eq!(replayed["reason"], reason);
+        let warning = replayed["warnings"][0].as_str().expect("it warns");
+        assert!(warning.contains("the inputs break off here"), "{warning}");
+        assert!(replayed["error_deg"].is_null());
+    }
+}
+
+#[test]
+fn inputs_replay_as_they_came_or_not_at_all() {
+    let scratch = Scratch::new("asked");
+    let path = scratch.path("run.jsonl");
+    for option in ["--method=vertical", "--latitude=1", "--half=east", "--attitude-out=x"] {
+        let words = "inputs of a run replay as its board took them; leave it out";
+        assert_misuse(&["replay", &path, option], words);
+    }
+    assert_misuse(&["run", "spin", "--record", &path], "its CSV replays whole; name FILE.csv");
+    assert_misuse(&["run", "--realign", "--record", "x.csv"], "or name FILE.jsonl");
+    assert!(!scratch.folder().join("run.jsonl").exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn inputs_that_cannot_be_written_fail_with_their_file_and_the_result_is_not_lost() {
+    let scratch = Scratch::new("full");
+    let path = scratch.path("run.jsonl");
+    std::os::unix::fs::symlink("/dev/full", &path).expect("the folder is ours");
+    let output = meridian(&["run", "--rate=50", "--dwell=2", "--json", "--record", &path]);
+    assert_eq!(code(&output), 1);
+    let full = format!("meridian: {path}: the recording cannot be written: the disk is full");
+    assert_eq!((reason(&output), &object(&output)["reason"]), (full.clone(), &full[10..].into()));
+    assert!(object(&output)["azimuth_deg"].is_number());
 }
 
 #[test]

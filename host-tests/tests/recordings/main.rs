@@ -6,6 +6,7 @@
 mod support;
 
 mod allan_host;
+mod inputs;
 mod laser_gyro;
 mod recording;
 mod replay;

@@ -8,6 +8,7 @@
 
 pub mod campaign;
 pub mod files;
+pub mod inputs;
 pub mod program;
 pub mod rig;
 

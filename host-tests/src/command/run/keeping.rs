@@ -63,9 +63,12 @@ impl KeepingOptions {
         aligning: &[&'static str],
     ) -> Result<(), String> {
         let asked = stated.first(&["realign", "handover"]);
-        if let Some(option) = asked.filter(|_| common.record.is_some()) {
+        let is_csv = common.record.is_some() && common.inputs_file().is_none();
+        if let Some(option) = asked.filter(|_| is_csv) {
             let option = stated::long(option);
-            return Err(format!("--record: a recording holds one alignment; leave {option} out"));
+            return Err(format!(
+                "--record: a recording in CSV holds one alignment; leave {option} out, or name FILE.jsonl"
+            ));
         }
         if let Some(option) = asked.filter(|_| hold.seconds <= 0.0) {
             let option = stated::long(option);

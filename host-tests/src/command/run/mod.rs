@@ -16,14 +16,14 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
 use host::instrument::RunError;
-use host::outcome::Finished;
-use host::outcome::kept::KeptAzimuth;
+use host::outcome::Source;
 use host::outcome::run::RunDetails;
 use host::output::progress::Progress;
 use orientation::alignment::{self, rotating, stepwise, stops};
+use orientation::navigation::{self, aligner};
 use simulated::fault::{Fault, Platform};
 
-use self::options::Common;
+use self::options::{Common, Inputs};
 use super::faults::{self, FaultChoice};
 use super::files::{self, Written};
 use super::stated::{self, Stated};
@@ -84,11 +84,6 @@ struct Ran {
     written: Result<(), String>,
 }
 
-/// What an alignment found, or that its azimuth was kept where none of a run stands.
-fn finished(is_aligned: bool, alignment: impl Finished + 'static) -> Box<dyn Finished> {
-    if is_aligned { Box::new(alignment) } else { Box::new(KeptAzimuth) }
-}
-
 impl RunOptions {
     /// What cannot go together.
     ///
@@ -105,6 +100,12 @@ impl RunOptions {
             }
             Some(FaultChoice::One(fault)) => faults::check(fault, platform)?,
             None => {}
+        }
+        if platform == Platform::Spin && common.inputs_file().is_some() {
+            return Err(
+                "--record: a flight keeps its roll alone, and its CSV replays whole; name FILE.csv"
+                    .to_owned(),
+            );
         }
         options.check(stated)?;
         let Common { record, report, .. } = common.clone();
@@ -140,18 +141,19 @@ pub fn run(options: &RunOptions, stated: &Stated, as_json: bool) -> Result<Answe
     };
     common.open()?;
     let Ran { shown, details, written } = options.run(fault)?;
-    let outcome = shown.finished.outcome(&shown.truth).of_run(*seed, details);
+    let outcome = shown.finished.outcome(&shown.truth).of_run(Source::Seed(*seed), details);
     Ok(shown.answer(&outcome, report.as_deref(), as_json)?.with_written(written))
 }
 
-/// Shows the log and the progress while a board works.
-struct Terminal {
+/// Shows the log and the progress while a board works, and has its inputs written.
+struct Terminal<'t> {
+    inputs: &'t Inputs,
     shown: Progress,
     /// Planned stops of a vehicle.
     stops: Cell<usize>,
 }
 
-impl Terminal {
+impl<'t> Terminal<'t> {
     /// Shows how many of the planned dwells, turns or stops are done.
     fn follow(&self, progress: &alignment::Progress) {
         let (done, planned) = match *progress {
@@ -174,17 +176,26 @@ impl Terminal {
     /// Runs a board, whose progress counts these; with the time that it took on this machine.
     fn watching<T>(
         steps: &'static str,
+        inputs: &'t Inputs,
         run: impl FnOnce(&Self) -> Result<T, RunError>,
     ) -> Result<(T, Duration), String> {
         let begun = WallClock::now();
-        let watch = Self { shown: Progress::new(0, steps), stops: Cell::new(0) };
+        let watch = Self { inputs, shown: Progress::new(0, steps), stops: Cell::new(0) };
         let ran = run(&watch);
         watch.shown.finish();
         ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
     }
 }
 
-impl Observer for Terminal {
+impl Observer for Terminal<'_> {
+    fn aligns(&self, input: &aligner::Input) {
+        self.inputs.iter().for_each(|inputs| inputs.aligns(input));
+    }
+
+    fn navigates(&self, input: &navigation::Input) {
+        self.inputs.iter().for_each(|inputs| inputs.navigates(input));
+    }
+
     fn event(&self, at: Instant, event: &Event) {
         let seconds = at.as_micros() as f64 * 1e-6;
         self.shown.log(&format!("{seconds:>11.6} {event}"));

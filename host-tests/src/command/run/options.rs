@@ -2,16 +2,21 @@
 
 use std::fs::OpenOptions;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use drivers::ads1262::configuration::DataRate;
 use host::instrument::recorder::{self, Recorded, Samples};
+use host::packed::Packed;
+use host::recording::inputs::{self, Given, Writer};
 use host::unwritten;
 use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
 use crate::command::{named, seed};
+
+/// What writes the inputs of a run, where they are recorded.
+pub type Inputs = Option<Writer<Packed>>;
 
 /// What every platform takes.
 #[derive(Args, Clone, Debug)]
@@ -22,8 +27,9 @@ pub struct Common {
     /// What goes wrong; `list` names the faults of the platform.
     #[arg(long, value_name = "NAME", value_parser = faults::parse)]
     pub fault: Option<FaultChoice>,
-    /// Writes the samples that the session got as a recording for `replay`.
-    #[arg(long, value_name = "FILE.csv")]
+    /// Writes a recording for `replay`: FILE.csv holds the samples of the alignment, FILE.jsonl all that the board's
+    /// software took, keeping included; each also compressed, with .gz behind it.
+    #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.
     #[arg(long, value_name = "FILE.html")]
@@ -31,9 +37,23 @@ pub struct Common {
 }
 
 impl Common {
-    /// A place for the samples of a session.
-    pub fn wanted<S>(&self) -> Samples<S> {
-        Samples { taken: Vec::new(), is_idle: self.record.is_none() }
+    /// The file of the recording, where it is to hold inputs.
+    pub fn inputs_file(&self) -> Option<&Path> {
+        self.record.as_deref().filter(|path| inputs::is_named(path))
+    }
+
+    /// A place for the samples of a session, and for all inputs of its instrument, which is given this.
+    ///
+    /// # Errors
+    /// The recording cannot be written; the words say why.
+    pub fn wanted<S>(&self, given: Option<Given>) -> Result<(Samples<S>, Inputs), String> {
+        let begin = |(path, given): (&Path, Given)| {
+            let begun = Packed::create(path).and_then(|file| Writer::new(file, self.seed, given));
+            begun.map_err(|error| unwritten::message("the recording", path, &error))
+        };
+        let inputs = self.inputs_file().zip(given).map(begin).transpose()?;
+        let is_idle = self.record.is_none() || inputs.is_some();
+        Ok((Samples { taken: Vec::new(), is_idle }, inputs))
     }
 
     /// Writes the recording of a finished run, where one is asked for.
@@ -44,10 +64,13 @@ impl Common {
         &self,
         carrier: &C,
         run: &C::Run,
-        samples: &[C::Sample],
+        (samples, inputs): (&[C::Sample], Inputs),
     ) -> Result<(), String> {
+        let (kept, truth) = carrier.end_of(run);
+        let end = |inputs: Writer<Packed>| inputs.finish(kept, &truth).and_then(Packed::finish);
         self.record.as_ref().map_or(Ok(()), |path| {
-            recorder::write(path, carrier, run, samples)
+            inputs
+                .map_or_else(|| recorder::write(path, carrier, run, samples), end)
                 .map_err(|error| unwritten::message("the recording", path, &error))
         })
     }

@@ -2,10 +2,11 @@
 
 use clap::Args;
 use host::instrument::Trial;
+use host::instrument::recorder::Recorded as _;
 use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Replay, follow};
 use host::outcome::run::{OfPlatform, RunDetails};
-use host::recording::{GIVEN, Truth};
+use host::recording::GIVEN;
 use orientation::roll::Progress;
 use simulated::fault::Fault;
 use simulated::spin::{SAMPLE_RATE, SpinScenario};
@@ -35,16 +36,16 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (run, wall) = Terminal::watching("samples", |watch| {
+        let (run, wall) = Terminal::watching("samples", &None, |watch| {
             Trial::of(&scenario).fault(fault).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &run, &run.truth.samples);
+        let written = self.common.write(&scenario, &run, (&run.truth.samples, None));
+        let (_, truth) = scenario.end_of(&run);
         let assumed = vec![GIVEN.to_owned()];
         let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());
         let replay = follow(&run.truth.samples, scenario.setting(), REQUIRED_SIGMA, assumed);
         let finished = Box::new(Replay { ended, ..replay });
         let details = RunDetails::of(&run, SAMPLE_RATE, wall, OfPlatform::default());
-        let truth = Truth { roll_rad: run.truth.rolls_rad, ..Truth::default() };
         let shown = Shown { name: "the simulated flight", finished, truth, body: None };
         Ok(Ran { shown, details, written })
     }

@@ -7,6 +7,7 @@ use firmware::event::Event;
 use host::instrument::recorder::Recorded;
 use host::instrument::{Run, Trial};
 use host::methods::stepwise::Replay;
+use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
 use host::recording::Truth;
@@ -18,7 +19,7 @@ use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};
-use super::{Ran, Shown, Simulated, Terminal, finished};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
 use crate::command::{HALVES, named, sigma, whole};
@@ -133,14 +134,16 @@ impl BaseOptions {
         &self,
         carrier: &C,
         fault: Option<Fault>,
-        shown: impl FnOnce(C::Run, Duration) -> Ran,
+        shown: impl FnOnce(C::Run, Truth, Duration) -> Ran,
     ) -> Result<Ran, String> {
-        let mut wanted = self.common.wanted();
-        let (run, wall) = Terminal::watching("positions", |watch| {
-            Trial::of(carrier).fault(fault).record(&mut wanted).watch(watch).run()
+        let (mut wanted, inputs) = self.common.wanted(carrier.given())?;
+        let (run, wall) = Terminal::watching("positions", &inputs, |watch| {
+            let recorder = (&mut wanted, inputs.as_ref());
+            Trial::of(carrier).fault(fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(carrier, &run, &wanted.taken);
-        Ok(Ran { written, ..shown(run, wall) })
+        let written = self.common.write(carrier, &run, (&wanted.taken, inputs));
+        let (_, truth) = carrier.end_of(&run);
+        Ok(Ran { written, ..shown(run, truth, wall) })
     }
 
     /// What keeping needs, and what it takes the place of.
@@ -183,10 +186,10 @@ impl Simulated for StageOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, wall| {
+        self.base.run(&scenario, fault, |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
-            ran("the simulated run", run, details, &scenario)
+            ran("the simulated run", run, details, truth)
         })
     }
 }
@@ -210,28 +213,20 @@ impl Simulated for FramesOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, wall| {
+        self.base.run(&scenario, fault, |run, truth, wall| {
             let [forward, right, down] = run.truth;
             let is_vertical =
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
             let off_deg = degrees(forward.hypot(right).atan2(down));
             let beside = OfPlatform::stored(is_vertical, off_deg);
             let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
-            ran("the simulated run on two frames", run, details, &scenario.base)
+            ran("the simulated run on two frames", run, details, truth)
         })
     }
 }
 
 /// What came of a run at standstills; what it kept, where no alignment of it stands.
-fn ran<T>(
-    name: &'static str,
-    run: Run<Replay, T>,
-    details: RunDetails,
-    scenario: &Scenario,
-) -> Ran {
-    let is_aligned = run.conclusion().is_some();
-    let azimuth_deg = run.azimuth_deg(scenario.azimuth_deg);
-    let finished = finished(is_aligned, run.replay);
-    let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
+fn ran<T>(name: &'static str, run: Run<Replay, T>, details: RunDetails, truth: Truth) -> Ran {
+    let finished = finished(run.conclusion().is_some(), run.replay);
     Ran { shown: Shown { name, finished, truth, body: None }, details, written: Ok(()) }
 }

@@ -6,11 +6,12 @@ use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
 use firmware::storage::{FlashStore, Today};
-use host::instrument::recorder::{Samples, turning_rows};
+use host::instrument::recorder::{Recorded as _, given_by, turning_rows};
 use host::instrument::{Trial, flash_file};
 use host::methods::rotating::Replay;
+use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
-use host::recording::{Body, GIVEN, Truth};
+use host::recording::Body;
 use simulated::fault::Fault;
 use simulated::flash::Flash;
 use simulated::scenario::Scenario;
@@ -18,7 +19,7 @@ use simulated::turntable::TurntableScenario;
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place};
-use super::{Ran, Shown, Simulated, Terminal, finished};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::files::Written;
 use crate::command::stated::Stated;
@@ -168,12 +169,17 @@ impl Simulated for TurntableOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let (mut store, mut recorder) = (self.store()?, Samples::default());
-        let (run, wall) = Terminal::watching("turns", |watch| {
-            let trial = Trial::of(&scenario).fault(fault).record(&mut recorder);
+        let mut store = self.store()?;
+        let (mut recorder, inputs) = self.common.wanted(given_by(&scenario, &mut store))?;
+        // Figures show them.
+        recorder.is_idle = false;
+        let (run, wall) = Terminal::watching("turns", &inputs, |watch| {
+            let recorder = (&mut recorder, inputs.as_ref());
+            let trial = Trial::of(&scenario).fault(fault).record(recorder);
             trial.store(&mut store).watch(watch).run()
         })?;
-        let recorded = self.common.write(&scenario, &run, &recorder.taken);
+        let recorded = self.common.write(&scenario, &run, (&recorder.taken, inputs));
+        let (_, truth) = scenario.end_of(&run);
         let written = self.put_away(store).and(recorded);
         let recalled = run.events.iter().filter_map(|(_, event)| match event {
             Event::Recalled(misalignment) => Some(*misalignment),
@@ -181,11 +187,8 @@ impl Simulated for TurntableOptions {
         });
         let beside = OfPlatform::recalled(&recalled.collect::<Vec<_>>());
         let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
-        let azimuth_deg = run.azimuth_deg(scenario.base.azimuth_deg);
         let is_aligned = run.replay.conclusion().is_some();
-        let replay = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
-        let finished = finished(is_aligned, replay);
-        let truth = Truth { azimuth_deg: Some(azimuth_deg), ..Truth::default() };
+        let finished = finished(is_aligned, Replay::of_run(run.replay));
         let body = Some(Body::Rotating(turning_rows(&recorder.taken)));
         let shown = Shown { name: "the simulated run", finished, truth, body };
         Ok(Ran { shown, details, written })

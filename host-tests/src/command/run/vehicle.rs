@@ -2,10 +2,11 @@
 
 use clap::Args;
 use host::instrument::Trial;
+use host::instrument::recorder::Recorded as _;
 use host::methods::stops::{Replay, SIAP};
+use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
-use host::output::degrees;
-use host::recording::{GIVEN, Truth};
+use host::recording::GIVEN;
 use orientation::alignment::stops::session::Session;
 use simulated::fault::Fault;
 use simulated::hold::STOP_SECONDS;
@@ -14,7 +15,7 @@ use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Place, seconds};
-use super::{Ran, Shown, Simulated, Terminal, finished};
+use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -75,17 +76,13 @@ impl Simulated for VehicleOptions {
         let beside = beside.map_err(|error| error.to_string())?;
         let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
         let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
-        let mut wanted = self.common.wanted();
-        let (run, wall) = Terminal::watching("stops", |watch| {
-            Trial::of(&scenario).fault(fault).record((&mut seen, &mut wanted)).watch(watch).run()
+        let (mut wanted, inputs) = self.common.wanted(scenario.given())?;
+        let (run, wall) = Terminal::watching("stops", &inputs, |watch| {
+            let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
+            Trial::of(&scenario).fault(fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &run, &wanted.taken);
-        let azimuth_rad = run.azimuth_rad();
-        let truth = Truth {
-            azimuth_deg: Some(degrees(azimuth_rad).rem_euclid(360.0)),
-            start_azimuth_deg: Some(scenario.base.azimuth_deg),
-            ..Truth::default()
-        };
+        let written = self.common.write(&scenario, &run, (&wanted.taken, inputs));
+        let (_, truth) = scenario.end_of(&run);
         let details =
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());
         let replay = Replay { session: run.replay, ..seen };

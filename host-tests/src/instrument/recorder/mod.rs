@@ -1,29 +1,31 @@
-//! Recordings of simulated runs: what an instrument's session was given, to the last digit.
+//! Recordings of simulated runs, to the last digit: what an instrument's session was given, in CSV, or all that came to
+//! both halves of the instrument, as JSON lines.
 //!
 //! [`Samples`] keeps what the session gets while it runs; [`write()`] makes a recording of it afterwards, when it is
-//! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones. A
-//! recording holds one alignment, and not what is kept after it.
+//! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones. Such a
+//! recording holds one alignment, and not what is kept after it; the [inputs](crate::recording::inputs) hold both, and are
+//! written while the instrument runs.
 
 mod spin;
 mod stage;
 mod turntable;
 mod vehicle;
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use firmware::ports::Recorder;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use orientation::alignment::site::Site;
 use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 use simulated::scenario::Scenario;
 
-pub use turntable::turning_rows;
+pub use turntable::{given_by, turning_rows};
 
 use super::Carrier;
-use crate::recording::Kind;
+use super::kept::Kept;
+use crate::packed::Packed;
+use crate::recording::inputs::Given;
+use crate::recording::{Kind, Truth};
 
 /// The samples that a session was given, in order: the recorder of every carrier.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +51,15 @@ pub trait Recorded: Carrier {
     /// # Errors
     /// The file cannot be written.
     fn write(&self, to: &mut impl Write, run: &Self::Run, of: &[Self::Sample]) -> io::Result<()>;
+
+    /// What both halves are given, by whose inputs a whole run replays; none where the latitude is none, or of a body in
+    /// fast rotation, which is followed by one part.
+    fn given(&self) -> Option<Given> {
+        None
+    }
+
+    /// What was kept in a run, and what was true of its alignment or at its samples.
+    fn end_of<'r>(&self, run: &'r Self::Run) -> (&'r Kept, Truth);
 }
 
 /// Writes the recording of a finished run and its session's samples to a file; compressed where its name ends in `gz`.
@@ -64,15 +75,9 @@ pub fn write<C: Recorded>(
     if samples.is_empty() {
         return Err(io::Error::other("the run ended before its session got a sample"));
     }
-    let mut to = BufWriter::new(File::create(path)?);
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz")) {
-        let mut packed = GzEncoder::new(to, Compression::default());
-        carrier.write(&mut packed, run, samples)?;
-        to = packed.finish()?;
-    } else {
-        carrier.write(&mut to, run, samples)?;
-    }
-    to.flush()
+    let mut to = Packed::create(path)?;
+    carrier.write(&mut to, run, samples)?;
+    to.finish()
 }
 
 /// Writes what a board was given of place and instrument, as far as keys of their own say it.

@@ -8,7 +8,8 @@ use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
 use super::{Recorded, mean_rate, row, seconds};
 use crate::instrument::SpinRun;
-use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
+use crate::instrument::kept::Kept;
+use crate::recording::{GREATEST_SPIN_RATE, Given, Kind, Truth};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ay_m_s2,az_m_s2,truth_roll_rad";
 
@@ -28,5 +29,9 @@ impl Recorded for SpinScenario {
             let [up, right] = force.map(|force| f64::from(force.0) / 1e5);
             row(to, &[seconds(sample.time), x, y, z, up, right, *roll])
         })
+    }
+
+    fn end_of<'r>(&self, run: &'r SpinRun) -> (&'r Kept, Truth) {
+        (&run.kept, Truth { roll_rad: run.truth.rolls_rad.clone(), ..Truth::default() })
     }
 }

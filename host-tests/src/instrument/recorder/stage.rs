@@ -14,9 +14,11 @@ use simulated::mount::FramesScenario;
 use simulated::scenario::Scenario;
 
 use super::{Recorded, forces, header, rate, row, seconds};
+use crate::instrument::kept::Kept;
 use crate::instrument::{FramesRun, Run};
 use crate::methods::stepwise::Replay;
-use crate::recording::{Given, Kind};
+use crate::recording::inputs::{Carrier, Given};
+use crate::recording::{self, Kind, Truth};
 
 /// The columns of every stage, then that of a mount, then those of a base with coarse sensors.
 const COLUMNS: [&str; 3] = [
@@ -29,11 +31,29 @@ impl Recorded for Scenario {
     fn write(&self, to: &mut impl Write, run: &Run, of: &[Sample]) -> io::Result<()> {
         write(to, self, (self.setting(), self.procedure()), run, of)
     }
+
+    fn given(&self) -> Option<Given> {
+        let carrier = Carrier::Stage(Box::new((self.setting()?, self.procedure())));
+        Some(Given { carrier, attitude: self.keeper()?, policy: self.policy() })
+    }
+
+    fn end_of<'r>(&self, run: &'r Run) -> (&'r Kept, Truth) {
+        run.end(self.azimuth_deg)
+    }
 }
 
 impl Recorded for FramesScenario {
     fn write(&self, to: &mut impl Write, run: &FramesRun, of: &[Sample]) -> io::Result<()> {
         write(to, &self.base, (self.setting(), self.procedure()), run, of)
+    }
+
+    fn given(&self) -> Option<Given> {
+        let carrier = Carrier::TwoFrame(Box::new((self.setting()?, self.procedure())));
+        Some(Given { carrier, attitude: self.keeper()?, policy: self.base.policy() })
+    }
+
+    fn end_of<'r>(&self, run: &'r FramesRun) -> (&'r Kept, Truth) {
+        run.end(self.base.azimuth_deg)
     }
 }
 
@@ -50,7 +70,7 @@ fn write(
     let ended = run.conclusion().and_then(|conclusion| conclusion.verdict.err());
     let mut head = Vec::new();
     header(&mut head, Kind::Stage, scenario, &setting.site)?;
-    Given::new(setting, procedure, ended).write(to, &head)?;
+    recording::Given::new(setting, procedure, ended).write(to, &head)?;
     let is_mounted = of.iter().any(|sample| sample.elevation.is_some());
     let (groups, fields) = match (run.base.is_empty(), is_mounted) {
         (true, false) => (1, 8),

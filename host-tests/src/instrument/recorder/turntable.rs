@@ -2,13 +2,19 @@
 
 use std::io::{self, Write};
 
+use firmware::ports::Store;
+use firmware::shared::Channels;
+use firmware::storage::load_calibration;
 use orientation::signal::Sample;
 use orientation::units::Angle;
 use simulated::turntable::TurntableScenario;
 
 use super::{Recorded, forces, header, rate, row, seconds};
 use crate::instrument::TurntableRun;
-use crate::recording::{Given, Kind, RotatingRow};
+use crate::instrument::kept::Kept;
+use crate::recording::inputs::{Carrier, Given};
+use crate::recording::{self, Kind, RotatingRow, Truth};
+use crate::virtual_time;
 
 const COLUMNS: &str = "t_s,stage_rad,stage_rate_rad_s,g_rad_s,a_m_s2,a_across_m_s2,force_is_new";
 
@@ -23,7 +29,7 @@ impl Recorded for TurntableScenario {
         writeln!(head, "# sensor: {sensor}")?;
         let zero_sigma = setting.encoder_zero_sigma.degrees();
         writeln!(head, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
-        Given::new(setting, procedure, ended).write(to, &head)?;
+        recording::Given::new(setting, procedure, ended).write(to, &head)?;
         writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;
         let start = of.first().map_or(0.0, |first| first.stage.rad());
         turning_rows(of).iter().try_for_each(|it| {
@@ -33,6 +39,27 @@ impl Recorded for TurntableScenario {
             row(to, &[it.time_s, angle, turning, it.rate_rad_s, along, across, is_new])
         })
     }
+
+    fn given(&self) -> Option<Given> {
+        let carrier = Carrier::Turntable(Box::new((self.setting()?, self.procedure())));
+        Some(Given { carrier, attitude: self.base.keeper()?, policy: self.base.policy() })
+    }
+
+    fn end_of<'r>(&self, run: &'r TurntableRun) -> (&'r Kept, Truth) {
+        run.end(self.base.azimuth_deg)
+    }
+}
+
+/// What a board is given that takes the axis misalignments of its store on a day; without a day as ever.
+pub fn given_by<T: Store>(scenario: &TurntableScenario, store: &mut T) -> Option<Given> {
+    let mut given = scenario.given()?;
+    if let (Carrier::Turntable(of), Some(today)) = (&mut given.carrier, scenario.today) {
+        let (setting, procedure) = &mut **of;
+        let channels: Channels<'_> = Channels::new(&());
+        let load = load_calibration(store, today, (setting, procedure), &channels.shared);
+        virtual_time::run(load).ok()?;
+    }
+    Some(given)
 }
 
 /// The rows of a recording of these samples, their angles from that of the first one on: whole turns counted, the

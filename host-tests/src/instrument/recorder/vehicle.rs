@@ -7,8 +7,10 @@ use simulated::vehicle::VehicleScenario;
 
 use super::{Recorded, forces, header, mean_rate, row, seconds};
 use crate::instrument::VehicleRun;
+use crate::instrument::kept::Kept;
 use crate::output::degrees;
-use crate::recording::{GREATEST_BODY_RATE, Given, Kind};
+use crate::recording::inputs::{Carrier, Given};
+use crate::recording::{self, GREATEST_BODY_RATE, Kind, Truth};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,force_is_new";
 
@@ -27,7 +29,7 @@ impl Recorded for VehicleScenario {
         header(&mut head, Kind::Imu, &self.base, &setting.site)?;
         writeln!(head, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
         stops(&mut head, run)?;
-        Given::new(setting, procedure, ended).write(to, &head)?;
+        recording::Given::new(setting, procedure, ended).write(to, &head)?;
         let azimuth = degrees(run.azimuth_rad()).rem_euclid(360.0);
         writeln!(to, "# truth_azimuth_deg: {azimuth}")?;
         writeln!(to, "# truth_start_azimuth_deg: {}", self.base.azimuth_deg)?;
@@ -42,6 +44,20 @@ impl Recorded for VehicleScenario {
             let is_new = f64::from(sample.force.is_some());
             row(to, &[seconds(sample.time), x, y, z, ahead, right, down, is_new])
         })
+    }
+
+    fn given(&self) -> Option<Given> {
+        let carrier = Carrier::Vehicle(Box::new((self.setting()?, self.procedure())));
+        Some(Given { carrier, attitude: self.keeper()?, policy: self.policy() })
+    }
+
+    fn end_of<'r>(&self, run: &'r VehicleRun) -> (&'r Kept, Truth) {
+        let truth = Truth {
+            azimuth_deg: Some(degrees(run.azimuth_rad()).rem_euclid(360.0)),
+            start_azimuth_deg: Some(self.base.azimuth_deg),
+            ..Truth::default()
+        };
+        (&run.kept, truth)
     }
 }
 

@@ -40,6 +40,12 @@ pub struct Replay {
 }
 
 impl Replay {
+    /// The replay of a session that its run, or another replay, has given its samples.
+    #[must_use]
+    pub fn of_run(session: Session) -> Self {
+        Self { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] }
+    }
+
     /// The parts of the recording that the session made of it: what came before the first even turn, then
     /// each stretch of even turns, in the order of time.
     #[must_use]
@@ -108,7 +114,7 @@ fn again(
         session.feed(Input::Sample(&Sample { rate, ..sample(row, 0.0) }));
     }
     session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
-    Ok(Replay { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] })
+    Ok(Replay::of_run(session))
 }
 
 /// Part of the power of what rounding adds that is the first harmonic of its staircase, 6/π².

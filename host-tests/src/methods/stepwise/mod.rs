@@ -8,6 +8,7 @@ pub mod late;
 pub mod outcome;
 pub mod positions;
 
+use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::Session;
 use orientation::alignment::stepwise::criterion::Criterion;
 use orientation::alignment::stepwise::mount::TWO_FRAMES;
@@ -125,13 +126,7 @@ fn again(
     setting.half = asked.half.or(setting.half);
     procedure.criterion = asked.criterion.unwrap_or(procedure.criterion);
     let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
-    if is_mounted {
-        setting.mount = TWO_FRAMES;
-    }
-    if let Some(survey) = &mut procedure.survey {
-        survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
-    }
-    let mut session = Session::new(setting, procedure)?;
+    let mut session = mounted(is_mounted, (setting, procedure))?;
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     let given =
         |row: &StageRow| Sample { rate: recording::rate(row.rate_rad_s), ..sample(row, 0.0) };
@@ -140,6 +135,23 @@ fn again(
     let method = asked.method.unwrap_or(shown);
     let assumed = given_with(session.setting.half);
     Ok(Replay { method, session, assumed })
+}
+
+/// A session with what text does not hold of it, on a stage or on a mount of two frames.
+///
+/// # Errors
+/// The procedure is impossible.
+pub(crate) fn mounted(
+    is_mounted: bool,
+    (mut setting, mut procedure): (Setting, Procedure),
+) -> Result<Session, SetupError> {
+    if is_mounted {
+        setting.mount = TWO_FRAMES;
+    }
+    if let Some(survey) = &mut procedure.survey {
+        survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
+    }
+    Session::new(setting, procedure)
 }
 
 /// What an azimuth rests on where the board was given what it needs, and this half of the circle.

@@ -65,7 +65,7 @@ pub struct Replay {
 
 impl Replay {
     /// Feeds a sample to the session, and keeps the stop criteria where they are new.
-    fn push(&mut self, sample: &InertialSample) {
+    pub(crate) fn push(&mut self, sample: &InertialSample) {
         self.session.feed(Input::Sample(sample));
         if let Some((criteria, limits)) = self.session.criteria()
             && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)

@@ -1,6 +1,7 @@
 //! The supply is lost, and comes back.
 
 use super::{reported, vehicle};
+use crate::support::inputs::{recorded, replayed};
 use firmware::event::Event;
 use firmware::ports::Store;
 use firmware::storage::{FlashStore, HEADING};
@@ -37,10 +38,24 @@ fn first(seconds: f64, gyro: GyroClass, store: &mut FlashStore<Flash>) -> Vehicl
 /// The second: the vehicle stands as it stood, but for these degrees of azimuth and pitch.
 fn second(
     before: &VehicleRun,
-    [azimuth, pitch]: [f64; 2],
+    turned: [f64; 2],
     gyro: GyroClass,
     store: &mut impl Store,
 ) -> VehicleRun {
+    let (scenario, day) = standing(before, turned, gyro);
+    Trial::of(&scenario)
+        .plan(VehiclePlan { day, chips: Injection::NONE })
+        .store(store)
+        .run()
+        .expect("possible")
+}
+
+/// What the vehicle does in the second run.
+fn standing(
+    before: &VehicleRun,
+    [azimuth, pitch]: [f64; 2],
+    gyro: GyroClass,
+) -> (VehicleScenario, Day) {
     // Another seed draws other biases, as a start does.
     let scenario = scenario(2, 20.0, gyro);
     let truth = before.kept.last().expect("it was kept").truth;
@@ -56,11 +71,7 @@ fn second(
         base: Scenario { azimuth_deg: truth.azimuth_rad.to_degrees() + azimuth, ..scenario.base },
         ..scenario
     };
-    Trial::of(&scenario)
-        .plan(VehiclePlan { day, chips: Injection::NONE })
-        .store(store)
-        .run()
-        .expect("possible")
+    (scenario, day)
 }
 
 fn refusal(run: &VehicleRun) -> Option<RecallRefusal> {
@@ -86,6 +97,18 @@ fn a_restart_without_motion_keeps_the_heading() {
     assert!(point.seconds() < 20.0, "after {} s", point.seconds());
     assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
     assert!(after.lines.contains(", recalled"), "{}", after.lines);
+}
+
+#[test]
+fn a_heading_that_was_recalled_is_recalled_again_by_a_replay() {
+    let mut store = Flash::default().store();
+    let before = first(8.0, STEADY, &mut store);
+    let (scenario, day) = standing(&before, [0.0, 0.0], STEADY);
+    let trial = Trial::of(&scenario).plan(VehiclePlan { day, chips: Injection::NONE });
+    let (after, text) = recorded(&scenario, trial.store(&mut store));
+    assert!(is_recalled(&after), "{:#?}", reported(&after));
+    let again = replayed(&text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(again.done.kept, after.kept);
 }
 
 #[test]

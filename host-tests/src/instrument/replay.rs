@@ -1,0 +1,215 @@
+//! Drives both halves of an instrument again by the inputs of a run, without a board: they do what they did.
+
+use std::path::Path;
+
+use hal_mock::earth::Attitude;
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::{Method, Request, rotating, stepwise, stops};
+use orientation::attitude::{Keeper, Realigned, Report};
+use orientation::navigation::{self, Aligner, Navigator, Order, Output, Progress, aligner};
+use orientation::signal::Timed;
+use serde::de::DeserializeOwned;
+
+use super::kept::{Kept, Point};
+use super::recorder::turning_rows;
+use crate::methods::{rotating as turning, stepwise as standing, stops as stopping};
+use crate::outcome::Finished;
+use crate::outcome::kept::finished;
+use crate::recording::inputs::{Carrier, End, Given, Line, Reader};
+use crate::recording::{Body, GIVEN, Problem, ReadError, Truth};
+
+/// What came of the inputs of a run.
+pub struct Replayed {
+    /// The alignment, or that an azimuth was kept where none stands.
+    pub finished: Box<dyn Finished>,
+    /// The rows that figures show, where there are any.
+    pub body: Option<Body>,
+    /// What was kept beside and after it.
+    pub done: Done,
+}
+
+/// What both halves did, beside the truth.
+#[derive(Default)]
+pub struct Done {
+    /// What was kept, with the truth, which is not a number where the file lacks it.
+    pub kept: Kept,
+    /// How often a later azimuth agreed with what was kept.
+    pub realigned: usize,
+    /// What was true at the end; for errors alone.
+    pub truth: Truth,
+    /// That the file breaks off, where it does.
+    pub warning: Option<String>,
+}
+
+/// Replays a file of inputs.
+///
+/// # Errors
+/// The file cannot be read, or a line does not do; the words name both.
+pub fn replay(path: &Path) -> Result<Replayed, ReadError> {
+    let (header, mut lines) = Reader::open(path)?;
+    replay_lines(&header.given, &mut lines)
+}
+
+/// Replays the lines below a header.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_lines(given: &Given, lines: &mut Reader<'_>) -> Result<Replayed, ReadError> {
+    match &given.carrier {
+        Carrier::Stage(of) => positions(false, of, given, lines),
+        Carrier::TwoFrame(of) => positions(true, of, given, lines),
+        Carrier::Turntable(of) => turntable(of, given, lines),
+        Carrier::Vehicle(of) => vehicle(of, given, lines),
+    }
+}
+
+/// Replays a stage, or a mount of two frames.
+fn positions(
+    is_mounted: bool,
+    of: &(stepwise::setting::Setting, stepwise::session::procedure::Procedure),
+    given: &Given,
+    lines: &mut Reader<'_>,
+) -> Result<Replayed, ReadError> {
+    let mut session = begun(standing::mounted(is_mounted, of.clone()), lines)?;
+    let done = drive(&mut session, given, lines, |_| ())?;
+    let method = if is_mounted { standing::POSITIONS } else { standing::name_of(&session) };
+    let assumed = standing::given_with(session.setting.half);
+    let is_aligned = session.conclusion().is_some();
+    let finished = finished(is_aligned, standing::Replay { method, session, assumed });
+    Ok(Replayed { finished, body: None, done })
+}
+
+/// Replays a platform that turns all the time.
+fn turntable(
+    (setting, procedure): &(rotating::Setting, rotating::session::Procedure),
+    given: &Given,
+    lines: &mut Reader<'_>,
+) -> Result<Replayed, ReadError> {
+    let mut session = begun(rotating::Session::new(*setting, procedure.clone()), lines)?;
+    let mut samples = Vec::new();
+    let done = drive(&mut session, given, lines, |sample| samples.push(*sample))?;
+    let finished = finished(session.conclusion().is_some(), turning::Replay::of_run(session));
+    Ok(Replayed { finished, body: Some(Body::Rotating(turning_rows(&samples))), done })
+}
+
+/// Replays a vehicle; its stop criteria are those of a session that is given the samples alone, as in the run.
+fn vehicle(
+    (setting, procedure): &(stops::Setting, stops::session::Procedure),
+    given: &Given,
+    lines: &mut Reader<'_>,
+) -> Result<Replayed, ReadError> {
+    let begin = || begun(stops::Session::new(*setting, procedure.clone()), lines);
+    let (mut session, beside) = (begin()?, begin()?);
+    let (method, criteria, assumed) = (stopping::SIAP, Vec::new(), vec![GIVEN.to_owned()]);
+    let mut seen = stopping::Replay { method, session: beside, zero_s: 0.0, criteria, assumed };
+    let done = drive(&mut session, given, lines, |sample| seen.push(sample))?;
+    let is_aligned = session.conclusion().is_some();
+    let finished = finished(is_aligned, stopping::Replay { session, ..seen });
+    Ok(Replayed { finished, body: None, done })
+}
+
+/// The session of the header, where that is possible.
+fn begun<T>(session: Result<T, SetupError>, lines: &Reader<'_>) -> Result<T, ReadError> {
+    session.map_err(|error| lines.error(Problem::InputsHeader(error.to_string())))
+}
+
+/// Drives a method and a navigator by all lines; `seen` gets the samples, too.
+fn drive<S: Timed + DeserializeOwned>(
+    method: &mut dyn Method<S>,
+    given: &Given,
+    lines: &mut Reader<'_>,
+    mut seen: impl FnMut(&S),
+) -> Result<Done, ReadError> {
+    let (mut attitudes, mut done) = (Vec::new(), Done::default());
+    let mut keeper = Keeper::new(&given.attitude);
+    let mut halves = Halves::new(method, Navigator::new(&mut keeper, &given.policy));
+    while let Some(line) = lines.read()? {
+        match line {
+            Line::Sample(sample) => {
+                seen(&sample);
+                halves.sample(&sample);
+            }
+            Line::Aligner(input) => halves.align(&input),
+            Line::Navigator(input) => halves.navigate(&input),
+            Line::TruthAttitude([azimuth_rad, pitch_rad, roll_rad]) => {
+                attitudes.push(Attitude { azimuth_rad, pitch_rad, roll_rad });
+            }
+            Line::End(End { truth_azimuth_deg, truth_start_azimuth_deg }) => {
+                done.truth.azimuth_deg = truth_azimuth_deg;
+                done.truth.start_azimuth_deg = truth_start_azimuth_deg;
+            }
+        }
+        if halves.has_diverged {
+            return Err(lines.error(Problem::Diverged));
+        }
+    }
+    let Halves { reports, realigned, .. } = halves;
+    attitudes.resize(reports.len(), UNKNOWN);
+    let both = reports.into_iter().zip(attitudes);
+    done.kept.points = both.map(|(report, truth)| Point { report, truth }).collect();
+    Ok(Done { realigned, warning: lines.warning(), ..done })
+}
+
+/// An attitude that the file does not hold.
+const UNKNOWN: Attitude =
+    Attitude { azimuth_rad: f64::NAN, pitch_rad: f64::NAN, roll_rad: f64::NAN };
+
+/// Both halves of an instrument, and what they did.
+struct Halves<'h, S> {
+    aligner: Aligner<'h, S>,
+    navigator: Navigator<'h>,
+    /// The navigator's orders.
+    orders: Vec<Order>,
+    reports: Vec<Report>,
+    realigned: usize,
+    /// Whether an input is none that the halves have come to.
+    has_diverged: bool,
+}
+
+impl<'h, S: Timed> Halves<'h, S> {
+    fn new(method: &'h mut dyn Method<S>, navigator: Navigator<'h>) -> Self {
+        let (orders, reports, realigned, has_diverged) = Default::default();
+        let mut aligner = Aligner::new(method);
+        let request = aligner.begin(&mut |_| ());
+        let mut this = Self { aligner, navigator, orders, reports, realigned, has_diverged };
+        this.compute(request);
+        this
+    }
+
+    /// Computes what the latest request announced, before anything else comes.
+    fn compute(&mut self, mut request: Request) {
+        while request == Request::Compute {
+            request = self.aligner.compute(&mut |_| ());
+        }
+    }
+
+    /// Gives the aligner a sample.
+    fn sample(&mut self, sample: &S) {
+        let request = self.aligner.sample(sample, &mut |_| ());
+        self.compute(request);
+    }
+
+    /// Gives the aligner another input. Only the navigator begins and skips alignments.
+    fn align(&mut self, input: &aligner::Input) {
+        if let aligner::Input::Ordered(order @ (Order::Restart | Order::Skip)) = input {
+            self.has_diverged |= !self.orders.contains(order);
+        }
+        let request = self.aligner.take(input, &mut |_| ());
+        self.compute(request);
+    }
+
+    /// Gives the navigator an input. What was found is what the aligner hands over.
+    fn navigate(&mut self, input: &navigation::Input) {
+        if let navigation::Input::Found(at, azimuth) = input {
+            self.has_diverged |= self.aligner.hand_over() != Some((*at, *azimuth));
+        }
+        self.navigator.take(input, &mut |output| match output {
+            Output::Report(report, _) => self.reports.push(report),
+            Output::Order(order) => self.orders.push(order),
+            Output::Progress(Progress::HandedOver(_, Realigned::Fused { .. })) => {
+                self.realigned += 1;
+            }
+            _ => {}
+        });
+    }
+}
