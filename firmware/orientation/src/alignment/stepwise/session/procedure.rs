@@ -2,7 +2,7 @@
 
 use super::schedule::{Schedule, StopRule};
 use crate::alignment::period::PERIOD_TOLERANCE;
-use crate::alignment::setup::{GREATEST, LONGEST, PERIODS, SetupError, check_ranges};
+use crate::alignment::setup::{LONGEST, PERIODS, SetupError, check_ranges};
 use crate::alignment::stepwise::criterion::Criterion;
 use crate::planner::order::Order;
 use crate::planner::{POSITIONS, Rotation};
@@ -131,8 +131,8 @@ impl Procedure {
             ("settle_seconds", self.settle_seconds.0, time),
             ("longest_seconds", self.longest_seconds.0, [0.0, f64::INFINITY]),
             ("longest_rotation", self.longest_rotation.0, [0.0, f64::INFINITY]),
-            ("travel", lowest.0, [-GREATEST, highest.0]),
-            ("travel", highest.0, [lowest.0, GREATEST]),
+            ("travel", lowest.0, [f64::NEG_INFINITY, highest.0]),
+            ("travel", highest.0, [lowest.0, f64::INFINITY]),
             ("still", self.still.0, angle),
             ("arrival", self.arrival.0, angle),
         ])
