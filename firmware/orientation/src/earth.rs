@@ -8,7 +8,7 @@ pub const EARTH_RATE: f64 = 7.292_115e-5;
 
 /// Greatest latitude at which an azimuth is determined, rad (85°): beyond it the horizontal Earth
 /// rate is below 9 % of the whole.
-pub const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
+pub(crate) const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
 
 /// Equatorial radius of the ellipsoid, m (WGS84).
 const SEMI_MAJOR_AXIS: f64 = 6_378_137.0;
@@ -41,19 +41,16 @@ impl Latitude {
     }
 
     /// Horizontal part of the Earth rate, Ω cos φ; points north.
-    #[must_use]
     pub fn horizontal_rate(self) -> RadiansPerSecond {
         RadiansPerSecond(EARTH_RATE * libm::cos(self.0))
     }
 
     /// Vertical part of the Earth rate, Ω sin φ; points up where positive.
-    #[must_use]
     pub fn vertical_rate(self) -> RadiansPerSecond {
         RadiansPerSecond(EARTH_RATE * libm::sin(self.0))
     }
 
     /// Normal gravity on the ellipsoid (Somigliana, WGS84).
-    #[must_use]
     pub fn gravity(self) -> MetresPerSecondSquared {
         let sine = libm::sin(self.0);
         let squared = sine * sine;
@@ -63,7 +60,6 @@ impl Latitude {
 
     /// Radii of curvature of the ellipsoid along the meridian and along the parallel's normal
     /// section (WGS84), in this order.
-    #[must_use]
     pub fn radii(self) -> [Metres; 2] {
         let sine = libm::sin(self.0);
         let part = 1.0 - ECCENTRICITY_SQUARED * sine * sine;

@@ -116,14 +116,14 @@
 //! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`alignment::stops`] |
 //! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`attitude::quaternion`] |
 //! | coning | rotation that the order of small rotations adds, and its compensation | [`signal::strapdown`] |
-//! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`alignment::stops`], [`attitude::vertical`] |
-//! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`attitude`], [`attitude::vertical`] |
-//! | heading hold, storage of azimuth | propagation of a known azimuth by the gyros, with its growing σ (Burov) | [`attitude::heading`] |
+//! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`alignment::stops`], [`attitude`] |
+//! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`attitude`] |
+//! | heading hold, storage of azimuth | propagation of a known azimuth by the gyros, with its growing σ (Burov) | [`attitude`] |
 //! | roll of a spinning body | phase of the lift in the transverse forces, as a correction of the gyro (Nekrasova 2017) | [`roll`] |
 //! | g-sensitivity | response of a gyro to specific force, κ in rad/s per g; with a tilt it acts as an Earth rate | [`alignment::stepwise::setting`], [`alignment::budget`] |
 //! | angle random walk | white noise N of a gyro, °/√h; with bias instability B, rate random walk K, rate ramp R and quantisation Q the noise model | [`noise::model`], [`noise::allan`] |
 //! | Cramér–Rao bound | least standard deviation that any estimator reaches with the same data and unknowns; the `limit` of every result | [`alignment::stepwise`], [`alignment::rotating::solution`] |
-//! | normalised innovation squared | squared difference between measurement and prediction over its variance, by which outliers are rejected | [`alignment::stops::filter`], [`noise::whitener`] |
+//! | normalised innovation squared | squared difference between measurement and prediction over its variance, by which outliers are rejected | [`alignment::stops`], [`noise::whitener`] |
 //! | sway compensation | subtraction of the base's motion, measured by coarse sensors, from the precise gyro's rate (Burov) | [`signal::sway`] |
 //! | error budget | contributions to the standard deviation of an azimuth; their root sum of squares is σ | [`alignment::budget`] |
 //! | autocompensation | cancelling a gyro's drift by turning it between positions, and the best schedule for that (Burov) | [`planner`], [`planner::burov`] |

@@ -126,7 +126,7 @@ pub struct VehicleTruth {
     pub attitude: Attitude,
     /// Latitude, and longitude from the start.
     pub position: Position,
-    /// North and east from the start, m ([`Position::displacement_m`]).
+    /// North and east from the start, m.
     pub displacement_m: [f64; 2],
     /// Velocity over the ground, north, east, down, m/s.
     pub velocity_m_s: [f64; 3],

@@ -68,7 +68,6 @@ pub struct Budget {
 
 impl Budget {
     /// The parts with their names, in the order in which they are printed.
-    #[must_use]
     pub fn parts(&self) -> [(Source, Radians); 9] {
         [
             (Source::Noise, self.noise),
@@ -84,7 +83,6 @@ impl Budget {
     }
 
     /// Standard deviation of the azimuth: root sum of squares of all contributions.
-    #[must_use]
     pub fn sigma(&self) -> Radians {
         Radians(libm::sqrt(self.parts().iter().map(|(_, part)| part.0 * part.0).sum()))
     }

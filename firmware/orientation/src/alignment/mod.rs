@@ -2,9 +2,9 @@
 //! azimuth with its standard deviation.
 
 pub mod budget;
-pub mod method;
+pub(crate) mod method;
 pub mod period;
-pub mod progress;
+pub(crate) mod progress;
 pub mod refusal;
 pub mod rotating;
 pub mod setup;
@@ -12,12 +12,12 @@ pub mod site;
 pub mod slow;
 pub mod stepwise;
 pub mod stops;
-pub mod verdict;
+pub(crate) mod verdict;
 
 pub use method::{Input, Method, Request};
 pub use progress::{Listener, Progress};
 pub(crate) use refusal::refuse_if;
 pub use refusal::{Passed, Refusal};
-pub use setup::SetupError;
-pub use slow::SlowMotion;
+pub(crate) use setup::SetupError;
+pub(crate) use slow::SlowMotion;
 pub use verdict::{Azimuth, Judged, Solution, Verdict};

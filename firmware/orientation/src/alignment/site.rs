@@ -29,7 +29,7 @@ pub struct Site {
     /// third part, which is taken as zero.
     pub g_sensitivity_sigma: GSensitivity,
     /// Whether κ and its σ are known; otherwise κ is taken as zero and its σ follows from the
-    /// gyro's noise ([`Self::kappa_sigma`]).
+    /// gyro's noise.
     pub g_sensitivity_known: bool,
     /// Standard deviation of each accelerometer bias, 1σ.
     pub accelerometer_bias_sigma: MetresPerSecondSquared,
@@ -83,7 +83,7 @@ impl Site {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         let [along, across] = self.g_sensitivity.map(|part| part.0);
         let (positive, either) = ([0.0, GREATEST], [-GREATEST, GREATEST]);
         let [q, n, b, k, r] = self.noise.model().coefficients();
@@ -106,8 +106,7 @@ impl Site {
     }
 
     /// Standard deviation of either part of κ, 1σ, for a gyro with this N.
-    #[must_use]
-    pub fn kappa_sigma(&self, angle_random_walk: RadiansPerRootSecond) -> GSensitivity {
+    pub(crate) fn kappa_sigma(&self, angle_random_walk: RadiansPerRootSecond) -> GSensitivity {
         if self.g_sensitivity_known {
             self.g_sensitivity_sigma
         } else {
@@ -132,7 +131,7 @@ impl Site {
     ///
     /// # Errors
     /// [`Refusal::LatitudeTooHigh`].
-    pub fn check_latitude(&self) -> Passed {
+    pub(crate) fn check_latitude(&self) -> Passed {
         let latitude = Radians(self.latitude.rad()).into();
         refuse_if(!self.latitude.has_north(), Refusal::LatitudeTooHigh { latitude })
     }
@@ -141,7 +140,7 @@ impl Site {
     ///
     /// # Errors
     /// [`Refusal::TiltTooGreat`].
-    pub fn check_tilt(&self, sine: f64) -> Passed {
+    pub(crate) fn check_tilt(&self, sine: f64) -> Passed {
         let (tilt, allowed) = (Radians(libm::asin(sine.min(1.0))), self.allowed_tilt);
         let is_great = tilt > allowed;
         let [tilt, allowed] = [tilt, allowed].map(Degrees::from);
@@ -153,7 +152,7 @@ impl Site {
     ///
     /// # Errors
     /// [`Refusal::BudgetNotMet`].
-    pub fn check_sigma(&self, sigma: Radians, source: Source) -> Passed {
+    pub(crate) fn check_sigma(&self, sigma: Radians, source: Source) -> Passed {
         let is_met = sigma.0 > 0.0 && sigma <= self.required_sigma;
         let [sigma, required] = [sigma, self.required_sigma].map(Degrees::from);
         refuse_if(!is_met, Refusal::BudgetNotMet { sigma, required, source })

@@ -98,7 +98,7 @@ impl Keeper {
 
     /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
     /// is withdrawn.
-    pub fn realign(&mut self, azimuth: Azimuth) -> Realigned {
+    pub(crate) fn realign(&mut self, azimuth: Azimuth) -> Realigned {
         let [.., gyro] = &self.setting.gyros;
         let realigned = match &mut self.heading {
             None => Realigned::Taken,
@@ -113,7 +113,7 @@ impl Keeper {
     }
 
     /// Sets the speed of the vehicle north and east; none where it is not known.
-    pub fn move_at(&mut self, speed: Option<[MetresPerSecond; 2]>) {
+    pub(crate) fn move_at(&mut self, speed: Option<[MetresPerSecond; 2]>) {
         self.speed = speed;
         self.turn_frame();
     }
@@ -156,8 +156,7 @@ impl Keeper {
     }
 
     /// State to be saved against a loss of supply; only at rest, and with an azimuth.
-    #[must_use]
-    pub fn remember(&self) -> Option<Remembered> {
+    pub(crate) fn remember(&self) -> Option<Remembered> {
         let report = self.report();
         let azimuth = report.azimuth.filter(|_| report.is_at_rest)?;
         Some(Remembered {
@@ -175,7 +174,7 @@ impl Keeper {
     ///
     /// # Errors
     /// Reason for which the saved azimuth is rejected.
-    pub fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
+    pub(crate) fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
         let rest = (self.vertical.rest_rates(), Seconds(self.vertical.course.stood.into()));
         restart::check(remembered, &self.report(), rest, &self.setting)?;
         self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });

@@ -6,13 +6,13 @@
 //!                     alignment, or azimuth from outside ─hand over─▲   └─at rest─▶ remembered
 //! ```
 
-pub mod heading;
-pub mod keeper;
+pub(crate) mod heading;
+pub(crate) mod keeper;
 pub mod quaternion;
 mod report;
 pub mod restart;
 mod setting;
-pub mod vertical;
+pub(crate) mod vertical;
 
 pub use heading::Realigned;
 pub use keeper::Keeper;

@@ -27,10 +27,10 @@ const ON_END: f64 = 1e-8;
 pub struct Attitude([i64; 4]);
 
 /// A vector in single precision.
-pub type Vector = [f32; 3];
+pub(crate) type Vector = [f32; 3];
 
 /// A 3×3 matrix in single precision, row by row.
-pub type Matrix = [Vector; 3];
+pub(crate) type Matrix = [Vector; 3];
 
 impl Default for Attitude {
     fn default() -> Self {
@@ -109,8 +109,7 @@ impl Attitude {
     }
 
     /// Rotation matrix, to 1e-7.
-    #[must_use]
-    pub fn matrix(&self) -> Matrix {
+    pub(crate) fn matrix(&self) -> Matrix {
         rotation::matrix(self.rough())
     }
 

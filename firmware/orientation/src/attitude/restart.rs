@@ -12,7 +12,7 @@ use crate::units::{DEGREE, Degrees, Radians, RadiansPerSecond, Seconds};
 use crate::words::Rounded;
 
 /// Shortest rest for the comparison.
-pub const REST_SECONDS: Seconds = Seconds(10.0);
+pub(crate) const REST_SECONDS: Seconds = Seconds(10.0);
 /// Greatest change of pitch and roll, rad: the effect of temperature and tyres on a standing
 /// vehicle, 0.05°.
 const TILT: f64 = 0.05 * DEGREE;

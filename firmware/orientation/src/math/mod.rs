@@ -7,8 +7,8 @@ pub mod regression;
 pub mod rotation;
 pub mod turn;
 
-pub use reference_table::Table;
-pub use regression::{COLUMNS, Column, Regression, Solution};
+pub(crate) use reference_table::Table;
+pub(crate) use regression::{COLUMNS, Column, Regression, Solution};
 
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -98,13 +98,12 @@ impl<T: Scalar> Complex<T> {
     }
 
     /// Squared magnitude.
-    #[must_use]
-    pub fn power(self) -> T {
+    pub(crate) fn power(self) -> T {
         self.re * self.re + self.im * self.im
     }
 
     /// Complex conjugate.
-    pub fn conjugate(self) -> Self {
+    pub(crate) fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
@@ -114,7 +113,7 @@ impl<T: Scalar> Complex<T> {
     }
 
     /// Product of the conjugate of this number with another.
-    pub fn against(self, other: Self) -> Self {
+    pub(crate) fn against(self, other: Self) -> Self {
         let Self { re, im } = other;
         Self::new(self.re * re + self.im * im, self.re * im - self.im * re)
     }

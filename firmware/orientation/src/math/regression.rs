@@ -10,7 +10,7 @@ use super::{Scalar, cholesky, cholesky_solve};
 
 /// Number of columns of the regressions on a board: one size for all, so that one copy of the code
 /// in flash serves them.
-pub const COLUMNS: usize = 7;
+pub(crate) const COLUMNS: usize = 7;
 
 /// Sums of products of `P` columns and the left side.
 #[derive(Clone, Debug)]

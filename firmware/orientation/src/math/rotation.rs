@@ -10,7 +10,7 @@ pub type Vector = [f64; 3];
 pub type Matrix = [Vector; 3];
 
 /// The identity matrix.
-pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Scalar product of two vectors.
 #[must_use]
@@ -105,8 +105,7 @@ pub fn levelled(up: &Vector) -> Matrix {
 }
 
 /// Rotation matrix of a unit quaternion w, x, y, z.
-#[must_use]
-pub fn matrix<T: Scalar>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
+pub(crate) fn matrix<T: Scalar>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     let (one, two) = (T::of(1.0), T::of(2.0));
     [
         [one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
@@ -144,7 +143,7 @@ impl Quaternion {
     }
 
     /// Renormalised quaternion: rounding changes its norm by 1e-16 a rotation.
-    pub fn normalised(&self) -> Self {
+    pub(crate) fn normalised(&self) -> Self {
         let Self([w, x, y, z]) = *self;
         // One Newton step towards 1/√n: exact as long as the norm is nearly one.
         let factor = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);

@@ -24,8 +24,7 @@ const fn reciprocals(odd: bool) -> [i64; 8] {
 }
 
 /// Upper half of a 128-bit product, rounded down.
-#[must_use]
-pub fn high(a: i64, b: i64) -> i64 {
+pub(crate) fn high(a: i64, b: i64) -> i64 {
     ((i128::from(a) * i128::from(b)) >> 64) as i64
 }
 

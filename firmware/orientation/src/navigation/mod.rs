@@ -14,7 +14,7 @@
 
 pub mod aligner;
 pub mod navigator;
-pub mod policy;
+pub(crate) mod policy;
 pub mod progress;
 
 pub use aligner::Aligner;

@@ -102,7 +102,7 @@ pub enum Output {
 }
 
 /// Receiver of outputs.
-pub type Outlet<'a> = &'a mut dyn FnMut(Output);
+pub(crate) type Outlet<'a> = &'a mut dyn FnMut(Output);
 
 /// The attitude keeper with its policy.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]

@@ -6,4 +6,4 @@ pub mod fit;
 pub mod model;
 pub mod whitener;
 
-pub use model::{GyroNoise, StatedNoise};
+pub(crate) use model::{GyroNoise, StatedNoise};

@@ -73,7 +73,7 @@ impl GyroNoise {
     }
 
     /// Model of the coefficients Q, N, B, K and R in SI units, in that order.
-    pub fn of(coefficients: [f64; 5]) -> Self {
+    pub(crate) fn of(coefficients: [f64; 5]) -> Self {
         let [q, n, b, k, r] = coefficients;
         Self {
             quantisation: Radians(q),

@@ -135,7 +135,6 @@ fn first(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
 
 /// Contribution of bias instability to a rate error, B√(2 ln 2/π); no rotation schedule
 /// reduces it.
-#[must_use]
 pub fn flicker_floor(noise: &GyroNoise) -> RadiansPerSecond {
     let factor = libm::sqrt(2.0 * core::f64::consts::LN_2 / core::f64::consts::PI);
     RadiansPerSecond(noise.bias_instability.0 * factor)

@@ -51,7 +51,6 @@ impl Rotation {
     }
 
     /// Time for a rotation by `angle`, at most a turn in magnitude; zero for an angle of zero.
-    #[must_use]
     pub fn seconds(&self, angle: Radians) -> Seconds {
         let angle = angle.0.abs();
         let way = if self.wraps { angle.min(TURN - angle) } else { angle };
@@ -136,13 +135,11 @@ impl Plan {
     }
 
     /// Stage angle of the position with this index, [0, 2π).
-    #[must_use]
-    pub fn angle(&self, index: usize) -> Radians {
+    pub(crate) fn angle(&self, index: usize) -> Radians {
         self.order.angle(index, self.passes)
     }
 
     /// Standard deviation of a full azimuth at a latitude due to noise, 1σ.
-    #[must_use]
     pub fn sigma(&self, latitude: Latitude) -> Radians {
         Radians(self.rate_sigma.0 / latitude.horizontal_rate().0)
     }

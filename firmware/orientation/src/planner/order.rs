@@ -27,7 +27,7 @@ pub enum Order {
 
 /// Number of parts of a turn in which every position is a whole number: halves, thirds, quarters
 /// and eighths.
-pub const PARTS: u8 = 24;
+pub(crate) const PARTS: u8 = 24;
 
 /// The two pairs of opposite positions, in twenty-fourths of a turn.
 const PAIRS: [[u8; 2]; 2] = [[0, 12], [6, 18]];
@@ -67,8 +67,7 @@ impl Order {
     }
 
     /// Position with this index in a schedule of `passes`, in twenty-fourths of a turn, 0 to 23.
-    #[must_use]
-    pub fn part(self, index: usize, passes: usize) -> u8 {
+    pub(crate) fn part(self, index: usize, passes: usize) -> u8 {
         if self == Self::Pairs {
             let second = index % (4 * passes.max(1)) >= 2 * passes;
             return PAIRS[usize::from(second)][index % 2];
@@ -78,7 +77,6 @@ impl Order {
     }
 
     /// Stage angle of the position with this index in a schedule of `passes`, [0, 2π).
-    #[must_use]
     pub fn angle(self, index: usize, passes: usize) -> Radians {
         Radians(f64::from(self.part(index, passes)) * (TURN / f64::from(PARTS)))
     }

@@ -31,8 +31,7 @@ pub struct Visit {
 
 impl Visit {
     /// Visit at a planned position, in twenty-fourths of a turn.
-    #[must_use]
-    pub fn planned(part: u8, start: f64, seconds: f64) -> Self {
+    pub(crate) fn planned(part: u8, start: f64, seconds: f64) -> Self {
         let index = i32::from(part) * (TURN / i32::from(PARTS));
         let entries = [Table::built_in().cos(index), Table::built_in().sin(index)];
         Self { unit: entries.map(|entry| entry as f32 * (1.0 / ONE) as f32), start, seconds }

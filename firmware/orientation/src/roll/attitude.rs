@@ -28,14 +28,13 @@ pub struct Attitude {
 
 impl Attitude {
     /// Begins with course, clockwise from north, and pitch, nose up, both in rad.
-    #[must_use]
-    pub fn begin(course: Radians, pitch: Radians) -> Self {
+    pub(crate) fn begin(course: Radians, pitch: Radians) -> Self {
         Self { course, pitch, ..Self::default() }
     }
 
     /// Takes a sample, after the roll has been updated with it.
     #[inline]
-    pub fn push(&mut self, sample: &SpinSample, spin: &Spin) {
+    pub(crate) fn push(&mut self, sample: &SpinSample, spin: &Spin) {
         let [_, y, z] = sample.turned;
         // Roll in the middle of the sample.
         let half = (spin.step() >> 1).cast_unsigned();

@@ -22,7 +22,7 @@ pub enum Signal {
 
 impl Signal {
     /// Roll at which the signal occurs.
-    pub fn roll(self) -> Angle {
+    pub(crate) fn roll(self) -> Angle {
         match self {
             Self::YMaximum => Angle(0),
             Self::ZMinimum => Angle(1 << 30),

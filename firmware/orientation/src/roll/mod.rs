@@ -12,7 +12,7 @@
 //! Axes are the paper's: x forward, y up and z right at roll zero, roll clockwise seen from behind.
 //! On the axes of the rest of this crate the force to the right is `a_z`, the force down `−a_y`.
 
-pub mod attitude;
+pub(crate) mod attitude;
 mod circle;
 mod extrema;
 mod fit;
@@ -21,14 +21,13 @@ mod harmonics;
 mod lock;
 mod phase_accumulator;
 mod plausibility;
-pub mod progress;
+pub(crate) mod progress;
 mod setting;
 mod spin;
 mod state;
 
 pub use self::extrema::Signal;
 pub use self::flight::Flight;
-pub use self::phase_accumulator::Roll;
 pub use self::progress::Progress;
 pub use self::setting::{Method, Setting};
 pub use self::spin::Spin;

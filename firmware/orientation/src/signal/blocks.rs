@@ -7,7 +7,7 @@
 use core::num::NonZero;
 
 /// Greatest number of blocks that are kept.
-pub const BLOCKS: usize = 16;
+pub(crate) const BLOCKS: usize = 16;
 
 /// Running block sums of the deviations of a rate from the dwell's first sample, nrad/s.
 #[derive(Clone, Debug)]
@@ -68,8 +68,7 @@ impl Blocks {
     }
 
     /// Number of deviations added so far.
-    #[must_use]
-    pub fn count(&self) -> u32 {
+    pub(crate) fn count(&self) -> u32 {
         (self.full as u32 + 1) * self.length - self.lacking
     }
 
@@ -111,8 +110,7 @@ pub struct BlockStatistics {
 
 impl BlockStatistics {
     /// Number of blocks as a floating-point number.
-    #[must_use]
-    pub fn count(&self) -> f64 {
+    pub(crate) fn count(&self) -> f64 {
         f64::from(self.blocks.get())
     }
 

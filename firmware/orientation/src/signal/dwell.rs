@@ -48,13 +48,11 @@ pub struct Dwell {
 
 impl Dwell {
     /// Beginning of the averaged time.
-    #[must_use]
     pub fn start(&self) -> Seconds {
         Seconds(self.middle.0 - 0.5 * self.seconds.0)
     }
 
     /// End of the averaged time.
-    #[must_use]
     pub fn end(&self) -> Seconds {
         Seconds(self.middle.0 + 0.5 * self.seconds.0)
     }
@@ -121,8 +119,7 @@ const LONGEST_GAP: f64 = 3.5;
 const REGULAR: f64 = 1.5;
 
 /// Fewest samples of a dwell: four times the filter's lag, and at least eight.
-#[must_use]
-pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
+pub(crate) fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
     (libm::ceil(4.0 * coefficients.lag) as u32).max(8)
 }
 
@@ -254,22 +251,19 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     }
 
     /// Number of samples so far.
-    #[must_use]
-    pub fn count(&self) -> u32 {
+    pub(crate) fn count(&self) -> u32 {
         self.blocks.count()
     }
 
     /// Mean step of the time stamps; `None` with fewer than two samples or with samples missing.
-    #[must_use]
-    pub fn step(&self) -> Option<Seconds> {
+    pub(crate) fn step(&self) -> Option<Seconds> {
         let steps = f64::from(self.count().checked_sub(1).filter(|steps| *steps > 0)?);
         let step = (self.last.seconds() - self.first.seconds()) / steps;
         (self.longest_gap as f64 * 1e-6 <= REGULAR * step).then_some(Seconds(step))
     }
 
     /// Mean specific force so far; `None` while no sample brought one.
-    #[must_use]
-    pub fn force(&self) -> Option<[MetresPerSecondSquared; 3]> {
+    pub(crate) fn force(&self) -> Option<[MetresPerSecondSquared; 3]> {
         let part = MetresPerSecondSquared;
         self.force.get(FORCE_STEP).map(|[x, y, z, _]| [part(x), part(y), part(z)])
     }
@@ -280,7 +274,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     }
 
     /// The finished dwell, for a sample period in seconds; `None` while it is shorter than
-    /// [`shortest`].
+    /// four times the filter's lag.
     #[must_use]
     pub fn finish(
         &self,

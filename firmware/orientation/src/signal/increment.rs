@@ -11,19 +11,19 @@ const LARGE: f32 = 0.02;
 const LARGE_STEPS: u32 = (LARGE / STEP) as u32;
 /// Rotation of one sample about one axis up to which the rate is assumed to change linearly from
 /// sample to sample, rad; beyond it the sample is treated as a shock.
-pub const STEADY: f32 = 0.1;
+pub(crate) const STEADY: f32 = 0.1;
 /// Threshold [`STEADY`] in steps of an increment.
 const STEADY_STEPS: u32 = (STEADY / STEP) as u32;
 /// Weight of the cross product of two successive increments, for rates that change linearly in time
 /// (Savage 1998, coning equation): 1/12.
 const CONING: f32 = 1.0 / 12.0;
 /// One step of an angle increment, rad, in single precision.
-pub const STEP: f32 = AngleIncrement::STEP as f32;
+pub(crate) const STEP: f32 = AngleIncrement::STEP as f32;
 
 /// Rotation since the last attitude update, in steps of an increment and their squares. The
 /// components are written out, because loops over three cost more than their bodies.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Increment {
+pub(crate) struct Increment {
     /// Sums of the increments since the last attitude update, in their steps: exact integers, so no
     /// rotation is lost over any time.
     pub sums: [i32; 3],
@@ -40,7 +40,7 @@ impl Increment {
         reason = "a call with nine numbers costs a tenth of the sample"
     )]
     #[inline(always)]
-    pub fn push(&mut self, [a, b, c]: [AngleIncrement; 3]) {
+    pub(crate) fn push(&mut self, [a, b, c]: [AngleIncrement; 3]) {
         let [x, y, z] = self.sums;
         let [small_x, small_y, small_z] = [a.0 as f32, b.0 as f32, c.0 as f32];
         let is_steady = a.0.unsigned_abs() < STEADY_STEPS
@@ -60,7 +60,7 @@ impl Increment {
 
     /// Whether the rotation is large enough for an attitude update at once.
     #[inline]
-    pub fn is_large(&self) -> bool {
+    pub(crate) fn is_large(&self) -> bool {
         let [x, y, z] = self.sums;
         x.unsigned_abs().max(y.unsigned_abs()).max(z.unsigned_abs()) > LARGE_STEPS
     }
@@ -68,7 +68,7 @@ impl Increment {
     /// Rotation vector since the last attitude update, rad, in double precision; the sums begin
     /// again.
     #[inline]
-    pub fn take(&mut self) -> [f64; 3] {
+    pub(crate) fn take(&mut self) -> [f64; 3] {
         let rotation = core::array::from_fn(|axis| {
             f64::from(self.sums[axis]) * AngleIncrement::STEP
                 + f64::from(self.coning[axis] * (STEP * STEP))
@@ -79,7 +79,7 @@ impl Increment {
 
     /// Rotation vector since the last attitude update, rad, in single precision (relative error
     /// 6e-8); the sums begin again.
-    pub fn take_rough(&mut self) -> [f32; 3] {
+    pub(crate) fn take_rough(&mut self) -> [f32; 3] {
         let ([x, y, z], [about_x, about_y, about_z]) = (self.sums, self.coning);
         self.restart();
         [

@@ -9,8 +9,8 @@ pub mod rest;
 pub mod strapdown;
 pub mod sway;
 
-pub use dwell::{Dwell, SampleFault};
-pub use sway::SwayNoise;
+pub(crate) use dwell::{Dwell, SampleFault};
+pub(crate) use sway::SwayNoise;
 
 use crate::units::{
     Angle, AngleIncrement, AngularRate, Instant, SpecificForce, SpinForce, Temperature,

@@ -19,13 +19,13 @@ use crate::units::Angle;
 pub const COLUMNS: usize = 6;
 
 /// Column of the constant.
-pub const ONE: usize = 0;
+pub(crate) const ONE: usize = 0;
 /// Column of the cosine of the platform angle.
-pub const COSINE: usize = 1;
+pub(crate) const COSINE: usize = 1;
 /// Column of the sine of the platform angle.
-pub const SINE: usize = 2;
+pub(crate) const SINE: usize = 2;
 /// Column of the time since the reference, s.
-pub const TIME: usize = 3;
+pub(crate) const TIME: usize = 3;
 /// Column of the platform's rate beyond the reference, rad/s: shows the axis misalignment.
 pub const TURNING: usize = 4;
 /// Column of the platform's angular acceleration, rad/s²: shows the lag of the sensor.
@@ -118,7 +118,7 @@ impl Blocks {
     }
 
     /// Discards the block in progress, so that the next samples do not join on to it.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         *self = Self::of(self.periods);
     }
 
@@ -250,8 +250,7 @@ impl Products {
     }
 
     /// Sums of cosine and sine over the blocks, in steps of 2⁻²².
-    #[must_use]
-    pub fn phasor(&self) -> [f32; 2] {
+    pub(crate) fn phasor(&self) -> [f32; 2] {
         [COSINE, SINE].map(|signal| self.sums[signal * (signal + 1) / 2] as f32)
     }
 }
@@ -275,7 +274,7 @@ impl Sums {
     }
 
     /// Adds the sums of other blocks that have the same reference.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         for (sum, product) in self.products.iter_mut().zip(other.products) {
             *sum += product;
         }
@@ -291,8 +290,7 @@ impl Sums {
     }
 
     /// Mean of a signal, in its unit; zero without blocks.
-    #[must_use]
-    pub fn mean(&self, signal: usize) -> f64 {
+    pub(crate) fn mean(&self, signal: usize) -> f64 {
         self.product(signal, ONE) / f64::from(self.rows.max(1))
     }
 

@@ -70,7 +70,7 @@ pub struct Criteria {
 impl Criteria {
     /// Criteria from the magnitudes of the mean rate, rad/s, and of the mean specific force, m/s²,
     /// for the local gravity, m/s².
-    pub fn of(rate: f64, force: f64, gravity: f64) -> Self {
+    pub(crate) fn of(rate: f64, force: f64, gravity: f64) -> Self {
         let (rate, force) = (EARTH_RATE - rate, gravity - force);
         Self { rate: RadiansPerSecond(rate), force: MetresPerSecondSquared(force) }
     }
@@ -78,7 +78,7 @@ impl Criteria {
     /// Criteria for a single gyro that is turned between averages, from the deviation of its mean
     /// rate from its usual one, rad/s. At rest two such rates differ by at most twice the Earth's
     /// rate, so only the excess over that counts.
-    pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
+    pub(crate) fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
         let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
         Self { rate: RadiansPerSecond(-beyond), force: MetresPerSecondSquared(gravity - force) }
     }

@@ -21,7 +21,7 @@ use crate::units::Instant;
 /// Time between attitude updates, µs: 50 Hz.
 const PERIOD: u64 = 20_000;
 /// A 3×3 matrix in single precision, row by row.
-pub type Rough = [[f32; 3]; 3];
+pub(crate) type Rough = [[f32; 3]; 3];
 
 /// Attitude, with its sensitivity to the gyros' errors.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,8 +70,7 @@ impl Sums {
 
     /// Angle of the sway about each axis beyond the net rotation, rad: the range less the magnitude
     /// of the present value.
-    #[must_use]
-    pub fn swung(&self) -> [f32; 3] {
+    pub(crate) fn swung(&self) -> [f32; 3] {
         let [now, least, greatest] = &self.swept;
         core::array::from_fn(|axis| greatest[axis] - least[axis] - now[axis].abs())
     }
@@ -162,8 +161,7 @@ impl Strapdown {
 
     /// Rate at the last attitude update, rad/s, extrapolated linearly from the two mean rates
     /// before it.
-    #[must_use]
-    pub fn rate(&self) -> [f32; 3] {
+    pub(crate) fn rate(&self) -> [f32; 3] {
         let [latest, earlier] = self.rates;
         core::array::from_fn(|axis| 1.5 * latest[axis] - 0.5 * earlier[axis])
     }

@@ -61,7 +61,7 @@ pub struct Optional(f64);
 
 impl Optional {
     /// The missing number, stored as NaN.
-    pub const NONE: Self = Self(f64::NAN);
+    pub(crate) const NONE: Self = Self(f64::NAN);
 
     /// The number; `None` where it is missing.
     #[must_use]

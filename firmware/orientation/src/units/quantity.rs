@@ -7,6 +7,7 @@ use super::{DEGREE, DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 macro_rules! quantities {
     ($($(#[$meaning:meta])+ $name:ident;)+) => {$(
         $(#[$meaning])+
+        #[must_use]
         #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         #[cfg_attr(feature = "serde", serde(transparent))]
@@ -51,7 +52,6 @@ quantities! {
 
 impl Radians {
     /// Angle of so many degrees.
-    #[must_use]
     pub const fn from_degrees(degrees: f64) -> Self {
         Self(degrees * DEGREE)
     }
@@ -65,7 +65,6 @@ impl Radians {
 
 impl GSensitivity {
     /// g-sensitivity of so many °/h per g.
-    #[must_use]
     pub const fn from_degrees_per_hour(rate: f64) -> Self {
         Self(rate * DEGREE_PER_HOUR)
     }
@@ -85,7 +84,6 @@ impl From<RadiansPerSecond> for DegreesPerSecond {
 
 impl RadiansPerSecond {
     /// Rate of so many °/h.
-    #[must_use]
     pub const fn from_degrees_per_hour(rate: f64) -> Self {
         Self(rate * DEGREE_PER_HOUR)
     }

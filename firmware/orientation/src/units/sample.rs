@@ -146,8 +146,7 @@ impl Temperature {
     }
 
     /// Temperature in °C.
-    #[must_use]
-    pub fn celsius(self) -> f64 {
+    pub(crate) fn celsius(self) -> f64 {
         f64::from(self.0) * 1e-3
     }
 }

@@ -17,11 +17,11 @@ use crate::math::{COLUMNS, Column, Complex, Regression, Solution, median, sort};
 const MARKS: usize = STRETCHES * TURNS;
 
 /// Marks of all turns.
-pub type Marks = Vec<Mark, MARKS>;
+pub(crate) type Marks = Vec<Mark, MARKS>;
 
 /// Value of a quantity in one turn that should stay constant.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Mark {
+pub(crate) struct Mark {
     /// Middle of the turn, s.
     pub time: f32,
     /// Factor of the part that changes with the sense: its sign, or the signed speed.
@@ -36,7 +36,7 @@ pub struct Mark {
 
 impl Mark {
     /// Mark of a turn, or of joined ones, of the first speed of a stretch, with this value.
-    pub fn of(stretch: &Stretch, turn: &Turn, value: Complex) -> Self {
+    pub(crate) fn of(stretch: &Stretch, turn: &Turn, value: Complex) -> Self {
         Self {
             time: (stretch.since as f64 * 1e-6 + f64::from(turn.middle)) as f32,
             odd: stretch.sense.signed(1.0) as f32,
@@ -49,7 +49,7 @@ impl Mark {
 
 /// Hypothesis on the change of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// The quantity is constant.
     Steady,
     /// The quantity changes linearly with time.
@@ -66,7 +66,7 @@ const CHANGE: usize = 4;
 
 /// Result of a fit. Variances are those of the less certain part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub(crate) struct Found {
     /// Hypothesis that was fitted.
     pub shape: Shape,
     /// Value at the end.
@@ -87,7 +87,7 @@ pub struct Found {
 
 /// Marks of all turns in the order of time, with the prior knowledge for their fit.
 #[derive(Clone, Debug)]
-pub struct Record {
+pub(crate) struct Record {
     /// Marks in the order of time.
     marks: Marks,
     /// Prior knowledge of the part that changes with the sense, for each part of the value.
@@ -116,7 +116,7 @@ const FEWEST: f64 = 2.0;
 impl Record {
     /// Record of values with two parts, whose noise follows from differences of neighbours and is
     /// at least `least`.
-    pub fn of_phasors(marks: Marks, odd: [Column; 2], least: f64) -> Self {
+    pub(crate) fn of_phasors(marks: Marks, odd: [Column; 2], least: f64) -> Self {
         let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2, end: 0.0 };
         record.in_order();
         record.variance = record.of_neighbours().max(least * least);
@@ -125,7 +125,7 @@ impl Record {
 
     /// Record of values with one part and this variance for one turn. The value at the end of a
     /// linear change is extrapolated by `lever` seconds beyond the end.
-    pub fn of_angles(
+    pub(crate) fn of_angles(
         marks: Marks,
         odd: Column,
         (variance, is_known): (f64, bool),
@@ -240,35 +240,35 @@ impl Record {
     }
 
     /// Gain in chi-square that chance achieves by choosing among all places of a step.
-    pub fn places(&self) -> f64 {
+    pub(crate) fn places(&self) -> f64 {
         2.0 * libm::log(self.marks.len().max(1) as f64)
     }
 
     /// Time from the first mark to the last, s.
-    pub fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
     }
 
     /// Weighted middle of all turns, s.
-    pub fn middle(&self) -> f64 {
+    pub(crate) fn middle(&self) -> f64 {
         let turns = |mark: &Mark| f64::from(mark.turns);
         let moment: f64 = self.marks.iter().map(|mark| turns(mark) * f64::from(mark.time)).sum();
         moment / self.marks.iter().map(turns).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// Time from the middle of all turns to the end, s.
-    pub fn to_end(&self) -> f64 {
+    pub(crate) fn to_end(&self) -> f64 {
         self.end - self.middle()
     }
 
     /// Fit of a constant value.
-    pub fn steady(&self) -> Option<Found> {
+    pub(crate) fn steady(&self) -> Option<Found> {
         self.found(Shape::Steady)
     }
 
     /// Fit of a change, with its gain against a constant value; `None` where the turns do not
     /// determine it.
-    pub fn changing(&self, shape: Shape, steady: &Found) -> Option<Found> {
+    pub(crate) fn changing(&self, shape: Shape, steady: &Found) -> Option<Found> {
         let found = self.found(shape).filter(|found| found.degrees > 0.0)?;
         let excess = self.excess(&found);
         let gain = (steady.chi_square - found.chi_square).max(0.0) / excess.max(f64::MIN_POSITIVE);
@@ -283,7 +283,7 @@ impl Record {
     /// Most likely step: the greatest sum of residuals after it, less the part that the other
     /// columns explain.
     #[inline(never)]
-    pub fn likeliest_step(&self) -> Option<Shape> {
+    pub(crate) fn likeliest_step(&self) -> Option<Shape> {
         let first = self.solution(Shape::Steady, 0)?;
         let second = self.solution(Shape::Steady, self.parts - 1)?;
         let (mut weight, mut shared, mut sums) = (0.0, [0.0; CHANGE], [0.0; 2]);
@@ -316,7 +316,7 @@ impl Record {
     }
 
     /// Step at the reversal of the platform, if it reversed exactly once.
-    pub fn change_of_sense(&self) -> Option<Shape> {
+    pub(crate) fn change_of_sense(&self) -> Option<Shape> {
         let is_turned = |pair: &&[Mark]| (pair[0].odd > 0.0) != (pair[1].odd > 0.0);
         let mut turned = self.marks.windows(2).filter(is_turned);
         let first = turned.next().filter(|_| turned.next().is_none())?;
@@ -324,7 +324,7 @@ impl Record {
     }
 
     /// Whether a time separates exactly the two senses of rotation.
-    pub fn is_between_senses(&self, after: f64) -> bool {
+    pub(crate) fn is_between_senses(&self, after: f64) -> bool {
         let is_clockwise = |mark: &Mark| mark.odd > 0.0;
         let is_late = |mark: &Mark| f64::from(mark.time) > after;
         let first = self.marks.first().is_some_and(is_clockwise);

@@ -102,7 +102,7 @@ impl Default for Conclusion {
 impl Conclusion {
     /// Checks the contents of a turn accumulator, solves, and decides, in place of a
     /// [`Self::default`].
-    pub fn draw(&mut self, setting: &Setting, turn_accumulator: &TurnAccumulator) {
+    pub(crate) fn draw(&mut self, setting: &Setting, turn_accumulator: &TurnAccumulator) {
         self.verdict = self.decide(&Evidence::of(setting, turn_accumulator));
     }
 

@@ -31,7 +31,7 @@ const INFLATION: f64 = 24.0;
 const ALIKE: f64 = 3.0;
 
 /// Phasors of the turns as directions.
-pub struct Directions<'a> {
+pub(crate) struct Directions<'a> {
     /// Problem from which the fit was solved.
     pub problem: &'a Problem<'a>,
     /// Fit of the azimuth.
@@ -47,7 +47,7 @@ impl Directions<'_> {
     /// [`Refusal::SensesDisagree`], and [`Refusal::TiltChanged`] where the tilt's direction drifts as
     /// an encoder that creeps lets it.
     #[inline(never)]
-    pub fn inflation(&self, marks: Marks) -> Result<f64, alignment::Refusal> {
+    pub(crate) fn inflation(&self, marks: Marks) -> Result<f64, alignment::Refusal> {
         let Some(record) = self.record(marks) else { return Ok(0.0) };
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
@@ -68,7 +68,7 @@ impl Directions<'_> {
     }
 
     /// Observability of a slow rotation of the base about the vertical; `None` without turns.
-    pub fn slow_turn(&self, marks: Marks) -> Option<SlowMotion> {
+    pub(crate) fn slow_turn(&self, marks: Marks) -> Option<SlowMotion> {
         let record = self.record(marks)?;
         let steady = record.steady()?;
         let drift = record.changing(Shape::Rate, &steady);

@@ -27,7 +27,7 @@ impl Lean {
 
     /// Rate of the base that a rate of the force's phasor, g/s, implies, as a phasor in the plane,
     /// rad/s: pitch about the axis to the right, roll about the axis forward.
-    pub fn turning(&self, rate: Complex) -> Complex {
+    pub(crate) fn turning(&self, rate: Complex) -> Complex {
         let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch.0);
         let (sine_roll, cosine_roll) = libm::sincos(self.roll.0);
         let pitching = rate.re / cosine_pitch;

@@ -95,14 +95,12 @@ impl Modulated {
 
 impl AxisMisalignment {
     /// Misalignment angle α of the axis from the platform's plane, up positive.
-    #[must_use]
     pub fn angle(&self) -> Radians {
         Radians(-libm::asin(self.sine.clamp(-1.0, 1.0)))
     }
 
     /// Lag of the gyro behind the encoder as one pole; near zero where the misalignment is too
     /// small to show it.
-    #[must_use]
     pub fn lag(&self) -> Seconds {
         // The estimate is shrunk by the part that noise alone would explain.
         let sigma = self.frequency.0 * self.quadrature_sigma.0;

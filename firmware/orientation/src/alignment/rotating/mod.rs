@@ -18,9 +18,9 @@ mod heading;
 pub mod level;
 pub mod misalignment;
 pub mod molecular;
-pub mod part;
-pub mod progress;
-pub mod refusal;
+pub(crate) mod part;
+pub(crate) mod progress;
+pub(crate) mod refusal;
 pub mod session;
 pub mod solution;
 mod tilting;
@@ -115,7 +115,7 @@ impl Setting {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         self.site.check()?;
         check_ranges(&[
             ("molecular_sigma", self.sensor.molecular_sigma.0, [0.0, f64::INFINITY]),
@@ -130,7 +130,7 @@ impl Setting {
     ///
     /// # Errors
     /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
-    pub fn accept(&self, misalignment: &AxisMisalignment) -> Passed {
+    pub(crate) fn accept(&self, misalignment: &AxisMisalignment) -> Passed {
         let (angle, allowed) = (misalignment.angle(), self.misalignment_limit);
         let is_allowed = angle.0.abs() <= allowed.0;
         let [angle, allowed] = [angle, allowed].map(Degrees::from);

@@ -20,10 +20,10 @@ use crate::units::{ARCSECOND, Radians, TURN, wrapped};
 const UNKNOWN_LAG: f64 = 0.01;
 
 /// Least 1σ of a lag, s: encoder and gyro are not synchronised better.
-pub const EXACT_LAG: f64 = 1e-6;
+pub(crate) const EXACT_LAG: f64 = 1e-6;
 
 /// Relative error of the one-pole law by which the lag follows from the rate-modulated turn.
-pub const LAG_LAW: f64 = 0.15;
+pub(crate) const LAG_LAW: f64 = 0.15;
 
 /// Part of a sensor's phase at the turn rate that a rate-modulated turn does not determine, 1σ,
 /// rad: the modulation covers a band, and an integrated g-sensitivity responds to it.
@@ -189,14 +189,13 @@ pub struct Fit {
 
 impl Fit {
     /// Standard deviation of the azimuth.
-    #[must_use]
     pub fn sigma(&self) -> Radians {
         self.budget.sigma()
     }
 }
 
 /// Inputs of the solution.
-pub struct Problem<'a> {
+pub(crate) struct Problem<'a> {
     /// Configuration of the alignment.
     pub setting: &'a Setting,
     /// Pairs of averages, one for each of one or two speeds.

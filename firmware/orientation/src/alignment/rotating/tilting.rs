@@ -30,7 +30,7 @@ const ALIKE: f64 = 3.0;
 
 /// Result of the test for tilting of the base.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Tilting {
+pub(crate) struct Tilting {
     /// Rate of the force's phasor, g/s; zero unless it is accepted.
     pub rate: Complex,
     /// Variance of either part of the true rate about `rate`, (g/s)².
@@ -52,7 +52,7 @@ impl Tilting {
     /// Tests the forces of all turns, for gravity in m/s² and the response of the gyro's phasor to
     /// tilt, rad/s per g.
     #[inline(never)]
-    pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
+    pub(crate) fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
         let mut marks = marks(stretches, gravity);
         // The forces are resolved along their mean direction, and across it, where a delay shows.
         let along = direction(&marks);
@@ -91,7 +91,7 @@ impl Tilting {
     /// Rate of a creeping encoder that would explain the drift of the tilt's direction, rad/s, for
     /// a tilt in g; `None` where no tilting is accepted, or where the tilt's magnitude changes as
     /// well.
-    pub fn creep(&self, tilt: Complex) -> Option<f64> {
+    pub(crate) fn creep(&self, tilt: Complex) -> Option<f64> {
         let turned = self.rate * tilt.conjugate();
         let is_turning = turned.re.abs() < ALIKE * libm::sqrt(self.variance) * tilt.size();
         let is_believed = self.rate != Complex::default();
@@ -99,40 +99,40 @@ impl Tilting {
     }
 
     /// Total change of the tilt, g.
-    pub fn change(&self) -> f64 {
+    pub(crate) fn change(&self) -> f64 {
         self.rate.size() * self.seconds
     }
 
     /// Angle of an encoder slip that would explain the step, rad, for a tilt in g: the azimuth may
     /// be off by a part of it. Zero without a step.
-    pub fn slip(&self, tilt: f64) -> f64 {
+    pub(crate) fn slip(&self, tilt: f64) -> f64 {
         self.step.map_or(0.0, |change| change / tilt.max(f64::MIN_POSITIVE))
     }
 
     /// Change of the gyro's phasor from the middle of all turns to a time in s, rad/s: vertical
     /// Earth rate and g-sensitivity through the changed tilt.
-    pub fn vertical_part(&self, time: f64) -> Complex {
+    pub(crate) fn vertical_part(&self, time: f64) -> Complex {
         self.per_tilt * self.rate.scaled(time - self.since)
     }
 
     /// Change of the tilt from the middle of all turns to a time in s, g.
-    pub fn tilt_at(&self, time: f64) -> Complex {
+    pub(crate) fn tilt_at(&self, time: f64) -> Complex {
         self.rate.scaled(time - self.since)
     }
 
     /// Azimuth error of the rotation of a tilting base for a scale factor with this 1σ, rad.
-    pub fn scale(&self, sigma: f64, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
+    pub(crate) fn scale(&self, sigma: f64, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         sigma * (self.turning(lean) * Complex::unit(-azimuth)).im.abs() / horizontal
     }
 
     /// Phasor of the rotation of the tilting base itself, rad/s.
-    pub fn turning(&self, lean: &Lean) -> Complex {
+    pub(crate) fn turning(&self, lean: &Lean) -> Complex {
         lean.turning(self.rate)
     }
 
     /// Variance of an azimuth, rad², for the tilting that the forces leave open, for a horizontal
     /// Earth rate in rad/s.
-    pub fn inflation(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
+    pub(crate) fn inflation(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         if self.probability == 0.0 {
             return self.variance / (horizontal * horizontal);
         }

@@ -11,7 +11,7 @@ pub const TURNS: usize = 32;
 /// Greatest number of speeds of the platform in an alignment.
 pub const SPEEDS: usize = 2;
 /// Greatest number of stretches in an alignment: one for each speed and sense.
-pub const STRETCHES: usize = 2 * SPEEDS;
+pub(crate) const STRETCHES: usize = 2 * SPEEDS;
 
 /// Averages of one turn, or of several neighbouring turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

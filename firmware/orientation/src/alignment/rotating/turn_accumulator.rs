@@ -134,7 +134,7 @@ impl TurnAccumulator {
     }
 
     /// Discards all turns, in place; nothing is accumulated until [`Self::follow`].
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.stretches.clear();
         self.modulated.clear();
         self.follow(Mode::Ignore);
@@ -151,7 +151,7 @@ impl TurnAccumulator {
     }
 
     /// Changes the kind of motion that is accumulated, and discards what is in progress.
-    pub fn follow(&mut self, mode: Mode) {
+    pub(crate) fn follow(&mut self, mode: Mode) {
         self.mode = mode;
         self.restart();
     }
@@ -165,14 +165,14 @@ impl TurnAccumulator {
     }
 
     /// Ends the recording: a turn that is nearly complete counts.
-    pub fn finish(&mut self) {
+    pub(crate) fn finish(&mut self) {
         if self.is_nearly_whole() {
             self.end_part();
         }
     }
 
     /// Discards the turn in progress, so that the next sample does not join on to the previous one.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.blocks.restart();
         self.is_settling = true;
         self.latest = [None; 2];

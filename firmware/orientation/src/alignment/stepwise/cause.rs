@@ -31,7 +31,7 @@ const LEAST_MEANS: f64 = 0.2;
 
 /// Replaces a refusal for too many disturbed dwells by its common cause, where there is one;
 /// returns any other refusal unchanged.
-pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> alignment::Refusal {
+pub(crate) fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> alignment::Refusal {
     use Refusal::{Disturbed, NoiseNotAsStated, SwayUnmeasured};
     let cause = match refusal {
         Disturbed { .. } if is_stuck(dwells) => {

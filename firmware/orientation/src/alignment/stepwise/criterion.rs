@@ -53,7 +53,11 @@ struct Row<'a> {
 /// # Errors
 /// [`Refusal::StepsUneven`] where the steps are unequal, or [`Refusal::NothingAccepted`] and
 /// [`Refusal::EverythingAccepted`] where the bound does not select an arc.
-pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azimuth, Refusal> {
+pub(crate) fn azimuth(
+    problem: &Problem,
+    fit: &Fit,
+    criterion: Criterion,
+) -> Result<Azimuth, Refusal> {
     let row = Row::of(problem.dwells).ok_or(Refusal::StepsUneven)?;
     let ratios = row.dwells.iter().map(|dwell| problem.level_ratio(fit, dwell));
     let series = Series::new(ratios, row.step).map_err(|_| Refusal::StepsUneven)?;

@@ -43,7 +43,7 @@ pub struct Mount {
 impl Mount {
     /// Single-axis stage: the sensitive axis stays in the stage's plane, and the accelerometer
     /// rides on the stage.
-    pub const STAGE: Self = Self {
+    pub(crate) const STAGE: Self = Self {
         name: "stage",
         is_on_base: false,
         axis: |tilt, dwell| tilt.sensitive_axis(dwell.stage.rad()),
@@ -298,7 +298,6 @@ fn case_force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
 /// ε changes headings; δ and the encoders' errors raise the axis, and an elevation changes the
 /// azimuth by tan φ of itself. The result holds at the azimuths of the greatest effect: σ √(1 +
 /// tan² φ), and σ tan φ.
-#[must_use]
 pub fn azimuth_sigma(orthogonality: Radians, encoder: Radians, latitude: Latitude) -> Radians {
     let slope = libm::tan(latitude.rad());
     Radians(libm::hypot(orthogonality.0 * libm::hypot(1.0, slope), encoder.0 * slope))

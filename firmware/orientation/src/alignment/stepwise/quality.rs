@@ -235,7 +235,12 @@ pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
 /// The usual scatter comes from the differences of successive dwells, which a platform that moves
 /// once affects at one place only, however many dwells stand on either side.
 #[inline(never)]
-pub fn moved(setting: &Setting, dwells: &[Dwell], tilt: &Tilt, mark: &mut [Option<Disturbance>]) {
+pub(crate) fn moved(
+    setting: &Setting,
+    dwells: &[Dwell],
+    tilt: &Tilt,
+    mark: &mut [Option<Disturbance>],
+) {
     let deviations: heapless::Vec<[f64; 2], CAPACITY> =
         dwells.iter().map(|dwell| off_level(setting, dwell, tilt)).collect();
     let mut steps: heapless::Vec<f64, CAPACITY> = deviations

@@ -68,7 +68,7 @@ impl Setting {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         let (positive, sway) = ([0.0, GREATEST], &self.sway);
         self.site.check()?;
         check_ranges(&[

@@ -46,7 +46,7 @@ pub struct TiltRate {
 
 impl Tilt {
     /// Tilt extrapolated to another time, s, with the proven rate.
-    pub fn at(&self, time: f64) -> Self {
+    pub(crate) fn at(&self, time: f64) -> Self {
         let elapsed = time - self.time;
         let [real, imaginary] = self.rate.value.map(|rate| rate * elapsed);
         Self { real: self.real + real, imaginary: self.imaginary + imaginary, time, ..*self }
@@ -65,13 +65,11 @@ impl Tilt {
     }
 
     /// Pitch of the body; positive nose up.
-    #[must_use]
     pub fn pitch(&self) -> Radians {
         Radians(libm::asin(self.real.clamp(-1.0, 1.0)))
     }
 
     /// Roll of the body; positive right side down.
-    #[must_use]
     pub fn roll(&self) -> Radians {
         let cosine = libm::sqrt((1.0 - self.real * self.real).max(1e-12));
         Radians(libm::asin((self.imaginary / cosine).clamp(-1.0, 1.0)))

@@ -6,9 +6,9 @@ use crate::math::rotation::{dot, sum};
 use crate::signal::strapdown::Rough;
 
 /// Greatest number of blocks of all stops together.
-pub const AT_REST: usize = 64;
+pub(crate) const AT_REST: usize = 64;
 /// Greatest number of blocks of all drives together.
-pub const DRIVEN: usize = 24;
+pub(crate) const DRIVEN: usize = 24;
 /// Least number of block triplets from which a scatter is computed.
 const LEAST_TRIPLETS: f64 = 4.0;
 /// Factor from the scatter that joining blocks removes to the variance of a velocity that varies
@@ -18,7 +18,7 @@ const SWINGING: f64 = 0.3;
 
 /// Averages of an interval at rest, or of driving.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Block {
+pub(crate) struct Block {
     /// Middle of the interval, s.
     pub middle: f64,
     /// Length of the interval, s.
@@ -57,7 +57,7 @@ pub(super) fn combined(x: &Rough, y: &Rough, of: impl Fn(f32, f32) -> f32) -> Ro
 
 /// The blocks of all stops, or of all drives, in order.
 #[derive(Clone, Debug)]
-pub struct Blocks<const N: usize> {
+pub(crate) struct Blocks<const N: usize> {
     /// Blocks in the order of time.
     pub(super) list: Vec<Block, N>,
     /// Greatest length of a block at present, s.
@@ -70,18 +70,18 @@ pub struct Blocks<const N: usize> {
 
 impl<const N: usize> Blocks<N> {
     /// No blocks yet; each lasts `span` seconds as long as there is room.
-    pub const fn new(span: f32) -> Self {
+    pub(crate) const fn new(span: f32) -> Self {
         Self { list: Vec::new(), span, swing: 0.0 }
     }
 
     /// Removes all blocks; the next last `span` seconds as long as there is room.
-    pub fn clear(&mut self, span: f32) {
+    pub(crate) fn clear(&mut self, span: f32) {
         self.list.clear();
         (self.span, self.swing) = (span, 0.0);
     }
 
     /// Adds the next block, which must be later than all before it.
-    pub fn push(&mut self, block: Block) {
+    pub(crate) fn push(&mut self, block: Block) {
         if let Some(last) = self.list.last_mut()
             && last.stop == block.stop
             && last.seconds + 0.5 * block.seconds < self.span
@@ -98,7 +98,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Joins neighbouring blocks of each stop and doubles the block length.
-    pub fn halve(&mut self) {
+    pub(crate) fn halve(&mut self) {
         let (span, scatter) = (f64::from(self.span), self.scatter());
         self.span *= 2.0;
         let mut kept: usize = 0;
@@ -115,14 +115,14 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Removes the blocks of the last stop, where it turned out not to be one.
-    pub fn discard(&mut self, stop: usize) {
+    pub(crate) fn discard(&mut self, stop: usize) {
         while self.list.last().is_some_and(|block| usize::from(block.stop) == stop) {
             self.list.pop();
         }
     }
 
     /// Power of the changes of the force from block to block, (m/s²)²·s; zero with too few blocks.
-    pub fn scatter(&self) -> f64 {
+    pub(crate) fn scatter(&self) -> f64 {
         let (mut power, mut count) = (0.0, 0.0);
         for [a, b, c] in self.list.array_windows::<3>() {
             if a.stop == c.stop {
@@ -134,7 +134,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Blocks of one stop.
-    pub fn of(&self, stop: usize) -> impl Iterator<Item = &Block> + Clone {
+    pub(crate) fn of(&self, stop: usize) -> impl Iterator<Item = &Block> + Clone {
         self.list.iter().filter(move |block| usize::from(block.stop) == stop)
     }
 }

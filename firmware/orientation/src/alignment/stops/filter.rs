@@ -15,33 +15,33 @@ use crate::signal::strapdown::Rough;
 
 /// Number of states: φ now, φ at the start, φ at the beginning of the stop, b, s, accelerometer
 /// biases, displacement beyond the configured one, latitude, velocity.
-pub const STATES: usize = 24;
+pub(crate) const STATES: usize = 24;
 /// Index of φ now, rad.
-pub const NOW: usize = 0;
+pub(crate) const NOW: usize = 0;
 /// Index of φ at the start, rad.
-pub const START: usize = 3;
+pub(crate) const START: usize = 3;
 /// Index of φ at the beginning of the stop, rad.
 const ANCHOR: usize = 6;
 /// Index of the gyro biases, rad/s.
-pub const BIAS: usize = 9;
+pub(crate) const BIAS: usize = 9;
 /// Index of the relative scale-factor errors of the gyros.
-pub const SCALE: usize = 12;
+pub(crate) const SCALE: usize = 12;
 /// Index of the accelerometer biases, m/s².
-pub const FORCE: usize = 15;
+pub(crate) const FORCE: usize = 15;
 /// Index of the displacement north and east beyond the configured one, m.
-pub const PLACE: usize = 18;
+pub(crate) const PLACE: usize = 18;
 /// Index of the latitude beyond the configured one, rad.
-pub const LATITUDE: usize = 20;
+pub(crate) const LATITUDE: usize = 20;
 
 /// Index of the velocity error that φ makes in the integral of a drive's forces, m/s.
-pub const VELOCITY: usize = 21;
+pub(crate) const VELOCITY: usize = 21;
 
 /// Coefficients of a linear combination of the states.
-pub type Row = [f64; STATES];
+pub(crate) type Row = [f64; STATES];
 
 /// A scalar measurement.
 #[derive(Clone, Copy, Debug)]
-pub struct Measurement {
+pub(crate) struct Measurement {
     /// Combination of the states that is measured.
     pub row: Row,
     /// Measured value less the one that the nominal frame predicts.
@@ -52,7 +52,7 @@ pub struct Measurement {
 
 /// State estimates with their covariance.
 #[derive(Clone, Debug)]
-pub struct Filter {
+pub(crate) struct Filter {
     /// Estimates of the states, in the units of the indices above.
     pub state: Row,
     /// Covariance of the states.
@@ -61,12 +61,13 @@ pub struct Filter {
 
 impl Filter {
     /// Filter with all states and covariances zero.
-    pub const EMPTY: Self = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
+    pub(crate) const EMPTY: Self =
+        Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
 
     /// Initialises the filter: φ at the start gets this covariance, rad², the biases this 1σ, rad/s,
     /// and the other states those of the site; all estimates are zero.
     #[inline(never)]
-    pub fn begin(&mut self, start: &Matrix, bias: f64, site: &Site) {
+    pub(crate) fn begin(&mut self, start: &Matrix, bias: f64, site: &Site) {
         let (scale, force) = (site.scale_sigma, site.accelerometer_bias_sigma);
         self.state = [0.0; STATES];
         self.covariance = [[0.0; STATES]; STATES];
@@ -101,7 +102,7 @@ impl Filter {
 
     /// Adds linear combinations of the other states to three successive states.
     #[inline(never)]
-    pub fn add(&mut self, first: usize, rows: &[Row; 3]) {
+    pub(crate) fn add(&mut self, first: usize, rows: &[Row; 3]) {
         for (axis, row) in rows.iter().enumerate() {
             self.state[first + axis] += product(&self.state, row);
         }
@@ -135,7 +136,7 @@ impl Filter {
 
     /// Stores φ at the beginning of a stop as the anchor.
     #[inline(never)]
-    pub fn anchor(&mut self) {
+    pub(crate) fn anchor(&mut self) {
         self.state.copy_within(NOW..NOW + 3, ANCHOR);
         self.covariance.copy_within(NOW..NOW + 3, ANCHOR);
         for line in &mut self.covariance {
@@ -164,7 +165,7 @@ impl Filter {
 
     /// Updates the filter with measurements in succession.
     #[inline(never)]
-    pub fn measure(&mut self, measurements: &[Measurement]) {
+    pub(crate) fn measure(&mut self, measurements: &[Measurement]) {
         for measurement in measurements {
             self.take(measurement);
         }

@@ -133,7 +133,6 @@ fn angle_of(chord: f64) -> f64 {
 }
 
 /// Pitch and roll of a body with this up vector on its axes.
-#[must_use]
 pub fn pitch_and_roll(up: &Vector) -> [Radians; 2] {
     let [x, y, z] = *up;
     [Radians(libm::atan2(x, libm::hypot(y, z))), Radians(libm::atan2(-y, -z))]

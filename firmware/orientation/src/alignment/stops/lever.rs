@@ -25,7 +25,7 @@ const FORCE: f32 = 1e-5;
 
 /// Recursive estimate of the lever arm.
 #[derive(Clone, Debug)]
-pub struct Lever {
+pub(crate) struct Lever {
     /// Lever arm from the axis of the sway to the sensors, on the body's axes, m.
     arm: [f32; 3],
     /// Covariance of the lever arm, m².
@@ -51,7 +51,7 @@ impl Lever {
     /// Subtracts the lever arm's effect from the force of a second at rest, and updates the
     /// estimate. `begun` is the end of the previous second, s, and its [`Second::swing`], where
     /// that was at rest too. Returns whether the corrected force is usable.
-    pub fn relieve(&mut self, second: &mut Second, begun: Option<(f64, Rough)>) -> bool {
+    pub(crate) fn relieve(&mut self, second: &mut Second, begun: Option<(f64, Rough)>) -> bool {
         let swing = second.swing();
         let Some((since, begun)) = begun else {
             self.latest = None;

@@ -15,14 +15,14 @@
 
 mod block;
 pub mod conclusion;
-pub mod filter;
+pub(crate) mod filter;
 pub mod inclination;
 mod lever;
 mod path;
 pub mod place;
 pub mod plain;
-pub mod progress;
-pub mod refusal;
+pub(crate) mod progress;
+pub(crate) mod refusal;
 pub mod residual;
 pub mod session;
 mod solution;
@@ -80,7 +80,7 @@ impl Setting {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         let positive = [0.0, GREATEST];
         self.site.check()?;
         check_ranges(&[
@@ -92,7 +92,6 @@ impl Setting {
     }
 
     /// Prior 1σ of the gyros' biases, bias instability included.
-    #[must_use]
     pub fn bias_sigma(&self) -> RadiansPerSecond {
         let instability = self.site.noise.model().bias_instability;
         RadiansPerSecond(libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS).0, instability.0))

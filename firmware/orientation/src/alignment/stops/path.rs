@@ -16,7 +16,7 @@ const OF_ENDS: f64 = 6.0;
 
 /// Averages of a vehicle's path.
 #[derive(Clone, Copy, Debug)]
-pub struct Path<'a> {
+pub(crate) struct Path<'a> {
     /// Place of the first stop.
     pub place: Place,
     /// Gravity at the first stop, m/s².
@@ -39,14 +39,14 @@ pub struct Path<'a> {
 
 impl Path<'_> {
     /// Position of a stop, north and east of the first, m; zero where it was not reported.
-    pub fn displaced(&self, stop: usize) -> [f64; 2] {
+    pub(crate) fn displaced(&self, stop: usize) -> [f64; 2] {
         let displacement = self.stops.get(stop).and_then(|stop| stop.displacement);
         let [north, east] = displacement.unwrap_or_default();
         [north.0, east.0]
     }
 
     /// Standard deviation of the last stop's position, 1σ, m; zero with a single stop.
-    pub fn displacement_sigma(&self, setting: &Setting) -> f64 {
+    pub(crate) fn displacement_sigma(&self, setting: &Setting) -> f64 {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else { return 0.0 };
         if self.stops.len() < 2 {
             return 0.0;
@@ -56,7 +56,7 @@ impl Path<'_> {
     }
 
     /// Position between two stops, m, for a straight drive at constant speed.
-    pub fn underway(&self, stop: usize, at: f64) -> [f64; 2] {
+    pub(crate) fn underway(&self, stop: usize, at: f64) -> [f64; 2] {
         let [Some(before), Some(after)] = [self.stops.get(stop), self.stops.get(stop + 1)] else {
             return self.displaced(stop);
         };
@@ -67,7 +67,7 @@ impl Path<'_> {
 
     /// Sensitivity of the up vector at the last stop to scale errors of the gyros, for rotation
     /// about this axis.
-    pub fn turned_about(&self, about: &Vector) -> Vector {
+    pub(crate) fn turned_about(&self, about: &Vector) -> Vector {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else {
             return [0.0; 3];
         };
@@ -76,14 +76,14 @@ impl Path<'_> {
     }
 
     /// Power of the force noise, (m/s²)²·s: the accelerometers' noise, and sway.
-    pub fn density(&self) -> f64 {
+    pub(crate) fn density(&self) -> f64 {
         let stood: f64 = self.stops.iter().map(|stop| stop.seconds().0).sum();
         let of_ends = OF_ENDS * self.blocks.swing / stood.max(1.0);
         self.blocks.scatter().max(of_ends).max(self.least_density())
     }
 
     /// Power of the accelerometers' noise alone, (m/s²)²·s.
-    pub fn least_density(&self) -> f64 {
+    pub(crate) fn least_density(&self) -> f64 {
         self.stated_density.max(LEAST_DENSITY)
     }
 }

@@ -55,7 +55,7 @@ pub(super) struct End {
 
 impl End {
     /// Averages of these blocks, weighted by their lengths.
-    pub fn of<'a>(blocks: impl Iterator<Item = &'a Block>, displacement: [f64; 2]) -> Self {
+    pub(crate) fn of<'a>(blocks: impl Iterator<Item = &'a Block>, displacement: [f64; 2]) -> Self {
         let mut end = Self { displacement, ..Self::default() };
         for block in blocks {
             let seconds = f64::from(block.seconds);
@@ -73,7 +73,7 @@ impl End {
     }
 
     /// Unit vector of the mean force.
-    pub fn up(&self) -> Vector {
+    pub(crate) fn up(&self) -> Vector {
         unit(&self.force)
     }
 }

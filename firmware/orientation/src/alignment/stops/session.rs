@@ -26,7 +26,7 @@ use crate::units::{Instant, Metres, Seconds};
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
+pub(crate) enum Phase {
     /// The vehicle has not stood yet.
     Waiting,
     /// The vehicle stands at the stop with this index.

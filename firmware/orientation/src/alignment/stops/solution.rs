@@ -76,7 +76,7 @@ const NOTHING: Matrix = [[0.0; 3]; 3];
 
 /// Assumptions of a run on disturbances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Belief {
+pub(crate) enum Belief {
     /// Disturbances as the data show them.
     Shown,
     /// No sway, no outliers, least noise: the Cramér–Rao bound, and the starting point of the
@@ -126,7 +126,7 @@ pub struct Tally {
 
 impl Tally {
     /// Correlation of neighbouring blocks' innovations; zero with too few degrees of freedom.
-    pub fn correlation(&self) -> f64 {
+    pub(crate) fn correlation(&self) -> f64 {
         let [products, squares] = self.neighbours;
         if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
     }
@@ -173,14 +173,14 @@ struct Run<'a> {
 
 impl Solution {
     /// Solution before any run, with an approximate start frame.
-    pub fn new(frame: Matrix) -> Self {
+    pub(crate) fn new(frame: Matrix) -> Self {
         let (filter, tally) = (Filter::EMPTY, Tally::default());
         Self { filter, frame, tally, steady: 0.0, roughness: 1.0, colour: 1.0, widening: 1.0 }
     }
 
     /// Iterates along the path until the start frame is consistent; the first run must have been
     /// made.
-    pub fn settle(&mut self, setting: &Setting, path: &Path) {
+    pub(crate) fn settle(&mut self, setting: &Setting, path: &Path) {
         for _ in 0..REPETITIONS {
             self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
@@ -240,7 +240,7 @@ impl Solution {
 
     /// One run of the filter along the path.
     #[inline(never)]
-    pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
+    pub(crate) fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let site = &setting.site;
         (self.tally, self.steady) = (Tally::default(), 0.0);
         let bias_sigma = self.widening * setting.bias_sigma().0;

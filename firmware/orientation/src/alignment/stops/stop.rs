@@ -27,7 +27,7 @@ pub struct Scatter {
 
 impl Scatter {
     /// Adds a value of each quantity.
-    pub fn push(&mut self, values: &Vector) {
+    pub(crate) fn push(&mut self, values: &Vector) {
         for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.squares).zip(values) {
             *sum += value;
             *square += value * value;
@@ -84,7 +84,6 @@ pub struct Stop {
 
 impl Stop {
     /// Length of the stop.
-    #[must_use]
     pub fn seconds(&self) -> Seconds {
         Seconds(self.to.0 - self.from.0)
     }
@@ -95,7 +94,7 @@ impl Stop {
     }
 
     /// Adds a second to the stop, which then ends with that second.
-    pub fn take(&mut self, second: &Second) {
+    pub(crate) fn take(&mut self, second: &Second) {
         self.to = Seconds(second.to);
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
@@ -145,7 +144,7 @@ impl Stop {
 
 /// Averages of about one second of samples.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Second {
+pub(crate) struct Second {
     /// Beginning, s.
     pub from: f64,
     /// End, s.

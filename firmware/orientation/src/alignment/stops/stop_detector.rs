@@ -19,7 +19,7 @@ use crate::signal::strapdown::{Carried, Rough, Strapdown, Sums};
 use crate::units::{AngleIncrement, Instant, Metres, MetresPerSecondSquared, Seconds};
 
 /// Length of the low-pass average for the criteria, s: at least ten (Szymanowski 2003).
-pub const WINDOW: usize = 10;
+pub(crate) const WINDOW: usize = 10;
 /// Seconds at the end of a stop in which the vehicle may have set off.
 const LATEST: usize = 2;
 /// Delay T₀ after which a vehicle that stopped no longer rocks, s.
@@ -129,7 +129,7 @@ impl StopDetector {
     }
 
     /// Discards all stops, in place: the next sample is the first.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.state = State::default();
         self.window.clear();
         self.stops.clear();

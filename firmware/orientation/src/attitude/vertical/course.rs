@@ -7,7 +7,7 @@ const MEMORY: f32 = 600.0;
 
 /// Motion of the body since its heading was handed over, as far as it affects the heading's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Course {
+pub(crate) struct Course {
     /// Net rotation about the vertical, rad, whole turns included.
     pub turned: f32,
     /// Time of motion since the last rest, s.

@@ -23,9 +23,9 @@ use crate::math::rotation::dot;
 /// Number of states.
 const STATES: usize = 17;
 /// Index of the rotation about the vertical.
-pub const TURN: usize = 2;
+pub(crate) const TURN: usize = 2;
 /// Index of the first bias.
-pub const BIAS: usize = 3;
+pub(crate) const BIAS: usize = 3;
 /// Index of the first scale and axis error: the excess of each gyro per rotation about each axis,
 /// row by row.
 const AXES: usize = 6;
@@ -66,7 +66,7 @@ type States = [f32; STATES];
 
 /// Expected errors of the gyros, as variances.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Expected {
+pub(crate) struct Expected {
     /// Squared angle random walk, rad²/s.
     pub walk: [f32; 3],
     /// Squared drift of a bias, (rad/s)²/s.
@@ -109,7 +109,7 @@ struct Balance {
 
 /// State of the filter.
 #[derive(Clone, Debug, Default)]
-pub struct Filter {
+pub(crate) struct Filter {
     /// Covariance of the states.
     covariance: [States; STATES],
     /// Velocity north and east that the forces integrate to, m/s.
@@ -126,7 +126,7 @@ pub struct Filter {
 
 impl Filter {
     /// Filter with these 1σ of the gyros' biases, rad/s, before the level is set.
-    pub fn new(biases: [f32; 3], expected: &Expected) -> Self {
+    pub(crate) fn new(biases: [f32; 3], expected: &Expected) -> Self {
         let mut filter = Self::default();
         for (axis, bias) in biases.into_iter().enumerate() {
             filter.reset(BIAS + axis, bias * bias);
@@ -140,7 +140,7 @@ impl Filter {
 
     /// First half of the propagation over a stretch: coupling of the tilt to the gyros' excess, by
     /// bias, and by scale and axis for every rate.
-    pub fn carry(&mut self, stretch: &Stretch) {
+    pub(crate) fn carry(&mut self, stretch: &Stretch) {
         let rates = stretch.rates();
         let (tilts, others) = self.covariance.split_at_mut(BIAS);
         let [north, east, down] = &stretch.attitude;
@@ -158,7 +158,7 @@ impl Filter {
     }
 
     /// Second half of the propagation: the velocity, the symmetric part, and the process noise.
-    pub fn spread(&mut self, stretch: &Stretch, expected: &Expected) {
+    pub(crate) fn spread(&mut self, stretch: &Stretch, expected: &Expected) {
         let kept = 1.0 - stretch.seconds / FADING;
         for (velocity, impulse) in self.velocity.iter_mut().zip(stretch.impulse) {
             *velocity = *velocity * kept + impulse;
@@ -269,7 +269,7 @@ impl Filter {
 
     /// Observes the motion, and compares the floor's vertical; returns the mean force on the level
     /// frame, m/s², where the filter's vertical is wrong beyond repair.
-    pub fn watch(&mut self, stretch: &Stretch) -> Option<Vector> {
+    pub(crate) fn watch(&mut self, stretch: &Stretch) -> Option<Vector> {
         let size = stretch.force();
         self.motion.watch(stretch, size, &self.floor.mean);
         self.floor.watch(stretch, size);
@@ -285,7 +285,7 @@ impl Filter {
     }
 
     /// Zero-velocity pseudo-measurement for the velocity north (0) or east (1), over `seconds`.
-    pub fn stay(&mut self, axis: usize, seconds: f32) {
+    pub(crate) fn stay(&mut self, axis: usize, seconds: f32) {
         let before = self.level_variance();
         let density = self.motion.density(0.5 * before);
         self.measure(VELOCITY + axis, -self.velocity[axis], density / seconds);
@@ -293,7 +293,7 @@ impl Filter {
     }
 
     /// Updates the filter with a measurement of one state: its deviation, and the variance of that.
-    pub fn measure(&mut self, place: usize, off: f32, variance: f32) {
+    pub(crate) fn measure(&mut self, place: usize, off: f32, variance: f32) {
         let column: States = core::array::from_fn(|row| self.covariance[row][place]);
         let whole = column[place] + variance;
         if whole <= 0.0 {
@@ -319,7 +319,7 @@ impl Filter {
     }
 
     /// Begins a rest: the velocity is zero.
-    pub fn stand(&mut self) {
+    pub(crate) fn stand(&mut self) {
         self.velocity = [0.0; 2];
         self.motion.stand();
         self.floor.stand();
@@ -342,14 +342,14 @@ impl Filter {
     }
 
     /// Resets a gyro's scale and axis errors to the configured variance.
-    pub fn reset_axis(&mut self, axis: usize, scale: f32) {
+    pub(crate) fn reset_axis(&mut self, axis: usize, scale: f32) {
         for place in axes(axis) {
             self.reset(place, lasting(scale));
         }
     }
 
     /// Resets a state to this variance, and removes its correlations.
-    pub fn reset(&mut self, place: usize, variance: f32) {
+    pub(crate) fn reset(&mut self, place: usize, variance: f32) {
         for other in 0..STATES {
             self.covariance[place][other] = 0.0;
             self.covariance[other][place] = 0.0;
@@ -359,7 +359,7 @@ impl Filter {
     }
 
     /// Reports that the level was set anew, with this 1σ, rad.
-    pub fn relevel(&mut self, sigma: f32) {
+    pub(crate) fn relevel(&mut self, sigma: f32) {
         for place in 0..TURN {
             self.reset(place, sigma * sigma);
         }
@@ -368,25 +368,25 @@ impl Filter {
     }
 
     /// Restarts the balance, as if gravity had compensated all growth until now.
-    pub fn begin_balance(&mut self) {
+    pub(crate) fn begin_balance(&mut self) {
         self.balance.gained = self.balance.grown;
     }
 
     /// Inflates the variance of a state; that of an angle only up to a whole turn.
-    pub fn inflate(&mut self, place: usize, variance: f32) {
+    pub(crate) fn inflate(&mut self, place: usize, variance: f32) {
         let own = &mut self.covariance[place][place];
         let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
         *own += variance.min(room);
     }
 
     /// Inflates the variance of both tilts, rad².
-    pub fn inflate_level(&mut self, variance: f32) {
+    pub(crate) fn inflate_level(&mut self, variance: f32) {
         self.inflate(0, variance);
         self.inflate(1, variance);
     }
 
     /// Variance of a state including corrections that have not been applied yet.
-    pub fn variance(&self, place: usize) -> f32 {
+    pub(crate) fn variance(&self, place: usize) -> f32 {
         let correction = self.correction[place];
         self.covariance[place][place].max(0.0) + correction * correction
     }
@@ -397,18 +397,18 @@ impl Filter {
     }
 
     /// Standard deviation of the greater tilt, 1σ, rad.
-    pub fn tilt_sigma(&self) -> f32 {
+    pub(crate) fn tilt_sigma(&self) -> f32 {
         libm::sqrtf(self.variance(0).max(self.variance(1)))
     }
 
     /// Variances of the biases, (rad/s)².
-    pub fn bias_variances(&self) -> [f32; 3] {
+    pub(crate) fn bias_variances(&self) -> [f32; 3] {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
     }
 
     /// Part of the growth of the level's variance that gravity lately compensated; one where there
     /// was no growth.
-    pub fn share_of_gravity(&self) -> f32 {
+    pub(crate) fn share_of_gravity(&self) -> f32 {
         let Balance { grown, gained } = self.balance;
         if grown > 0.0 { gained / grown } else { 1.0 }
     }

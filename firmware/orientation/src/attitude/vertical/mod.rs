@@ -126,7 +126,7 @@ pub(super) struct Vertical {
 
 impl Vertical {
     /// Begins with these gyros at this site.
-    pub fn new(setting: &Setting) -> Self {
+    pub(crate) fn new(setting: &Setting) -> Self {
         // While north is unknown, a level axis may contain the Earth rate in addition to its bias.
         let rate = setting.latitude.horizontal_rate().0;
         let unknown = 0.5 * rate * rate;
@@ -150,7 +150,7 @@ impl Vertical {
 
     /// Takes a sample; returns whether it updated the attitude, or lost rotation.
     #[inline]
-    pub fn push(&mut self, sample: &InertialSample) -> bool {
+    pub(crate) fn push(&mut self, sample: &InertialSample) -> bool {
         let elapsed = self.elapsed(sample.time);
         if elapsed > (1.0 + LATE) * self.period {
             self.bridge(elapsed, sample);
@@ -245,7 +245,7 @@ impl Vertical {
 
     /// Attitude from body axes to the level frame at the latest sample; the course is zero for a
     /// body that was level at the start.
-    pub fn attitude(&self) -> Attitude {
+    pub(crate) fn attitude(&self) -> Attitude {
         let mut increment = self.increment;
         let seconds = self.time().0.saturating_sub(self.since.0) as f32 * 1e-6;
         let frame = turned(&transposed(&self.matrix), &self.frame);
@@ -256,40 +256,40 @@ impl Vertical {
     }
 
     /// Standard deviation of pitch and of roll, 1σ, rad.
-    pub fn sigma(&self) -> f32 {
+    pub(crate) fn sigma(&self) -> f32 {
         let tilt = self.filter.tilt_sigma();
         libm::sqrtf(tilt * tilt + self.force_tilt * self.force_tilt)
     }
 
     /// Standard deviations of the biases, 1σ, rad/s.
-    pub fn bias_sigmas(&self) -> Vector {
+    pub(crate) fn bias_sigmas(&self) -> Vector {
         self.filter.bias_variances().map(libm::sqrtf)
     }
 
     /// Whether the body is at rest.
-    pub fn is_at_rest(&self) -> bool {
+    pub(crate) fn is_at_rest(&self) -> bool {
         self.rest.is_at_rest
     }
 
     /// End of the latest sample.
-    pub fn time(&self) -> Instant {
+    pub(crate) fn time(&self) -> Instant {
         self.before.time.unwrap_or_default()
     }
 
     /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
     /// during gaps.
-    pub fn turn_variance(&self) -> f32 {
+    pub(crate) fn turn_variance(&self) -> f32 {
         self.filter.variance(TURN)
     }
 
     /// Mean rates about the body's axes at rest, including the Earth rate; `None` in motion.
-    pub fn rest_rates(&self) -> Option<[RadiansPerSecond; 3]> {
+    pub(crate) fn rest_rates(&self) -> Option<[RadiansPerSecond; 3]> {
         let frame = turned(&transposed(&self.matrix), &self.frame);
         self.is_at_rest().then(|| rates(sum(&self.bias, &frame)))
     }
 
     /// Replaces the gyro of the down axis by another one, whose bias is unknown.
-    pub fn exchange_down(&mut self, setting: &Setting) {
+    pub(crate) fn exchange_down(&mut self, setting: &Setting) {
         self.finish();
         self.expected = Expected::of(setting);
         let [.., down] = &setting.gyros;
@@ -306,7 +306,7 @@ impl Vertical {
 
     /// Sets the rate of the level frame, rad/s, and reports that north is known for the first time,
     /// or again: until now the biases contained the level Earth rate.
-    pub fn find_north(&mut self, rate: Vector) {
+    pub(crate) fn find_north(&mut self, rate: Vector) {
         self.learn_biases();
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
         self.frame = rate;
@@ -325,14 +325,14 @@ impl Vertical {
 
     /// Sets the rate of the level frame, rad/s, and reports that north is unknown: biases may
     /// contain the Earth rate from now on.
-    pub fn lose_north(&mut self, rate: Vector) {
+    pub(crate) fn lose_north(&mut self, rate: Vector) {
         self.frame = rate;
         self.knows_north = false;
         self.inflate_biases();
     }
 
     /// Restarts the motion statistics and the error of the rotation about the vertical.
-    pub fn begin_course(&mut self) {
+    pub(crate) fn begin_course(&mut self) {
         self.learn_biases();
         self.filter.reset(TURN, 0.0);
         self.course = Course { stood: self.course.stood, ..Course::default() };

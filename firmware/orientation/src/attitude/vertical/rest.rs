@@ -26,7 +26,7 @@ use crate::math::rotation::{cross, difference, dot, scaled, sum};
 /// Significance, in σ, at which a mean deviates.
 const BOUND: f32 = 4.0;
 /// Length of a window, s.
-pub const WINDOW: f32 = 0.5;
+pub(crate) const WINDOW: f32 = 0.5;
 /// Number of quiet windows that make a rest.
 const ENOUGH: u32 = 3;
 /// Greatest number of windows that make a rest, where a steady acceleration would look the same: a
@@ -69,7 +69,7 @@ const SETTLED: f32 = 0.5;
 
 /// Averages of a window.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Means {
+pub(crate) struct Means {
     /// Mean rates less the Earth rate, rad/s.
     pub rate: Vector,
     /// Mean forces, m/s²; none without force readings.
@@ -83,7 +83,7 @@ pub struct Means {
 
 /// Prior knowledge of the gyros.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Known {
+pub(crate) struct Known {
     /// Estimated biases, rad/s.
     pub biases: Vector,
     /// Variances of the estimated biases, (rad/s)².
@@ -96,7 +96,7 @@ pub struct Known {
 
 /// Classification of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub(crate) enum Found {
     /// The body moves, or may move.
     Motion,
     /// The body is at rest.
@@ -107,7 +107,7 @@ pub enum Found {
 
 /// State of the detector.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ZeroVelocityDetector {
+pub(crate) struct ZeroVelocityDetector {
     /// Averages of the previous window.
     before: Option<Means>,
     /// Squared noise of the gyros from their readings, rad²/s; none before the first window.
@@ -142,7 +142,7 @@ pub(super) struct Steady {
 
 impl ZeroVelocityDetector {
     /// Takes a window and classifies it.
-    pub fn push(&mut self, means: Means, known: &Known) -> Found {
+    pub(crate) fn push(&mut self, means: Means, known: &Known) -> Found {
         let walk = self.learn_noise(&means, known);
         let Some(before) = self.before.replace(means) else { return self.begin_motion() };
         let Some(force) = steady_force(&means, &before, &walk) else { return self.begin_motion() };
@@ -237,17 +237,17 @@ impl ZeroVelocityDetector {
     }
 
     /// Restarts the rotation beyond the biases: they were updated, or a motion ended.
-    pub fn count_anew(&mut self) {
+    pub(crate) fn count_anew(&mut self) {
         (self.turned, self.seconds) = ([0.0; 3], 0.0);
     }
 
     /// Restarts the detection, and keeps the knowledge of the gyros.
-    pub fn disturb(&mut self) {
+    pub(crate) fn disturb(&mut self) {
         *self = Self { walk: self.walk, force: self.force, rested: self.rested, ..Self::default() };
     }
 
     /// Restarts the detection with another gyro about an axis, whose noise is unknown.
-    pub fn exchange(&mut self, axis: usize, walk: f32) {
+    pub(crate) fn exchange(&mut self, axis: usize, walk: f32) {
         self.disturb();
         self.rested[axis] = 0;
         if let Some(known) = &mut self.walk {

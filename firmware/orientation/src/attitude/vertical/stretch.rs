@@ -5,7 +5,7 @@ use crate::math::rotation::{dot, scaled, sum};
 
 /// Integrals of the motion since the filter's last step.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Stretch {
+pub(crate) struct Stretch {
     /// Length, s.
     pub seconds: f32,
     /// Integral of the attitude's matrix, s.

@@ -17,7 +17,7 @@
 
 /// A pair of spans on their common lattice, m ≤ M, and the weights of the laws.
 #[derive(Clone, Copy, Debug)]
-pub struct Kernel {
+pub(crate) struct Kernel {
     /// Span of the shorter terms m, steps.
     pub short: i32,
     /// Span of the longer terms M, steps.
@@ -28,7 +28,7 @@ pub struct Kernel {
 
 impl Kernel {
     /// Covariance of two terms whose middles lie `lag` steps apart.
-    pub fn at(&self, lag: i32) -> f32 {
+    pub(crate) fn at(&self, lag: i32) -> f32 {
         let [q, n, b, k] = self.weights;
         let (m, long) = (self.short as f32, self.long as f32);
         let mut sum = 0.0;

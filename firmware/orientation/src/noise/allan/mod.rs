@@ -31,7 +31,7 @@ pub const MOST_POINTS: usize = SHORT.len() + FACTORS.len() * LEVELS;
 
 /// Greatest number of samples; later ones are ignored (25 days at 2 kHz). A record that outlasts
 /// the last level (10⁸ samples) makes the existing τ more certain and adds no longer one.
-pub const MOST_SAMPLES: u32 = u32::MAX;
+pub(crate) const MOST_SAMPLES: u32 = u32::MAX;
 
 const _: () = assert!(size_of::<Allan>() <= 4096, "the board's room for it");
 const _: () = assert!(RING > 2 * FACTORS[1] as usize, "a ring holds a second difference");
@@ -177,7 +177,6 @@ impl Allan {
 
     /// Smallest change between neighbouring samples: in a noisy record this is the step of
     /// the coarsest number format on the way. Zero for a constant record.
-    #[must_use]
     pub fn resolution(&self) -> RadiansPerSecond {
         RadiansPerSecond(f64::from(self.change.wrapping_add(1)) * 1e-9)
     }

@@ -19,7 +19,7 @@ const CERTAIN: f64 = 0.75;
 
 /// Fit of one choice of coefficients.
 #[derive(Clone, Copy, Debug)]
-pub struct Choice {
+pub(crate) struct Choice {
     /// Coefficients that the choice allows to be positive.
     pub columns: Columns,
     /// Squares of the coefficients, SI units.
@@ -58,7 +58,7 @@ impl Mixture {
 
 /// Estimate of each coefficient from all choices. `inflations` are the factors by which correlation
 /// between the points raises the variances of the squared coefficients.
-pub fn average(choices: &[Choice], inflations: &[f64; COLUMNS]) -> [Estimate; COLUMNS] {
+pub(crate) fn average(choices: &[Choice], inflations: &[f64; COLUMNS]) -> [Estimate; COLUMNS] {
     let least = choices.iter().map(|choice| choice.cost).fold(f64::INFINITY, f64::min);
     core::array::from_fn(|column| estimate(choices, least, column, inflations[column]))
 }

@@ -1,7 +1,6 @@
 //! Noise coefficients as one record shows them, each found or limited.
 
 use crate::noise::GyroNoise;
-use crate::noise::allan::variance;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words::Rounded;
 
@@ -70,12 +69,6 @@ impl NoiseFit {
             Estimate::NotObservable { at_most } => at_most.is_finite(),
         };
         self.estimates.iter().all(is_finite)
-    }
-
-    /// Fitted Allan variance at τ = `seconds`, (rad/s)².
-    #[must_use]
-    pub fn variance(&self, seconds: f64) -> f64 {
-        variance(&self.noise(), seconds)
     }
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.

@@ -8,41 +8,41 @@ use crate::math::{cholesky, cholesky_solve};
 use crate::noise::allan::{MOST_POINTS, Point, terms};
 
 /// Number of coefficients: the squares of Q, N, B, K and R.
-pub const COLUMNS: usize = 5;
+pub(crate) const COLUMNS: usize = 5;
 
 /// Index of the column of N².
-pub const WHITE: usize = 1;
+pub(crate) const WHITE: usize = 1;
 
 /// Set of coefficients that take part, one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Columns(pub u8);
+pub(crate) struct Columns(pub u8);
 
 impl Columns {
     /// Set of all five coefficients.
-    pub const ALL: Self = Self(0b1_1111);
+    pub(crate) const ALL: Self = Self(0b1_1111);
 
     /// Whether a coefficient takes part.
-    pub fn has(self, column: usize) -> bool {
+    pub(crate) fn has(self, column: usize) -> bool {
         self.0 >> column & 1 == 1
     }
 
     /// The set with one coefficient added.
-    pub fn with(self, column: usize) -> Self {
+    pub(crate) fn with(self, column: usize) -> Self {
         Self(self.0 | 1 << column)
     }
 
     /// Number of coefficients that take part.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         self.0.count_ones() as usize
     }
 
     /// Indices of the coefficients that take part, in rising order.
-    pub fn each(self) -> impl Iterator<Item = usize> {
+    pub(crate) fn each(self) -> impl Iterator<Item = usize> {
         (0..COLUMNS).filter(move |&column| self.has(column))
     }
 
     /// Every non-empty subset.
-    pub fn subsets(self) -> impl Iterator<Item = Self> {
+    pub(crate) fn subsets(self) -> impl Iterator<Item = Self> {
         (1..=self.0).filter(move |subset| subset & !self.0 == 0).map(Self)
     }
 }
@@ -50,7 +50,7 @@ impl Columns {
 /// Weighted normal equations of the points over some columns, which are scaled to norm 1; the
 /// entries of other columns are zero.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sums {
+pub(crate) struct Sums {
     /// Columns that take part.
     columns: Columns,
     /// Matrix of the normal equations, lower triangle.
@@ -63,7 +63,7 @@ pub struct Sums {
 
 impl Sums {
     /// Normal equations of points whose variances have the standard deviations `sigmas`.
-    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
+    pub(crate) fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
         let mut sums = Self { columns, ..Self::default() };
         for (point, sigma) in points.iter().zip(sigmas) {
             let weight = 1.0 / sigma;
@@ -129,7 +129,7 @@ impl Sums {
 
     /// Column `column` of the inverse of the normal equations of some columns: the covariances with
     /// this squared coefficient if the points were independent.
-    pub fn inverse(&self, columns: Columns, column: usize) -> Option<[f64; COLUMNS]> {
+    pub(crate) fn inverse(&self, columns: Columns, column: usize) -> Option<[f64; COLUMNS]> {
         let mut unit = [0.0; COLUMNS];
         unit[column] = self.scales[column];
         let scaled = self.solve(columns, &unit)?;
@@ -138,7 +138,7 @@ impl Sums {
 
     /// Best non-negative solution: of all subsets of columns with positive solutions, the one that
     /// explains most.
-    pub fn positive(&self) -> (Columns, [f64; COLUMNS]) {
+    pub(crate) fn positive(&self) -> (Columns, [f64; COLUMNS]) {
         let mut best = (Columns(0), [0.0; COLUMNS]);
         let mut most = 0.0;
         for subset in self.columns.subsets() {
@@ -154,13 +154,17 @@ impl Sums {
 }
 
 /// Scalar product Σ xᵢyᵢ.
-pub fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
+pub(crate) fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
 /// Weight of each point's variance in a squared coefficient, from that coefficient's column of the
 /// inverse.
-pub fn row(inverse: &[f64; COLUMNS], points: &[Point], sigmas: &[f64]) -> Vec<f64, MOST_POINTS> {
+pub(crate) fn row(
+    inverse: &[f64; COLUMNS],
+    points: &[Point],
+    sigmas: &[f64],
+) -> Vec<f64, MOST_POINTS> {
     let count =
         |(point, sigma): (&Point, &f64)| sum(inverse, &terms(point.seconds.0)) / (sigma * sigma);
     points.iter().zip(sigmas).map(count).collect()

@@ -35,11 +35,11 @@ const SETTLED: f64 = 1e-3;
 const DEGREE_ROUNDS: usize = 3;
 /// Number of choices of coefficients: N belongs to every gyro, each of the others may be present or
 /// not.
-pub const CHOICES: usize = 1 << (COLUMNS - 1);
+pub(crate) const CHOICES: usize = 1 << (COLUMNS - 1);
 
 /// A fitted model: squared coefficients and their deviance.
 #[derive(Clone, Copy, Debug)]
-pub struct Model {
+pub(crate) struct Model {
     /// Coefficients that are not zero.
     pub columns: Columns,
     /// Squares of the coefficients, SI units.
@@ -50,13 +50,13 @@ pub struct Model {
 
 impl Model {
     /// Noise model with these coefficients.
-    pub fn noise(&self) -> GyroNoise {
+    pub(crate) fn noise(&self) -> GyroNoise {
         GyroNoise::of(self.squares.map(libm::sqrt))
     }
 }
 
 /// State of the search over all choices.
-pub struct Search<'p> {
+pub(crate) struct Search<'p> {
     /// Points that are used.
     pub points: &'p [Point],
     /// Sample period, s.
@@ -70,7 +70,7 @@ pub struct Search<'p> {
 impl<'p> Search<'p> {
     /// Begins with the points that average over a τ more than once, and takes their own values as
     /// the expected variances.
-    pub fn begin(points: &'p [Point], sample_seconds: f64) -> Self {
+    pub(crate) fn begin(points: &'p [Point], sample_seconds: f64) -> Self {
         let advance = |point: &Point| point.terms as f64 * point.stride.0 / point.seconds.0;
         let count = points.iter().take_while(|point| advance(point) >= 1.0).count();
         let points = &points[..count.min(MOST_POINTS)];
@@ -83,7 +83,7 @@ impl<'p> Search<'p> {
     }
 
     /// Fits every choice and returns the coefficients that stand out, with limits of the others.
-    pub fn finish(mut self) -> NoiseFit {
+    pub(crate) fn finish(mut self) -> NoiseFit {
         self.settle();
         let (best, choices) = self.choices();
         self.expect(&best.noise());
@@ -159,7 +159,7 @@ impl<'p> Search<'p> {
     }
 
     /// Standard deviations of the points' variances, for these expected variances, (rad/s)².
-    pub fn sigmas(&self, variances: &[f64]) -> Vec<f64, MOST_POINTS> {
+    pub(crate) fn sigmas(&self, variances: &[f64]) -> Vec<f64, MOST_POINTS> {
         let sigma = |(variance, degrees): (&f64, &f64)| variance * libm::sqrt(2.0 / degrees);
         variances.iter().zip(&self.degrees).map(sigma).collect()
     }

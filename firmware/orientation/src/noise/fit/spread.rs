@@ -14,7 +14,12 @@ impl Search<'_> {
     /// Standard deviations of the squares of some coefficients, as if the points were independent,
     /// for a model that expects these variances. A coefficient outside the model is treated as if
     /// it alone were added; others are zero.
-    pub fn spreads(&self, columns: Columns, model: &Model, variances: &[f64]) -> [f64; COLUMNS] {
+    pub(crate) fn spreads(
+        &self,
+        columns: Columns,
+        model: &Model,
+        variances: &[f64],
+    ) -> [f64; COLUMNS] {
         let sums = Sums::new(self.points, &self.sigmas(variances), columns);
         let mut spreads = [0.0; COLUMNS];
         for column in columns.each() {
@@ -26,7 +31,7 @@ impl Search<'_> {
 
     /// Factors by which correlation between the points raises the variances of the squares, under
     /// the expected model. A coefficient outside the model is treated as if it alone were added.
-    pub fn inflations(&self, model: &Model) -> [f64; COLUMNS] {
+    pub(crate) fn inflations(&self, model: &Model) -> [f64; COLUMNS] {
         let sigmas = self.sigmas(&self.variances);
         let sums = Sums::new(self.points, &sigmas, Columns::ALL);
         let mut inflations = [0.0; COLUMNS];

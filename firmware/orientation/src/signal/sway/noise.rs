@@ -54,7 +54,6 @@ impl SwayNoise {
     }
 
     /// Standard deviation of the angle error, both parts.
-    #[must_use]
     pub fn angle_sigma(&self) -> Radians {
         Radians(libm::sqrt(self.angle_variance + self.residual_variance))
     }

@@ -26,7 +26,7 @@ use crate::units::{
 
 /// State of the session; speeds are given by their index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
+pub(crate) enum Phase {
     /// The tilt is measured before anything turns.
     Level,
     /// The platform makes rate-modulated turns at a speed.

@@ -9,7 +9,7 @@ pub use crate::alignment::stepwise::CAPACITY;
 
 /// Values are limited to ±2⁴⁰ table units (512 times the horizontal Earth rate), so that every sum
 /// of the exact search stays within its integer type.
-pub const LIMIT: i64 = 1 << 40;
+pub(crate) const LIMIT: i64 = 1 << 40;
 
 /// Reason for which a series cannot be matched, with its remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Series {
     /// Takes the ratios `Z_i` / `Ω_h` (dimensionless) in the order measured and the step between
     /// positions in grid steps of 10″, clockwise positive.
     ///
-    /// Each ratio is rounded to the nearest 2⁻³¹ (ties away from zero) and clamped to ±[`LIMIT`].
+    /// Each ratio is rounded to the nearest 2⁻³¹ (ties away from zero) and clamped to ±2⁴⁰ steps.
     ///
     /// # Errors
     /// [`SeriesError`] names the fault and its remedy.

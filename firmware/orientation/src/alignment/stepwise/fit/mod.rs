@@ -13,8 +13,8 @@ mod slow;
 mod uncertainty;
 
 pub use hypothesis::{HeadingStep, Hypothesis, Protection};
-pub use model::Model;
-pub use uncertainty::FEW_DEGREES;
+pub(crate) use model::Model;
+pub(crate) use uncertainty::FEW_DEGREES;
 
 use super::direction::{Components, Direction, dot, inverted, product, quadratic};
 use super::level::square;
@@ -120,7 +120,7 @@ pub(super) struct Trial {
 }
 
 /// Fit with the covariance of its coefficients, which only its residuals need.
-pub type Found = (Fit, [[f64; COLUMNS]; COLUMNS]);
+pub(crate) type Found = (Fit, [[f64; COLUMNS]; COLUMNS]);
 
 /// Residual of one dwell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -136,7 +136,7 @@ pub struct Residual {
 
 /// Dwells of an alignment with everything that their fit needs.
 #[derive(Clone, Copy)]
-pub struct Problem<'a> {
+pub(crate) struct Problem<'a> {
     /// Site and instrument.
     pub setting: &'a Setting,
     /// Tilt of the platform.
@@ -398,7 +398,6 @@ impl Fit {
     }
 
     /// Standard deviation of the azimuth.
-    #[must_use]
     pub fn sigma(&self) -> Radians {
         self.budget.sigma()
     }

@@ -17,7 +17,7 @@ use crate::units::{Radians, RadiansPerRootSecond, RateRandomWalk};
 /// degrees of freedom, where the factor would be large, and with more.
 const EXCESS_PROBABILITY: [f64; 2] = [0.02, 0.05];
 /// Number of degrees of freedom up to which they count as few.
-pub const FEW_DEGREES: usize = 3;
+pub(crate) const FEW_DEGREES: usize = 3;
 
 /// A symmetric 2×2 covariance of the components, in units of `Ω_h`².
 pub(super) type Covariance = [[f64; 2]; 2];
@@ -134,7 +134,7 @@ impl Problem<'_> {
     /// (an excluded outlier, unlikely residuals or Earth rate, an unconfigured trend), the
     /// alternatives that matter only then count too: a random walk, and another Earth rate.
     #[inline(never)]
-    pub fn protect(&self, fit: &mut Fit, has_outliers: bool) {
+    pub(crate) fn protect(&self, fit: &mut Fit, has_outliers: bool) {
         let Protection { always, anomalous } = fit.protection;
         let is_anomalous = has_outliers || fit.is_anomalous();
         let mut level =
@@ -238,7 +238,7 @@ impl Fit {
     }
 
     /// Raises the noise contributions to this factor in all, if they are below it.
-    pub fn allow_for(&mut self, excess: f64) {
+    pub(crate) fn allow_for(&mut self, excess: f64) {
         let more = (excess / self.excess).max(1.0);
         self.excess *= more;
         self.budget.noise.0 *= more;

@@ -122,7 +122,7 @@ impl Procedure {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         let (time, angle, [lowest, highest]) = ([0.0, LONGEST], [0.0, TURN], self.travel);
         check_ranges(&[
             ("sample_seconds", self.sample_seconds.0, PERIODS),

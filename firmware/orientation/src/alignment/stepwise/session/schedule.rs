@@ -182,7 +182,6 @@ impl Schedule {
     }
 
     /// Sum of all dwell lengths.
-    #[must_use]
     pub fn seconds(&self) -> Seconds {
         Seconds(match self {
             Self::Listed(list) => list.iter().map(|p| p.seconds.0).sum(),
