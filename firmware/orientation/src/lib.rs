@@ -1,9 +1,9 @@
 //! True north, heading, pitch and roll from inertial sensors, as pure cores.
 //!
 //! # An alignment
-//! A method takes samples and says what it wants done: here a stage is pointed at eight headings in
-//! turn, and the gyro on it, at 30° from north, feels the Earth's rotation, an accelerometer that it
-//! stands level.
+//! A method takes samples and says what it wants done: here it has a stage pointed at eight positions
+//! around the circle, and at the first again. The body stands at an azimuth of 30°; the gyro on the
+//! stage feels the Earth's rotation, and the accelerometer shows that it stands level.
 //!
 //! ```
 //! use orientation::alignment::stepwise::session::procedure::Procedure;
@@ -99,8 +99,8 @@
 //! Quantities that are stated and read have types that are named after their unit, such as
 //! [`units::Radians`] and [`units::Seconds`]; `.0` is their number. Samples are integers, such as
 //! [`units::AngularRate`]. Ratios, variances and densities, and what the kernels of [`math`],
-//! [`filter`] and the fits compute with, are plain `f64` in SI units. Every conversion between
-//! integers and SI units is in [`units`].
+//! [`filter`] and the fits compute with, are plain `f64` in SI units. The steps of
+//! these integers are stated in [`units`].
 //!
 //! # Glossary
 //! The methods, and the terms of this crate, under their names in inertial navigation:

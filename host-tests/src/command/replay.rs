@@ -136,10 +136,10 @@ pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<An
 /// Replays a whole run by its inputs.
 fn again(options: &ReplayOptions, as_json: bool) -> Result<Answer, String> {
     let replayed = replay_inputs(&options.file);
-    let Replayed { finished, body, done: Done { kept, realigned, truth, warning } } =
+    let Replayed { finished, body, done: Done { kept, realignments, truth, warning } } =
         replayed.map_err(|error| error.to_string())?;
     let name = options.file.display().to_string();
-    let details = RunDetails::of_kept(&kept, realigned);
+    let details = RunDetails::of_kept(&kept, realignments);
     let outcome = finished.outcome(&truth).of_run(Source::File(name.clone()), details);
     let shown = Shown { name: &name, finished, truth, body };
     let answer = shown.answer(&outcome, options.report.as_deref(), as_json)?;

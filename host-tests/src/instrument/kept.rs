@@ -8,13 +8,35 @@ use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::sensor_fault::SensorFault;
 use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
-use orientation::attitude::Report;
+use orientation::attitude::{Realigned, Report};
+use orientation::navigation::Progress;
 use simulated::base::{self, SimulatedBase};
 use simulated::fault::{Fault, Injection};
 use simulated::keep::{Day, journey};
 use simulated::scenario::Scenario;
 
 use super::{Run, RunError};
+
+/// How azimuths that came while one was kept agreed with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Realignments {
+    /// How often one agreed.
+    pub fused: usize,
+    /// By how many σ the latest one disagreed, so that neither is believed; none where it did not.
+    pub disagreement: Option<f64>,
+}
+
+impl Realignments {
+    /// Takes what a navigator reports.
+    pub fn take(&mut self, progress: &Progress) {
+        let Progress::HandedOver(_, realigned) = progress else { return };
+        self.disagreement = match *realigned {
+            Realigned::Disagrees { sigmas } => Some(sigmas),
+            Realigned::Taken | Realigned::Fused { .. } => None,
+        };
+        self.fused += usize::from(matches!(realigned, Realigned::Fused { .. }));
+    }
+}
 
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]

@@ -84,11 +84,18 @@ impl<R, T> Run<R, T> {
         Some(point.truth.azimuth_rad)
     }
 
+    /// Whether an azimuth was found, or kept, before the latest alignment concluded: the base has driven since.
+    fn has_driven(&self) -> bool {
+        let at = self.conclusions().next_back().map_or(0.0, |at| at.as_micros() as f64);
+        let was_kept = self.kept.with_azimuth().any(|(point, _)| point.seconds() * 1e6 < at);
+        was_kept || self.conclusions().count() > 1
+    }
+
     /// The true azimuth when the latest alignment concluded, °, of a base that stood at an azimuth, °,
-    /// until the first one did.
+    /// until an azimuth was known.
     #[must_use]
     pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
-        let again = self.kept_azimuth_rad().filter(|_| self.conclusions().count() > 1);
+        let again = self.kept_azimuth_rad().filter(|_| self.has_driven());
         again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
     }
 

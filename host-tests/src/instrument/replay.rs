@@ -5,12 +5,12 @@ use std::path::Path;
 use hal_mock::earth::Attitude;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::{Method, Request, rotating, stepwise, stops};
-use orientation::attitude::{Keeper, Realigned, Report};
-use orientation::navigation::{self, Aligner, Navigator, Order, Output, Progress, aligner};
+use orientation::attitude::{Keeper, Report};
+use orientation::navigation::{self, Aligner, Navigator, Order, Output, aligner};
 use orientation::signal::Timed;
 use serde::de::DeserializeOwned;
 
-use super::kept::{Kept, Point};
+use super::kept::{Kept, Point, Realignments};
 use super::recorder::turning_rows;
 use crate::methods::{rotating as turning, stepwise as standing, stops as stopping};
 use crate::outcome::Finished;
@@ -33,8 +33,8 @@ pub struct Replayed {
 pub struct Done {
     /// What was kept, with the truth, which is not a number where the file lacks it.
     pub kept: Kept,
-    /// How often a later azimuth agreed with what was kept.
-    pub realigned: usize,
+    /// How later azimuths agreed with what was kept.
+    pub realignments: Realignments,
     /// What was true at the end; for errors alone.
     pub truth: Truth,
     /// That the file breaks off, where it does.
@@ -134,7 +134,7 @@ fn drive<S: Timed + DeserializeOwned>(
             Line::TruthAttitude([azimuth_rad, pitch_rad, roll_rad]) => {
                 attitudes.push(Attitude { azimuth_rad, pitch_rad, roll_rad });
             }
-            Line::End(End { truth_azimuth_deg, truth_start_azimuth_deg }) => {
+            Line::End(End { truth_azimuth_deg, truth_start_azimuth_deg, .. }) => {
                 done.truth.azimuth_deg = truth_azimuth_deg;
                 done.truth.start_azimuth_deg = truth_start_azimuth_deg;
             }
@@ -143,11 +143,11 @@ fn drive<S: Timed + DeserializeOwned>(
             return Err(lines.error(Problem::Diverged));
         }
     }
-    let Halves { reports, realigned, .. } = halves;
+    let Halves { reports, realignments, .. } = halves;
     attitudes.resize(reports.len(), UNKNOWN);
     let both = reports.into_iter().zip(attitudes);
     done.kept.points = both.map(|(report, truth)| Point { report, truth }).collect();
-    Ok(Done { realigned, warning: lines.warning(), ..done })
+    Ok(Done { realignments, warning: lines.warning(), ..done })
 }
 
 /// An attitude that the file does not hold.
@@ -161,17 +161,17 @@ struct Halves<'h, S> {
     /// The navigator's orders.
     orders: Vec<Order>,
     reports: Vec<Report>,
-    realigned: usize,
+    realignments: Realignments,
     /// Whether an input is none that the halves have come to.
     has_diverged: bool,
 }
 
 impl<'h, S: Timed> Halves<'h, S> {
     fn new(method: &'h mut dyn Method<S>, navigator: Navigator<'h>) -> Self {
-        let (orders, reports, realigned, has_diverged) = Default::default();
+        let (orders, reports, realignments, has_diverged) = Default::default();
         let mut aligner = Aligner::new(method);
         let request = aligner.begin(&mut |_| ());
-        let mut this = Self { aligner, navigator, orders, reports, realigned, has_diverged };
+        let mut this = Self { aligner, navigator, orders, reports, realignments, has_diverged };
         this.compute(request);
         this
     }
@@ -206,9 +206,7 @@ impl<'h, S: Timed> Halves<'h, S> {
         self.navigator.take(input, &mut |output| match output {
             Output::Report(report, _) => self.reports.push(report),
             Output::Order(order) => self.orders.push(order),
-            Output::Progress(Progress::HandedOver(_, Realigned::Fused { .. })) => {
-                self.realigned += 1;
-            }
+            Output::Progress(progress) => self.realignments.take(&progress),
             _ => {}
         });
     }

@@ -28,10 +28,15 @@ impl Finished for KeptAzimuth {
 }
 
 impl Outcome {
-    /// The outcome with what only a run has; what was kept stands for an alignment where there is none.
+    /// The outcome with what only a run has; what was kept stands for an alignment where there is none. An azimuth that
+    /// the board withdrew, because it and what was kept disagree, is no result.
     pub fn of_run(self, source: Source, run: RunDetails) -> Self {
         let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
+            let this = match run.disagreement.filter(|_| this.is_ok()) {
+                Some(sigmas) => this.withdrawn(sigmas),
+                None => this,
+            };
             return Self { run: Some(run), ..this };
         }
         let last = run.kept.as_ref();
@@ -49,5 +54,14 @@ impl Outcome {
             ..this
         }
         .settled(reason)
+    }
+
+    /// The outcome of an alignment whose azimuth disagrees by so many σ with what was kept.
+    fn withdrawn(self, sigmas: f64) -> Self {
+        let reason = format!(
+            "the azimuth found disagrees with what was kept, by {sigmas:.1} σ: neither is believed"
+        );
+        let (azimuth_deg, sigma_deg, error_deg) = Default::default();
+        Self { azimuth_deg, sigma_deg, error_deg, ..self.settled(Some(reason)) }
     }
 }

@@ -5,14 +5,13 @@ use std::time::Duration;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::remembered::Remembered;
-use orientation::attitude::{Realigned, Report};
-use orientation::navigation::Progress;
+use orientation::attitude::Report;
 use serde::Serialize;
 
 use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
-use crate::instrument::kept::{Kept, Point};
+use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::output::{degrees, positive_zero};
 use crate::report::{self, Figure, Lines, Part, Series, Style};
 
@@ -31,6 +30,9 @@ pub struct RunDetails {
     /// Whether an azimuth was known at any time.
     #[serde(skip)]
     pub(super) was_known: bool,
+    /// By how many σ the latest azimuth disagreed with what was kept, where neither is believed.
+    #[serde(skip)]
+    pub(super) disagreement: Option<f64>,
 }
 
 /// What only the run of a single platform has; nothing by default.
@@ -80,24 +82,25 @@ impl RunDetails {
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
-        Self::with(keys, Some(board), &run.kept, realigned(run))
+        Self::with(keys, Some(board), &run.kept, realignments(run))
     }
 
-    /// What was kept, and how often a later azimuth agreed with it.
+    /// What was kept, and how later azimuths agreed with it.
     #[must_use]
-    pub fn of_kept(kept: &Kept, realigned: usize) -> Self {
-        Self::with(Keys::default(), None, kept, realigned)
+    pub fn of_kept(kept: &Kept, realignments: Realignments) -> Self {
+        Self::with(Keys::default(), None, kept, realignments)
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.
-    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, realigned: usize) -> Self {
-        let last = kept.last().copied();
+    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: Realignments) -> Self {
+        let (last, realigned) = (kept.last().copied(), later.fused);
         let lines = last.iter().map(|last| in_words(kept, last, realigned)).chain(board);
         Self {
             keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
             parts: lines.map(Part::from).chain(figures(kept).into_iter().map(Part::from)).collect(),
             kept: last,
             was_known: kept.with_azimuth().next().is_some(),
+            disagreement: later.disagreement,
         }
     }
 }
@@ -170,12 +173,15 @@ fn greatest_sigmas(kept: &Kept) -> Option<f64> {
     kept.with_azimuth().map(|(_, [error, sigma])| error.abs() / sigma).reduce(f64::max)
 }
 
-/// How often a later azimuth agreed with what was kept.
-fn realigned<R, T>(run: &Run<R, T>) -> usize {
-    let fused = |event: &Event| {
-        matches!(event, Event::Navigation(Progress::HandedOver(_, Realigned::Fused { .. })))
-    };
-    run.events.iter().filter(|(_, event)| fused(event)).count()
+/// How later azimuths of a run agreed with what was kept.
+fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
+    let mut found = Realignments::default();
+    for (_, event) in &run.events {
+        if let Event::Navigation(progress) = event {
+            found.take(progress);
+        }
+    }
+    found
 }
 
 /// RMS of the errors of pitch and roll on the way, rad.

@@ -178,6 +178,9 @@ pub enum Problem {
          program wrote it"
     )]
     Diverged,
+    /// The lines are not those that the run wrote.
+    #[error("a line before this end is missing or was changed since the run; record again")]
+    InputsChanged,
     /// The file ends before the run did.
     #[error(
         "the inputs break off here, before the end of their run; the replay goes as far as they do"

@@ -220,6 +220,43 @@ fn a_run_that_ends_before_its_first_sample_says_that_there_is_nothing_to_record(
 }
 
 #[test]
+fn a_run_that_ends_before_its_first_sample_leaves_no_older_recording_in_its_place() {
+    let scratch = Scratch::new("older");
+    let path = scratch.path("run.csv");
+    answered(&["run", "stage", "--rate=50", "--dwell=2", "--record", &path]);
+    assert_eq!(answered(&["replay", &path])["status"], "ok");
+    answered(&["run", "stage", "--latitude=90", "--record", &path]);
+    assert!(reason(&meridian(&["replay", &path])).contains("the file is empty"));
+}
+
+#[test]
+fn an_azimuth_that_the_board_withdrew_is_no_result() {
+    // The azimuth from outside is five of its σ off: the board believes neither it nor what it finds later.
+    let scratch = Scratch::new("withdrawn");
+    let path = scratch.path("run.jsonl");
+    let run = ["run", "two-frame", "--handover=214.7,0.16", "--realign", "--hold=1500", "--seed=5"];
+    for object in
+        [answered(&[&run[..], &["--record", &path]].concat()), answered(&["replay", &path])]
+    {
+        assert_eq!(object["status"], "refused");
+        let why = object["reason"].as_str().expect("there is a reason");
+        assert!(why.contains("disagrees with what was kept"), "{why}");
+        assert!(object.get("azimuth_deg").is_none() && object["kept"]["azimuth_deg"].is_null());
+    }
+}
+
+#[test]
+fn an_azimuth_found_after_one_from_outside_is_held_to_the_truth_of_its_time() {
+    for seed in ["--seed=1", "--seed=4"] {
+        let options = ["--handover=213.7,0.16", "--realign", "--hold=1200", "--rate=50", seed];
+        let object = answered(&[&["run", "stage"], &options[..]].concat());
+        let [error, sigma] = ["error_deg", "sigma_deg"].map(|key| object[key].as_f64());
+        let (error, sigma) = (error.expect("it is known"), sigma.expect("north is found"));
+        assert!(error.abs() < 4.0 * sigma, "{seed}: {error} ± {sigma}");
+    }
+}
+
+#[test]
 fn displacements_that_the_forces_of_a_recorded_drive_contradict_are_refused() {
     let scratch = Scratch::new("displaced");
     let path = scratch.path("run.csv");

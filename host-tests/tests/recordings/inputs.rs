@@ -160,11 +160,45 @@ fn a_run_that_was_broken_off_replays_as_far_as_its_whole_lines_go() {
     }
 }
 
+/// Lines whose last one states their checksum: that which Python's `zlib.crc32` gives, as of gzip.
+fn sealed(mut lines: Vec<String>) -> Vec<String> {
+    let end = lines.pop().expect("there is an end");
+    let mut sum = flate2::Crc::new();
+    for line in &lines {
+        sum.update(format!("{line}\n").as_bytes());
+    }
+    let (begin, rest) = end.split_once("\"checksum\":\"").expect("it states one");
+    lines.push(format!("{begin}\"checksum\":\"{:08x}{}", sum.sum(), &rest[8..]));
+    lines
+}
+
+#[test]
+fn a_line_that_is_missing_or_changed_anywhere_is_noticed_at_the_end() {
+    for lines in &*RUNS {
+        assert_eq!(sealed(lines.clone()), *lines);
+        let quiet = |line: &String| line.contains("\"passed\"") || line.contains("truth_attitude");
+        let at = lines.iter().position(quiet).expect("there are such lines");
+        let mut missing = lines.clone();
+        missing.remove(at);
+        let forged = lines[0].replacen("\"scale_sigma\":0.0", "\"scale_sigma\":0.1", 1);
+        assert_ne!(forged, lines[0]);
+        let changed = [&[forged], &lines[1..]].concat();
+        let spaced = [&[lines[0].replacen(':', ": ", 1)], &lines[1..]].concat();
+        for lines in [missing, spaced, changed] {
+            let message = refused(&lines);
+            let is_seen = message.contains("missing or was changed since the run")
+                || message.contains("has not come to this");
+            assert!(is_seen, "{message}");
+        }
+    }
+}
+
 #[test]
 fn the_truth_decides_nothing_but_errors() {
     let lines = RUNS[0].iter();
     let bare: Vec<_> = lines.filter(|line| !line.contains("truth_attitude")).cloned().collect();
-    let bare = replayed(&(bare.join("\n") + "\n")).unwrap_or_else(|error| panic!("{error}"));
+    let bare =
+        replayed(&(sealed(bare).join("\n") + "\n")).unwrap_or_else(|error| panic!("{error}"));
     let whole = replayed(&(RUNS[0].join("\n") + "\n")).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(reports(&bare), reports(&whole));
     let found = |of: &Replayed| of.finished.outcome(&of.done.truth).azimuth_deg;
@@ -228,7 +262,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_line_that_was_harmed_gives_a_result_or_an_error_that_names_a_line(
+    fn a_line_that_was_harmed_gives_an_error_that_names_a_line_or_breaks_the_run_off(
         run in 0_usize..4,
         at in prop_oneof![1 => Just(None), 3 => any::<prop::sample::Index>().prop_map(Some)],
         harm in harm(),
@@ -236,7 +270,10 @@ proptest! {
         let lines = &RUNS[run];
         let lines = harmed(lines, at.map_or(0, |at| at.index(lines.len())), &harm);
         match replayed(&(lines.join("\n") + "\n")) {
-            Ok(replayed) => drop(replayed.finished.outcome(&replayed.done.truth)),
+            Ok(again) => {
+                prop_assert!(lines == RUNS[run] || again.done.warning.is_some());
+                drop(again.finished.outcome(&again.done.truth));
+            }
             Err(error) => prop_assert!(error.to_string().starts_with("run.jsonl: line "), "{error}"),
         }
     }

@@ -11,8 +11,8 @@ use crate::device::{Device, Trouble};
 use crate::units::{Degrees, MilliG, Milliseconds, Seconds};
 use crate::words::Rounded;
 
-/// Reason for which no azimuth is given. Angles are in degrees and times in seconds, ready to
-/// print. Text holds those that the samples of a recording do not show, and none of one method.
+/// Reason for which no azimuth is given, in the units of its sentence. Serialised are those that the
+/// samples of a recording do not show, and none of one method alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refusal {

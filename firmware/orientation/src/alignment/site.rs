@@ -79,7 +79,7 @@ impl Site {
         }
     }
 
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].

@@ -35,7 +35,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].

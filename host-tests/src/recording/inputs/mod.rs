@@ -11,6 +11,7 @@ mod writer;
 
 use std::path::Path;
 
+use flate2::Crc;
 use orientation::alignment::{rotating, stepwise, stops};
 use orientation::attitude;
 use orientation::navigation::{self, Policy, aligner};
@@ -85,18 +86,25 @@ pub enum Line<S> {
     Navigator(navigation::Input),
     /// True azimuth, pitch and roll at a report, rad: a line each, in their order; for errors alone.
     TruthAttitude([f64; 3]),
-    /// The run is over; for errors alone, what was true then.
+    /// The run is over.
     End(End),
 }
 
-/// What was true at the end of a run.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+/// The end of a run: what was written, and what was true then.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct End {
+    /// CRC-32 of gzip (RFC 1952) over all lines before, each with its line feed, in hexadecimal digits.
+    pub checksum: String,
     /// Azimuth of body x when the latest alignment ended, °.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth_azimuth_deg: Option<f64>,
     /// Azimuth of body x at the begin of the first one, °.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth_start_azimuth_deg: Option<f64>,
+}
+
+/// A checksum as the last line states it.
+fn hexadecimal(sum: &Crc) -> String {
+    format!("{:08x}", sum.sum())
 }

@@ -6,11 +6,12 @@ use std::io::{self, Write};
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{Observer, Recorder};
+use flate2::Crc;
 use hal_mock::earth::Attitude;
 use orientation::navigation::{Input, aligner};
 use serde::Serialize;
 
-use super::{End, Given, Header, Line, VERSION};
+use super::{End, Given, Header, Line, VERSION, hexadecimal};
 use crate::instrument::kept::{Kept, Point};
 use crate::recording::Truth;
 
@@ -19,6 +20,8 @@ use crate::recording::Truth;
 #[derive(Debug)]
 pub struct Writer<W> {
     to: RefCell<io::Result<W>>,
+    /// Checksum of the lines so far.
+    sum: RefCell<Crc>,
     /// Whether no alignment ran at the latest input that said so.
     was_idle: Cell<Option<bool>>,
     /// Whether an azimuth waits for the inertial sample of its time.
@@ -30,21 +33,26 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// The file cannot be written, or the header holds a number that JSON does not have.
-    pub fn new(mut to: W, seed: u64, given: Given) -> io::Result<Self> {
+    pub fn new(to: W, seed: u64, given: Given) -> io::Result<Self> {
         let program = concat!("meridian ", env!("CARGO_PKG_VERSION")).to_owned();
-        let text = serde_json::to_string(&Header { inputs: VERSION, program, seed, given })?;
-        serde_json::from_str::<Header>(&text)?;
-        writeln!(to, "{text}")?;
-        let (was_idle, is_found) = Default::default();
-        Ok(Self { to: RefCell::new(Ok(to)), was_idle, is_found })
+        let header = Header { inputs: VERSION, program, seed, given };
+        serde_json::from_slice::<Header>(&serde_json::to_vec(&header)?)?;
+        let (sum, was_idle, is_found) = Default::default();
+        let this = Self { to: RefCell::new(Ok(to)), sum, was_idle, is_found };
+        this.write(&header);
+        Ok(this)
     }
 
     /// Writes a line.
-    fn write<S: Serialize>(&self, line: &Line<S>) {
+    fn write(&self, line: &impl Serialize) {
         let mut to = self.to.borrow_mut();
         let Ok(file) = to.as_mut() else { return };
-        let written = serde_json::to_writer(&mut *file, line).map_err(io::Error::from);
-        if let Err(error) = written.and_then(|()| file.write_all(b"\n")) {
+        let written = serde_json::to_vec(line).map_err(io::Error::from).and_then(|mut text| {
+            text.push(b'\n');
+            self.sum.borrow_mut().update(&text);
+            file.write_all(&text)
+        });
+        if let Err(error) = written {
             *to = Err(error);
         }
     }
@@ -57,7 +65,9 @@ impl<W: Write> Writer<W> {
         for Point { truth: Attitude { azimuth_rad, pitch_rad, roll_rad }, .. } in &kept.points {
             self.write(&Line::<()>::TruthAttitude([*azimuth_rad, *pitch_rad, *roll_rad]));
         }
+        let checksum = hexadecimal(&self.sum.borrow());
         self.write(&Line::<()>::End(End {
+            checksum,
             truth_azimuth_deg: truth.azimuth_deg,
             truth_start_azimuth_deg: truth.start_azimuth_deg,
         }));

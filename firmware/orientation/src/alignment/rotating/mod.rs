@@ -111,7 +111,7 @@ impl Setting {
         }
     }
 
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].

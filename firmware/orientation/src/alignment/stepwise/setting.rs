@@ -19,7 +19,7 @@ pub enum Half {
 }
 
 impl Half {
-    /// Whether an azimuth, lies in this half.
+    /// Whether an azimuth lies in this half.
     #[must_use]
     pub fn contains(self, azimuth: Radians) -> bool {
         (libm::sin(azimuth.0) >= 0.0) == (self == Self::East)
@@ -64,7 +64,7 @@ impl Setting {
         Self::new(Site::at(latitude))
     }
 
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].

@@ -76,7 +76,7 @@ impl Setting {
         }
     }
 
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].

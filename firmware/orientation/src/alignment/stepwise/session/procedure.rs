@@ -118,7 +118,7 @@ impl Procedure {
         Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
     }
 
-    /// Checks that every quantity is one.
+    /// Checks that every quantity is within its range.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
