@@ -5,7 +5,7 @@ use crate::units::{Degrees, DegreesPerSecond, MilliG};
 use crate::words::Rounded;
 
 /// Reason for which an alignment by continuous rotation gives no azimuth, beside those that several methods have.
-/// Angles are in degrees and times in seconds, ready to print.
+/// Quantities are in the units of its sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// More turns of the rotating platform were disturbed than may be excluded.

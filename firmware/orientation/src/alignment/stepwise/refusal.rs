@@ -5,7 +5,7 @@ use crate::units::{Degrees, MilliG, Seconds};
 use crate::words::Rounded;
 
 /// Reason for which a multi-position alignment gives no azimuth, beside those that several methods have.
-/// Angles are in degrees and times in seconds, ready to print.
+/// Quantities are in the units of its sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// Fewer than three different undisturbed positions remain.

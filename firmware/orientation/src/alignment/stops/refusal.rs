@@ -5,7 +5,7 @@ use crate::units::{DegreesPerHour, MetresPerSecondSquared, Seconds};
 use crate::words::Rounded;
 
 /// Reason for which an inertial-frame alignment gives no azimuth, beside those that several methods have.
-/// Angles are in degrees and times in seconds, ready to print.
+/// Quantities are in the units of its sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// No stop of the vehicle was detected.
