@@ -20,6 +20,12 @@ pub enum ReplayError {
     /// A kind whose stage does not turn all the time.
     #[error("kind `{0}` has no platform that turns all the time: no method rotating")]
     Stops(Kind),
+    /// Elevations of a mount of two frames, without what its session was given.
+    #[error(
+        "column elevation_rad: two frames replay by what their run was given alone: put the line `session` back in, as \
+         the run wrote it"
+    )]
+    Mounted,
     /// The stage never stood still long enough.
     #[error("column stage_rad: the stage stands still nowhere long enough for a dwell")]
     NoDwell,

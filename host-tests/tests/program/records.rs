@@ -230,6 +230,20 @@ fn a_run_that_ends_before_its_first_sample_leaves_no_older_recording_in_its_plac
 }
 
 #[test]
+fn two_frames_without_what_their_run_was_given_are_not_taken_for_a_stage() {
+    let scratch = Scratch::new("frames");
+    let path = scratch.path("run.csv");
+    for passes in ["--passes=1", "--passes=2"] {
+        answered(&["run", "two-frame", "--rate=50", "--dwell=2", passes, "--record", &path]);
+        let text = std::fs::read_to_string(&path).expect("it was written");
+        let bare: Vec<_> = text.lines().filter(|line| !line.starts_with("# session")).collect();
+        std::fs::write(&path, bare.join("\n")).expect("it can be written");
+        let why = reason(&meridian(&["replay", &path]));
+        assert!(why.contains("column elevation_rad: two frames replay"), "{why}");
+    }
+}
+
+#[test]
 fn an_azimuth_that_the_board_withdrew_is_no_result() {
     // The azimuth from outside is five of its σ off: the board believes neither it nor what it finds later.
     let scratch = Scratch::new("withdrawn");

@@ -87,6 +87,7 @@ pub fn replay(
     match body {
         Body::Stage(rows) => match Given::of(header).map_err(ReplayError::Session)? {
             Some(given) => again(given, rows, asked, progress),
+            None if is_mounted(rows) => Err(ReplayError::Mounted),
             None => {
                 followed(of, |setting, criterion| stage(header, rows, setting, criterion, progress))
             }
@@ -114,6 +115,11 @@ fn followed(
     Ok(Replay { method: asked.method.unwrap_or(STEPWISE), session, assumed })
 }
 
+/// Whether elevations show a mount of two frames.
+fn is_mounted(rows: &[StageRow]) -> bool {
+    rows.iter().any(|row| row.elevation_rad.is_some())
+}
+
 /// Replays a run by giving its session what the board's was given. Elevations show a mount of two frames.
 fn again(
     given: Given<Setting, Procedure>,
@@ -125,7 +131,7 @@ fn again(
     asked.change(&mut setting.site);
     setting.half = asked.half.or(setting.half);
     procedure.criterion = asked.criterion.unwrap_or(procedure.criterion);
-    let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
+    let is_mounted = is_mounted(rows);
     let mut session = mounted(is_mounted, (setting, procedure))?;
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     let given =
