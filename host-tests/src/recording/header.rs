@@ -3,8 +3,7 @@
 //! What a solver may know becomes a [`Header`]; `truth_*` keys go to [`Truth`] while the lines are
 //! read, so no other type ever holds them. Unknown keys, and comments without a colon, are skipped.
 
-use flate2::Crc;
-
+use super::checksum::Checksum;
 use super::error::Fault;
 use super::number::{number, pair};
 use super::problem::Problem;
@@ -148,17 +147,15 @@ fn is_known(key: &str) -> bool {
     WORDS.contains(&key) || NUMBERS.iter().any(|(name, ..)| *name == key)
 }
 
-/// Checksum of a run's header with what its session was given, in hexadecimal digits: the CRC-32 of gzip (RFC 1952,
-/// section 8) over all keys that bear on how the recording is read.
+/// Checksum of a run's header with what its session was given: over all keys that bear on how the recording is read.
 pub(super) fn checksum<'a>(
     keys: impl Iterator<Item = (&'a str, &'a str)>,
     session: &'a str,
 ) -> String {
-    let mut sum = Crc::new();
+    let mut sum = Checksum::default();
     let keys = keys.filter(|(key, _)| is_known(key) && *key != SESSION);
-    keys.chain([(SESSION, session)])
-        .for_each(|(key, value)| sum.update(format!("{key}:{value}\n").as_bytes()));
-    format!("{:08x}", sum.sum())
+    keys.chain([(SESSION, session)]).for_each(|(key, value)| sum.add(&format!("{key}:{value}")));
+    sum.digits()
 }
 
 /// The names of all keys that are looked at.

@@ -10,6 +10,7 @@
 //! What a simulator knows goes to [`Truth`] while the file is read; [`Recording::into_parts`] takes
 //! it off, and a solver is given only a [`Header`] and a [`Body`], which cannot hold it.
 
+mod checksum;
 mod columns;
 mod error;
 mod given;

@@ -11,7 +11,6 @@ mod writer;
 
 use std::path::Path;
 
-use flate2::Crc;
 use orientation::alignment::{rotating, stepwise, stops};
 use orientation::attitude;
 use orientation::navigation::{self, Policy, aligner};
@@ -102,9 +101,4 @@ pub struct End {
     /// Azimuth of body x at the begin of the first one, °.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth_start_azimuth_deg: Option<f64>,
-}
-
-/// A checksum as the last line states it.
-fn hexadecimal(sum: &Crc) -> String {
-    format!("{:08x}", sum.sum())
 }

@@ -5,14 +5,14 @@ use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use flate2::Crc;
 use orientation::navigation::{Input, Motion, aligner};
 use orientation::signal::Timed;
 use orientation::units::Instant;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::{Header, Line, VERSION, hexadecimal};
+use super::{Header, Line, VERSION};
+use crate::recording::checksum::Checksum;
 use crate::recording::error::Fault;
 use crate::recording::lines::{self, Lines};
 use crate::recording::problem::Problem;
@@ -32,7 +32,7 @@ pub struct Reader<'r> {
     /// Time and line of the latest sample, increment, and time that passed without one.
     latest: [(Instant, u64); 3],
     /// Checksum of the lines so far.
-    sum: Crc,
+    sum: Checksum,
     /// Whether the end was read.
     has_ended: bool,
 }
@@ -55,7 +55,7 @@ impl<'r> Reader<'r> {
     /// # Errors
     /// As [`Self::open`].
     pub fn new(name: &str, reader: impl Read + 'r) -> Result<(Header, Self), ReadError> {
-        let mut sum = Crc::new();
+        let mut sum = Checksum::default();
         let begun =
             Lines::new(reader).and_then(|mut lines| Ok((header(&mut lines, &mut sum)?, lines)));
         let (header, lines) = begun.map_err(|fault| fault.in_file(name))?;
@@ -87,9 +87,9 @@ impl<'r> Reader<'r> {
             Ok(line) => line,
         };
         match &line {
-            Line::End(end) if end.checksum == hexadecimal(&self.sum) => self.has_ended = true,
+            Line::End(end) if end.checksum == self.sum.digits() => self.has_ended = true,
             Line::End(_) => return Err(Fault::line(number, Problem::InputsChanged)),
-            _ => add(&mut self.sum, read.text),
+            _ => self.sum.add(read.text),
         }
         self.check_time(&line, number)?;
         Ok(Some(line))
@@ -128,18 +128,12 @@ impl<'r> Reader<'r> {
     }
 }
 
-/// Adds a line to a checksum.
-fn add(sum: &mut Crc, line: &str) {
-    sum.update(line.as_bytes());
-    sum.update(b"\n");
-}
-
 /// Reads the first line.
-fn header(lines: &mut Lines<'_>, sum: &mut Crc) -> Result<Header, Fault> {
+fn header(lines: &mut Lines<'_>, sum: &mut Checksum) -> Result<Header, Fault> {
     let Some(line) = lines.next()? else {
         return Err(Fault::new(Place::Whole, Problem::Empty));
     };
-    add(sum, line.text);
+    sum.add(line.text);
     let wrong = |problem| Fault::line(line.number, problem);
     let text: Value = serde_json::from_str(line.text).unwrap_or_default();
     let version = text["inputs"].as_u64().ok_or_else(|| wrong(Problem::NoInputs))?;

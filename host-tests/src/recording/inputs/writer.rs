@@ -6,14 +6,14 @@ use std::io::{self, Write};
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{Observer, Recorder};
-use flate2::Crc;
 use hal_mock::earth::Attitude;
 use orientation::navigation::{Input, aligner};
 use serde::Serialize;
 
-use super::{End, Given, Header, Line, VERSION, hexadecimal};
+use super::{End, Given, Header, Line, VERSION};
 use crate::instrument::kept::{Kept, Point};
 use crate::recording::Truth;
+use crate::recording::checksum::Checksum;
 
 /// Writes the inputs of a run as they come: the recorder of its samples, and an observer of the others. After the first
 /// failure it writes nothing more, and the run goes on.
@@ -21,7 +21,7 @@ use crate::recording::Truth;
 pub struct Writer<W> {
     to: RefCell<io::Result<W>>,
     /// Checksum of the lines so far.
-    sum: RefCell<Crc>,
+    sum: RefCell<Checksum>,
     /// Whether no alignment ran at the latest input that said so.
     was_idle: Cell<Option<bool>>,
     /// Whether an azimuth waits for the inertial sample of its time.
@@ -47,10 +47,10 @@ impl<W: Write> Writer<W> {
     fn write(&self, line: &impl Serialize) {
         let mut to = self.to.borrow_mut();
         let Ok(file) = to.as_mut() else { return };
-        let written = serde_json::to_vec(line).map_err(io::Error::from).and_then(|mut text| {
-            text.push(b'\n');
-            self.sum.borrow_mut().update(&text);
-            file.write_all(&text)
+        let written = serde_json::to_string(line).map_err(io::Error::from).and_then(|mut text| {
+            self.sum.borrow_mut().add(&text);
+            text.push('\n');
+            file.write_all(text.as_bytes())
         });
         if let Err(error) = written {
             *to = Err(error);
@@ -65,7 +65,7 @@ impl<W: Write> Writer<W> {
         for Point { truth: Attitude { azimuth_rad, pitch_rad, roll_rad }, .. } in &kept.points {
             self.write(&Line::<()>::TruthAttitude([*azimuth_rad, *pitch_rad, *roll_rad]));
         }
-        let checksum = hexadecimal(&self.sum.borrow());
+        let checksum = self.sum.borrow().digits();
         self.write(&Line::<()>::End(End {
             checksum,
             truth_azimuth_deg: truth.azimuth_deg,
