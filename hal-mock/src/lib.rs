@@ -44,6 +44,8 @@
 //! order of events, losses of supply, the bus and the record of forbidden accesses, is an
 //! [`assembly::Board`].
 //!
+//! What the microcontroller itself brings with it is the flash in which a board keeps data ([`flash`]).
+//!
 //! A chip behaves as its data sheet says, and where that promises nothing, it does the worst that is
 //! still allowed. What a driver does that the data sheet forbids is recorded ([`violation`]), so that a
 //! test can demand that there was nothing.
@@ -74,6 +76,7 @@ pub mod disturbance;
 pub mod earth;
 pub mod environment;
 pub mod fault;
+pub mod flash;
 pub mod flicker;
 pub mod gimbal;
 pub mod gyro;

@@ -4,6 +4,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod flash;
 mod plant;
 mod spin_world;
 mod turntable;
