@@ -9,7 +9,7 @@
 
 use embassy_time::Instant;
 
-use crate::chip::{ReadyLine, Rig, Select, SpiChip, Transaction};
+use crate::chip::{Exchange, ReadyLine, Rig, Select, SpiChip, Transaction};
 use crate::fault::Blackout;
 use crate::violation::{Violation, Violations};
 
@@ -23,6 +23,12 @@ pub enum Task<'t, 'b> {
     Event,
     /// Has the chip answer.
     Answer(&'t Transaction<'b>, &'t mut [u8]),
+    /// Has the select line fall at a moment.
+    Select(Instant),
+    /// Has the chip take a byte and give its own.
+    Exchange(&'t Exchange, &'t mut u8),
+    /// Has the select line rise, for an access of a moment, after a whole byte or not.
+    Deselect(Instant, bool),
     /// Looks at the data-ready line.
     Line(&'t mut ReadyLine),
     /// Takes the supply away for a moment.
@@ -38,6 +44,9 @@ impl Task<'_, '_> {
             Self::Next(next) => *next = chip.next_event(),
             Self::Event => chip.event(environment),
             Self::Answer(transaction, reply) => chip.transact(environment, transaction, reply),
+            Self::Select(now) => chip.select(environment, now),
+            Self::Exchange(exchange, reply) => *reply = chip.exchange(environment, exchange),
+            Self::Deselect(since, is_whole) => chip.deselect(environment, since, is_whole),
             Self::Line(line) => *line = chip.ready_line(),
             Self::Restart(now) => chip.power_cycle(now),
             Self::Violations(found) => *found = Some(chip.violations().clone()),
@@ -136,6 +145,23 @@ impl<P, C: Chips<P>> Rig for Board<'_, P, C> {
     fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]) {
         self.advance(transaction.now);
         self.with(select, Task::Answer(transaction, reply));
+    }
+
+    fn select(&mut self, select: Select, now: Instant) {
+        self.advance(now);
+        self.with(select, Task::Select(now));
+    }
+
+    fn exchange(&mut self, select: Select, exchange: &Exchange) -> u8 {
+        self.advance(exchange.begin);
+        let mut reply = 0xFF;
+        self.with(select, Task::Exchange(exchange, &mut reply));
+        reply
+    }
+
+    fn deselect(&mut self, select: Select, now: Instant, since: Instant, is_whole: bool) {
+        self.advance(now);
+        self.with(select, Task::Deselect(since, is_whole));
     }
 
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine {

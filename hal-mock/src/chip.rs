@@ -1,4 +1,10 @@
-//! A chip on a serial bus: registers behind transactions, and a clock of its own.
+//! A chip on a serial bus: registers behind bytes, and a clock of its own.
+//!
+//! A chip answers byte by byte, between the fall and the rise of its select line: [`SpiChip::select`],
+//! [`SpiChip::exchange`], [`SpiChip::deselect`]. A whole transaction ([`SpiChip::transact`]) is a run of bytes
+//! without a pause, so that both ways go through the same registers and the same checks. What the chip does
+//! of itself in the course of a transaction, such as a conversion, shows after it, as if the transaction
+//! had taken no time.
 
 use embassy_time::{Duration, Instant};
 
@@ -43,9 +49,31 @@ pub struct Transaction<'a> {
     pub sent: &'a [u8],
 }
 
+/// One byte as the chip sees it, in both directions.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange {
+    /// The byte from the controller.
+    pub sent: u8,
+    /// When the bytes of the transaction began, later by all pauses between select and this byte: the moment
+    /// that an access belongs to, where the data sheet has no finer one. Without a pause it is when the
+    /// select line fell.
+    pub since: Instant,
+    /// When the first bit began.
+    pub begin: Instant,
+    /// When the last bit ended, rounded up to microseconds.
+    pub end: Instant,
+    /// Bus clock, Hz.
+    pub hertz: u32,
+}
+
 /// Time that `bytes` bytes take on a bus clocked at `hertz` (> 0), rounded up to microseconds.
 pub(crate) fn bus_time(bytes: usize, hertz: u32) -> Duration {
-    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
+    let bits = bytes as u64 * 8_000_000;
+    // The usual transaction needs no long division.
+    Duration::from_micros(match u32::try_from(bits) {
+        Ok(bits) => u64::from(bits.div_ceil(hertz)),
+        Err(_) => bits.div_ceil(u64::from(hertz)),
+    })
 }
 
 /// A data-ready line of a chip at one moment.
@@ -65,9 +93,30 @@ pub trait SpiChip<E: ?Sized> {
     /// Does what is due at [`Self::next_event`].
     fn event(&mut self, environment: &mut E);
 
+    /// The select line falls at `now`. All events up to then have happened.
+    fn select(&mut self, environment: &mut E, now: Instant);
+
+    /// Takes a byte and gives the one that goes out meanwhile, which depends on earlier bytes only. All events
+    /// up to its beginning have happened.
+    fn exchange(&mut self, environment: &mut E, exchange: &Exchange) -> u8;
+
+    /// The select line rises, after the last bit of a byte or, where the transaction is not whole, within a
+    /// byte, which is then lost. The access belongs to `since` ([`Exchange::since`]).
+    fn deselect(&mut self, environment: &mut E, since: Instant, is_whole: bool);
+
     /// Answers a transaction into `reply`, which is as long as what was sent. All events up to its
-    /// time have happened. A byte of the reply depends on earlier sent bytes only.
-    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]);
+    /// time have happened.
+    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]) {
+        let Transaction { now, hertz, sent } = *transaction;
+        self.select(environment, now);
+        let mut begin = now;
+        for (index, (&sent, out)) in sent.iter().zip(reply).enumerate() {
+            let end = now + bus_time(index + 1, hertz);
+            *out = self.exchange(environment, &Exchange { sent, since: now, begin, end, hertz });
+            begin = end;
+        }
+        self.deselect(environment, now, true);
+    }
 
     /// The data-ready line; chips without one never become ready.
     fn ready_line(&self) -> ReadyLine {
@@ -88,10 +137,20 @@ pub fn advance<E>(chip: &mut impl SpiChip<E>, environment: &mut E, now: Instant)
     }
 }
 
-/// Chips that can be addressed through [`crate::spi::SpiPort`].
+/// Chips that can be addressed through [`crate::spi::SpiPort`]. Everything that is due until the time of a
+/// call happens first.
 pub trait Rig {
     /// Answers a transaction with the selected chip.
     fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]);
+
+    /// Has the select line of a chip fall at `now`.
+    fn select(&mut self, select: Select, now: Instant);
+
+    /// Has a chip whose select line is low take a byte, and gives its own; 0xFF where there is no such chip.
+    fn exchange(&mut self, select: Select, exchange: &Exchange) -> u8;
+
+    /// Has the select line of a chip rise at `now` ([`SpiChip::deselect`]).
+    fn deselect(&mut self, select: Select, now: Instant, since: Instant, is_whole: bool);
 
     /// The data-ready line of the selected chip at `now`.
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine;
@@ -113,6 +172,21 @@ impl<C: SpiChip<E>, E> Rig for Single<C, E> {
     fn transact(&mut self, _: Select, transaction: &Transaction, reply: &mut [u8]) {
         advance(&mut self.chip, &mut self.environment, transaction.now);
         self.chip.transact(&mut self.environment, transaction, reply);
+    }
+
+    fn select(&mut self, _: Select, now: Instant) {
+        advance(&mut self.chip, &mut self.environment, now);
+        self.chip.select(&mut self.environment, now);
+    }
+
+    fn exchange(&mut self, _: Select, exchange: &Exchange) -> u8 {
+        advance(&mut self.chip, &mut self.environment, exchange.begin);
+        self.chip.exchange(&mut self.environment, exchange)
+    }
+
+    fn deselect(&mut self, _: Select, now: Instant, since: Instant, is_whole: bool) {
+        advance(&mut self.chip, &mut self.environment, now);
+        self.chip.deselect(&mut self.environment, since, is_whole);
     }
 
     fn ready_line(&mut self, _: Select, now: Instant) -> ReadyLine {

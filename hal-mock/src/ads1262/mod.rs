@@ -7,7 +7,8 @@
 //!
 //! Conversions end at the environment's time; the environment is asked only where the gyro's inputs
 //! are selected. A transaction acts at its bytes' time, and conversions that end in its course
-//! become visible after it, as the data sheet has them wait (figure 9-43).
+//! become visible after it, as the data sheet has them wait (figure 9-43); where the next one ends before,
+//! with that.
 
 mod analogue;
 mod frame;
@@ -17,13 +18,14 @@ mod transaction;
 
 use embassy_time::Instant;
 
-use crate::chip::{ReadyLine, SpiChip, Transaction};
+use crate::chip::{Exchange, ReadyLine, SpiChip};
 use crate::clock::Cadence;
 use crate::environment::AnalogueInput;
 use crate::violation::{Misuse, Violations};
 use analogue::Selected;
 pub use analogue::Voltages;
 use registers::Registers;
+use transaction::Course;
 
 /// Bit of the status byte: the conversion was not read before.
 const STATUS_NEW: u8 = 0x40;
@@ -76,6 +78,10 @@ pub struct Ads1262 {
     holding: Holding,
     /// The data-ready line, and with it the shift register that is read directly.
     is_ready: bool,
+    /// The transaction under way.
+    course: Course,
+    /// Voltage of a conversion that has ended in its course, V.
+    waiting: Option<f64>,
     /// Conversions that a newer one replaced before they were read.
     pub overwritten: u64,
     /// Whether a clock is found at the pins, which the status byte shows.
@@ -98,6 +104,8 @@ impl Default for Ads1262 {
             running: None,
             holding: Holding::default(),
             is_ready: false,
+            course: Course::default(),
+            waiting: None,
             overwritten: 0,
             has_external_clock: false,
             chip_fault: ChipFault::default(),
@@ -120,7 +128,7 @@ impl Ads1262 {
         } else if is_high {
             self.start(START1, at);
         } else {
-            self.running = None;
+            self.stop();
         }
     }
 
@@ -148,11 +156,26 @@ impl Ads1262 {
         }
     }
 
+    /// Ends conversions; one that has just ended is lost as well.
+    fn stop(&mut self) {
+        self.running = None;
+        self.waiting = None;
+    }
+
     /// Ends conversions and discards their results.
     fn clear(&mut self) {
-        self.running = None;
+        self.stop();
         self.holding = Holding::default();
         self.is_ready = false;
+    }
+
+    /// Converts a voltage that the bus sees from now on.
+    fn hold(&mut self, volts: f64) {
+        self.overwritten += u64::from(self.holding.is_new);
+        let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);
+        let code = self.chip_fault.stuck_at.unwrap_or(converted);
+        self.holding = Holding { code, alarms, is_new: true };
+        self.is_ready = true;
     }
 
     /// All registers as after a reset, which stops conversions.
@@ -178,23 +201,34 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
         };
         running.count += 1;
         self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);
-        self.overwritten += u64::from(self.holding.is_new);
-        let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);
-        let code = self.chip_fault.stuck_at.unwrap_or(converted);
-        self.holding = Holding { code, alarms, is_new: true };
-        self.is_ready = true;
+        if self.course.is_clocked {
+            self.release();
+            self.waiting = Some(volts);
+        } else {
+            self.hold(volts);
+        }
     }
 
-    fn transact(&mut self, _: &mut E, transaction: &Transaction, reply: &mut [u8]) {
-        transaction::transact(self, transaction, reply);
+    fn select(&mut self, _: &mut E, _: Instant) {
+        self.course = Course::default();
+    }
+
+    fn exchange(&mut self, _: &mut E, exchange: &Exchange) -> u8 {
+        self.pass(exchange)
+    }
+
+    fn deselect(&mut self, _: &mut E, since: Instant, is_whole: bool) {
+        self.end(since, is_whole);
     }
 
     fn ready_line(&self) -> ReadyLine {
-        ReadyLine { active: self.is_ready, next: self.running.map(|running| running.next()) }
+        let active = self.is_ready || self.waiting.is_some();
+        ReadyLine { active, next: self.running.map(|running| running.next()) }
     }
 
     fn power_cycle(&mut self, now: Instant) {
         self.reset(now);
+        self.course = Course::default();
         self.operational = now + timing::POWER_UP;
         self.reference_since = now;
     }

@@ -4,67 +4,82 @@ use embassy_time::Instant;
 
 use super::frame::{Frame, frame};
 use super::{Ads1262, registers, timing};
-use crate::chip::{Transaction, bus_time};
+use crate::chip::Exchange;
 use crate::violation::Misuse;
 
 /// Where the chip is in a transaction.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 enum Phase {
     /// The next byte is a command.
+    #[default]
     Command,
     /// The next byte is the number of registers less one.
     Count { address: u8, is_write: bool },
     /// Registers come in or go out.
     Registers { address: u8, is_write: bool, left: u8 },
     /// A conversion goes out.
-    Data { frame: Frame, sent: usize },
+    Data { sent: u8 },
 }
 
 /// What goes out while no command's answer does: the shift register, over and over, if it was loaded
 /// since the bus last moved (figure 9-43); otherwise zeros.
+#[derive(Clone, Debug, Default)]
 struct Direct {
     /// What the shift register was loaded with, empty where it was not.
     frame: Frame,
-    /// Bytes that have gone out, repetitions counted.
-    sent: usize,
+    /// The byte of it that goes out next.
+    next: usize,
+    /// Whether a whole conversion has gone out.
+    is_read: bool,
 }
 
 impl Direct {
     /// The next byte that goes out.
     fn next(&mut self) -> u8 {
-        let length = self.frame.len().max(1);
-        let byte = self.frame.get(self.sent % length).copied().unwrap_or(0);
-        self.sent += 1;
+        let Some(byte) = self.frame.get(self.next).copied() else { return 0 };
+        self.next += 1;
+        if self.next == self.frame.len() {
+            self.next = 0;
+            self.is_read = true;
+        }
         byte
-    }
-
-    /// Whether a whole conversion has gone out.
-    fn is_read(&self) -> bool {
-        !self.frame.is_empty() && self.sent >= self.frame.len()
     }
 }
 
-/// Answers a transaction.
-pub(super) fn transact(chip: &mut Ads1262, transaction: &Transaction, reply: &mut [u8]) {
-    let Transaction { now, hertz, sent } = *transaction;
-    let first = sent.first().copied().unwrap_or(0);
-    if hertz > timing::GREATEST_BUS_HERTZ {
-        chip.violations.record(Misuse::ClockTooFast, first, now);
-    }
-    let mut direct = Direct { frame: chip.shift_register(), sent: 0 };
-    // The first falling edge of the clock lifts the data-ready line (TI, e2e.ti.com thread 634263).
-    chip.is_ready &= sent.is_empty();
-    let mut phase = Phase::Command;
-    for (index, (&byte, out)) in sent.iter().zip(reply).enumerate() {
-        *out = chip.output(&phase, &mut direct);
-        let span = [index, index + 1].map(|bytes| now + bus_time(bytes, hertz));
-        phase = chip.input(phase, byte, span);
-    }
-    chip.holding.is_new &= !direct.is_read();
-    chip.end(&phase, now);
+/// What has passed since the select line fell.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Course {
+    /// Whether a byte has passed.
+    pub(super) is_clocked: bool,
+    /// What the next byte is.
+    phase: Phase,
+    /// What goes out without a command.
+    direct: Direct,
+    /// The answer to the latest read command.
+    commanded: Frame,
 }
 
 impl Ads1262 {
+    /// Takes a byte and gives the one that goes out meanwhile.
+    pub(super) fn pass(&mut self, exchange: &Exchange) -> u8 {
+        if !self.course.is_clocked {
+            self.first_edge(exchange);
+        }
+        let reply = self.output();
+        self.course.phase = self.input(exchange);
+        reply
+    }
+
+    /// The first falling edge of the clock, which lifts the data-ready line (TI, e2e.ti.com thread 634263).
+    fn first_edge(&mut self, exchange: &Exchange) {
+        if exchange.hertz > timing::GREATEST_BUS_HERTZ {
+            self.violations.record(Misuse::ClockTooFast, exchange.sent, exchange.since);
+        }
+        self.course.direct.frame = self.shift_register();
+        self.course.is_clocked = true;
+        self.is_ready = false;
+    }
+
     /// What is read without a command: the newest conversion, where it was not read before.
     fn shift_register(&self) -> Frame {
         if self.is_ready { self.frame() } else { Frame::new() }
@@ -85,19 +100,22 @@ impl Ads1262 {
     }
 
     /// The byte that goes out while the next one comes in.
-    fn output(&self, phase: &Phase, direct: &mut Direct) -> u8 {
-        match phase {
+    fn output(&mut self) -> u8 {
+        match self.course.phase {
             Phase::Registers { address, is_write: false, .. } => {
-                self.registers.get(*address).unwrap_or(0)
+                self.registers.get(address).unwrap_or(0)
             }
-            Phase::Data { frame, sent } => frame.get(*sent).copied().unwrap_or(0),
-            _ => direct.next(),
+            Phase::Data { sent } => {
+                self.course.commanded.get(usize::from(sent)).copied().unwrap_or(0)
+            }
+            _ => self.course.direct.next(),
         }
     }
 
-    /// Takes a byte that came in between the two times.
-    fn input(&mut self, phase: Phase, byte: u8, [begin, end]: [Instant; 2]) -> Phase {
-        match phase {
+    /// Takes a byte; what the next one is.
+    fn input(&mut self, exchange: &Exchange) -> Phase {
+        let Exchange { sent: byte, begin, end, .. } = *exchange;
+        match self.course.phase {
             Phase::Command if begin < self.operational => {
                 self.violations.record(Misuse::TooEarly, byte, begin);
                 Phase::Command
@@ -118,8 +136,8 @@ impl Ads1262 {
                     None => Phase::Command,
                 }
             }
-            Phase::Data { frame, sent } if sent + 1 < frame.len() => {
-                Phase::Data { frame, sent: sent + 1 }
+            Phase::Data { sent } if usize::from(sent) + 1 < self.course.commanded.len() => {
+                Phase::Data { sent: sent + 1 }
             }
             Phase::Data { .. } => Phase::Command,
         }
@@ -134,11 +152,11 @@ impl Ads1262 {
                 self.operational = at + timing::RESET;
             }
             0x08 | 0x09 => self.start(byte, at),
-            0x0A | 0x0B => self.running = None,
+            0x0A | 0x0B => self.stop(),
             0x12 | 0x13 => {
-                let frame = self.commanded_frame();
+                self.course.commanded = self.commanded_frame();
                 self.holding.is_new = false;
-                return Phase::Data { frame, sent: 0 };
+                return Phase::Data { sent: 0 };
             }
             0x20..=0x3F => return Phase::Count { address: byte & 0x1F, is_write: false },
             0x40..=0x5F => return Phase::Count { address: byte & 0x1F, is_write: true },
@@ -175,13 +193,25 @@ impl Ads1262 {
         }
     }
 
+    /// Shows a conversion that has waited; what was read of the one before is read.
+    pub(super) fn release(&mut self) {
+        if core::mem::take(&mut self.course.direct).is_read {
+            self.holding.is_new = false;
+        }
+        if let Some(volts) = self.waiting.take() {
+            self.hold(volts);
+        }
+    }
+
     /// Select high: what was not completed is given up, and recorded as a wrong length.
-    fn end(&mut self, phase: &Phase, now: Instant) {
-        let address = match phase {
-            Phase::Command => return,
-            Phase::Count { address, .. } | Phase::Registers { address, .. } => *address,
+    pub(super) fn end(&mut self, since: Instant, is_whole: bool) {
+        self.release();
+        let address = match core::mem::take(&mut self.course).phase {
+            Phase::Command if is_whole => return,
+            Phase::Command => 0x00,
+            Phase::Count { address, .. } | Phase::Registers { address, .. } => address,
             Phase::Data { .. } => 0x12,
         };
-        self.violations.record(Misuse::Length, address, now);
+        self.violations.record(Misuse::Length, address, since);
     }
 }

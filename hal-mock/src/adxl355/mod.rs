@@ -6,7 +6,8 @@
 //! Not modelled, and without effect: high-pass filter, activity detection, external synchronisation.
 //!
 //! Where the data sheet promises nothing, the chip does the worst: a byte of data that is clocked
-//! out after a new sample has landed in the same transaction comes inverted, the busy bit is still
+//! out after a new sample has landed in the same transaction comes inverted (the sample itself is there after
+//! the transaction, or when the next one lands), the busy bit is still
 //! set at the first look after loading, and self-test mode lets outside forces through (the data
 //! sheet says both that it does and that it does not).
 
@@ -15,7 +16,7 @@ mod registers;
 
 use embassy_time::{Duration, Instant};
 
-use crate::chip::{ReadyLine, SpiChip, Transaction};
+use crate::chip::{Exchange, ReadyLine, SpiChip};
 use crate::clock::Cadence;
 use crate::environment::ForceInput;
 use crate::registers::{read_refusal, reset_bytes};
@@ -53,6 +54,30 @@ const FIFO_OVR: u8 = 0x04;
 /// The factory settings are being loaded (STATUS, `NVM_BUSY`).
 const NVM_BUSY: u8 = 0x10;
 
+/// What is felt at one time.
+#[derive(Clone, Copy, Debug)]
+struct Felt {
+    /// Specific force on the chip's axes, g.
+    force_g: [f64; 3],
+    /// Temperature, °C.
+    temperature_c: f64,
+}
+
+/// What has passed since the select line fell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// Bytes that have passed.
+    bytes: usize,
+    /// Bytes that the chip follows, the command included.
+    follows: usize,
+    /// Address and direction.
+    command: u8,
+    /// The register that is next.
+    address: u8,
+    /// When the first sample landed.
+    landed: Option<Instant>,
+}
+
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Adxl355 {
@@ -72,6 +97,10 @@ pub struct Adxl355 {
     counts: [i32; 3],
     /// The samples that were not read through the FIFO yet.
     fifo: Fifo,
+    /// The transaction under way.
+    course: Course,
+    /// A sample that has landed in its course.
+    waiting: Option<Felt>,
     /// What a self-test adds to each axis, g.
     pub self_test_response: [f64; 3],
     /// Software resets to come that load wrong factory settings (Reset Register, note: a race in silicon up
@@ -94,6 +123,8 @@ impl Adxl355 {
             pin_falls: None,
             counts: [0; 3],
             fifo: Fifo::default(),
+            course: Course::default(),
+            waiting: None,
             self_test_response: SELF_TEST_RESPONSE,
             spoiled_resets: 0,
             violations: Violations::default(),
@@ -108,6 +139,7 @@ impl Adxl355 {
             is_powering_up: false,
             shadow: if spoiled { FACTORY.map(|byte| byte ^ 0x11) } else { FACTORY },
             spoiled_resets: self.spoiled_resets.saturating_sub(1),
+            course: self.course,
             ..self.sane(now)
         };
         self.registers[usize::from(STATUS)] = NVM_BUSY;
@@ -128,23 +160,42 @@ impl Adxl355 {
         self.registers[usize::from(address)]
     }
 
-    /// Takes the sample that is due.
+    /// Takes the sample that is due; in the course of a transaction it waits.
     fn convert(&mut self, environment: &mut (impl ForceInput + ?Sized), mut measuring: Cadence) {
         let now = measuring.next();
-        let force = environment.force_g(now);
-        for (axis, force) in force.into_iter().enumerate() {
+        let force_g = environment.force_g(now);
+        let felt = Felt { force_g, temperature_c: environment.temperature_c(now) };
+        measuring.count += 1;
+        self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
+        self.measuring = Some(measuring);
+        if self.course.bytes == 0 {
+            self.store(&felt);
+        } else {
+            self.course.landed.get_or_insert(now);
+            self.release();
+            self.waiting = Some(felt);
+        }
+    }
+
+    /// Stores a sample that has waited.
+    fn release(&mut self) {
+        if let Some(felt) = self.waiting.take() {
+            self.store(&felt);
+        }
+    }
+
+    /// Stores a sample where the bus reads it.
+    fn store(&mut self, felt: &Felt) {
+        for (axis, force) in felt.force_g.into_iter().enumerate() {
             self.counts[axis] = self.count(axis, force);
         }
-        let temperature = 1885.0 - 9.05 * (environment.temperature_c(now) - 25.0);
+        let temperature = 1885.0 - 9.05 * (felt.temperature_c - 25.0);
         let [high, low] = (libm::round(temperature) as u16).min(0xFFF).to_be_bytes();
         self.registers[usize::from(TEMP2)] = high;
         self.registers[usize::from(TEMP1)] = low;
         let is_lost = self.fifo.push(self.counts);
         let status = &mut self.registers[usize::from(STATUS)];
         *status |= DATA_RDY | if is_lost { FIFO_OVR } else { 0 };
-        measuring.count += 1;
-        self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
-        self.measuring = Some(measuring);
     }
 
     /// A force of one axis, g, in counts.
@@ -164,7 +215,7 @@ impl Adxl355 {
             STATUS => self.read_status(now),
             FIFO_ENTRIES => self.fifo.entries(),
             XDATA3..=ZDATA1 => {
-                self.pin_falls = None;
+                self.lower_pin();
                 let byte = usize::from(address - XDATA3);
                 (self.counts[byte / 3] << 4 >> (16 - 8 * (byte % 3))) as u8
             }
@@ -182,26 +233,64 @@ impl Adxl355 {
         status
     }
 
-    /// Reads registers in a row. At the FIFO the address stays, and the FIFO gives its values only
-    /// where the transaction began there.
-    fn read_row(&mut self, first: u8, transaction: &Transaction, reply: &mut [u8]) {
-        let landing = self.measuring.map(|measuring| measuring.next());
-        let mut address = first;
-        for (index, byte) in reply.iter_mut().enumerate() {
-            if let Some(misuse) = read_refusal(MAP, address.into()) {
-                self.violations.record(misuse, address, transaction.now);
-            } else if address == FIFO_DATA {
-                self.pin_falls = None;
-                *byte = if first == FIFO_DATA { self.fifo.read() } else { 0 };
-                continue;
-            } else {
-                *byte = self.read(address, transaction.now);
-                if has_landed(landing, transaction, index + 2) {
-                    *byte ^= data_bits(address);
-                }
-            }
-            address = address.wrapping_add(1);
+    /// Lowers the data-ready pin, as a read of data does; what is read does not belong to a sample that waits.
+    fn lower_pin(&mut self) {
+        if self.waiting.is_none() {
+            self.pin_falls = None;
         }
+    }
+
+    /// Takes the first byte of a transaction.
+    fn begin(&mut self, exchange: &Exchange) {
+        let Exchange { sent: command, since, .. } = *exchange;
+        let address = command >> 1;
+        self.judge_clock(exchange, address);
+        let looks = command == STATUS << 1 | 1 && !self.is_powering_up;
+        let follows = if since >= self.ready_at { usize::MAX } else { 1 + usize::from(looks) };
+        self.course = Course { bytes: 1, follows, command, address, landed: None };
+    }
+
+    /// Reads or writes the next register, or records that the chip does not listen; while it loads its settings
+    /// only the status can be read, once in a transaction.
+    fn follow(&mut self, exchange: &Exchange) -> u8 {
+        let Course { bytes, follows, command, .. } = self.course;
+        self.course.bytes += 1;
+        if bytes >= follows {
+            if bytes == follows {
+                self.violations.record(Misuse::TooEarly, command >> 1, exchange.since);
+            }
+            0
+        } else if command & 1 == 1 {
+            self.read_next(exchange)
+        } else {
+            let address = self.course.address;
+            self.course.address = address.wrapping_add(1);
+            self.write(address, exchange.sent, exchange.since);
+            0
+        }
+    }
+
+    /// Reads the next register of a row. At the FIFO the address stays, and the FIFO gives its values only
+    /// where the transaction began there.
+    fn read_next(&mut self, exchange: &Exchange) -> u8 {
+        let address = self.course.address;
+        if address == FIFO_DATA {
+            self.lower_pin();
+            return if self.course.command >> 1 == FIFO_DATA { self.fifo.read() } else { 0 };
+        }
+        self.course.address = address.wrapping_add(1);
+        if let Some(misuse) = read_refusal(MAP, address.into()) {
+            self.violations.record(misuse, address, exchange.since);
+            return 0;
+        }
+        let byte = self.read(address, exchange.since);
+        if self.has_landed_before(exchange.end) { byte ^ data_bits(address) } else { byte }
+    }
+
+    /// Whether a new sample lands in the course of the transaction before `end`.
+    fn has_landed_before(&self, end: Instant) -> bool {
+        let next = self.measuring.map(|measuring| measuring.next());
+        self.course.landed.or(next).is_some_and(|at| at < end)
     }
 
     /// Writes a register, or records why it must not be written.
@@ -227,6 +316,7 @@ impl Adxl355 {
             self.measuring.get_or_insert(Cadence { since: now, count: 1, hertz });
         } else {
             self.measuring = None;
+            self.waiting = None;
             self.pin_falls = None;
             self.counts = [0; 3];
             self.fifo = Fifo::default();
@@ -235,31 +325,13 @@ impl Adxl355 {
     }
 
     /// Records a bus clock beyond what the chip allows.
-    fn judge_clock(&mut self, transaction: &Transaction, address: u8) {
-        if transaction.hertz > *CLOCKS.end() {
-            self.violations.record(Misuse::ClockTooFast, address, transaction.now);
-        } else if transaction.hertz < *CLOCKS.start() {
-            self.violations.record(Misuse::ForbiddenValue, address, transaction.now);
+    fn judge_clock(&mut self, exchange: &Exchange, address: u8) {
+        if exchange.hertz > *CLOCKS.end() {
+            self.violations.record(Misuse::ClockTooFast, address, exchange.since);
+        } else if exchange.hertz < *CLOCKS.start() {
+            self.violations.record(Misuse::ForbiddenValue, address, exchange.since);
         }
     }
-
-    /// Whether the chip listens; while it loads its settings only the status can be read.
-    fn listens(&mut self, command: u8, length: usize, now: Instant) -> bool {
-        let is_status = command == STATUS << 1 | 1 && length == 1 && !self.is_powering_up;
-        let listens = now >= self.ready_at || is_status;
-        if !listens {
-            self.violations.record(Misuse::TooEarly, command >> 1, now);
-        }
-        listens
-    }
-}
-
-/// Whether a new sample lands before `bytes` bytes of a transaction have passed.
-fn has_landed(landing: Option<Instant>, transaction: &Transaction, bytes: usize) -> bool {
-    landing.is_some_and(|at| {
-        let wait = at.as_micros().saturating_sub(transaction.now.as_micros());
-        wait * u64::from(transaction.hertz) < bytes as u64 * 8_000_000
-    })
 }
 
 /// The bits of a register that a new sample changes.
@@ -285,22 +357,23 @@ impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
         }
     }
 
-    fn transact(&mut self, _: &mut E, transaction: &Transaction, reply: &mut [u8]) {
-        reply.fill(0);
-        let now = transaction.now;
-        let [command, data @ ..] = transaction.sent else { return };
-        let (command, address) = (*command, command >> 1);
-        self.judge_clock(transaction, address);
-        if data.is_empty() {
-            self.violations.record(Misuse::Length, address, now);
-        } else if self.listens(command, data.len(), now) {
-            if command & 1 == 1 {
-                self.read_row(address, transaction, &mut reply[1..]);
-            } else {
-                for (address, value) in (address..).zip(data) {
-                    self.write(address, *value, now);
-                }
-            }
+    fn select(&mut self, _: &mut E, _: Instant) {
+        self.course = Course::default();
+    }
+
+    fn exchange(&mut self, _: &mut E, exchange: &Exchange) -> u8 {
+        if self.course.bytes == 0 {
+            self.begin(exchange);
+            return 0;
+        }
+        self.follow(exchange)
+    }
+
+    fn deselect(&mut self, _: &mut E, since: Instant, is_whole: bool) {
+        self.release();
+        let Course { bytes, command, .. } = core::mem::take(&mut self.course);
+        if bytes == 1 || !is_whole {
+            self.violations.record(Misuse::Length, command >> 1, since);
         }
     }
 

@@ -10,7 +10,7 @@ mod registers;
 use embassy_time::{Duration, Instant};
 
 use crate::checksum::remainder;
-use crate::chip::{SpiChip, Transaction};
+use crate::chip::{Exchange, SpiChip};
 use crate::environment::ShaftAngle;
 use crate::registers::{read_refusal, reset_bytes, write_refusal};
 use crate::violation::{Misuse, Violations};
@@ -38,6 +38,49 @@ const DELAY: f64 = 10e-6;
 /// The answer of a chip that takes a command for its EEPROM.
 const ACKNOWLEDGE: u8 = 0x55;
 
+/// Commands (data sheet, SPI Interface), the upper four bits of a first byte: a register is read.
+const READ: u8 = 0x3;
+/// A register in RAM is written.
+const WRITE: u8 = 0x6;
+/// Angle, status and checksum are read in a row.
+const BURST: u8 = 0xA;
+/// The angle of this moment becomes zero.
+const SET_ZERO: u8 = 0x5;
+/// The EEPROM is programmed.
+const PROGRAM: u8 = 0xC;
+
+/// What has passed since the select line fell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// Bytes that have passed; it stops at its limit.
+    bytes: u8,
+    /// The first three of them: command and address, then what is written.
+    sent: [u8; 3],
+    /// What goes out from the third byte on.
+    reply: [u8; 4],
+    /// Where the shaft stood when the command came, turns; of a command that asks for it.
+    turns: f64,
+    /// Whether the chip does not follow: the clock is too fast, or it is still starting.
+    is_refused: bool,
+}
+
+impl Course {
+    /// The command, four bits.
+    const fn command(&self) -> u8 {
+        self.sent[0] >> 4
+    }
+
+    /// The register's address, twelve bits.
+    const fn address(&self) -> u16 {
+        u16::from_be_bytes([self.sent[0] & 0x0F, self.sent[1]])
+    }
+
+    /// Whether it is as long as its command wants it.
+    const fn is_complete(&self) -> bool {
+        self.bytes == if self.command() == BURST { 6 } else { 3 }
+    }
+}
+
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Mt6835 {
@@ -59,6 +102,8 @@ pub struct Mt6835 {
     pub has_undervoltage: bool,
     /// Bits of the next checksum that go out wrong.
     pub spoiled: u8,
+    /// The transaction under way.
+    course: Course,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -77,6 +122,7 @@ impl Mt6835 {
             seen: None,
             has_undervoltage: false,
             spoiled: 0,
+            course: Course::default(),
             violations: Violations::default(),
         }
     }
@@ -86,9 +132,9 @@ impl Mt6835 {
         self.ram.get(usize::from(address)).copied().unwrap_or(0)
     }
 
-    /// Angle, status and checksum of this moment.
-    fn frame(&mut self, environment: &mut impl ShaftAngle, now: Instant) -> [u8; 4] {
-        let turns = environment.shaft_turns(now);
+    /// Angle, status and checksum of the moment of the command.
+    fn frame(&mut self, environment: &impl ShaftAngle, now: Instant) -> [u8; 4] {
+        let turns = self.course.turns;
         let is_fast = self.seen.replace((now, turns)).is_some_and(|(then, before)| {
             let seconds = (now.as_micros() - then.as_micros()) as f64 * 1e-6;
             libm::fabs(turns - before) > FASTEST_SHAFT * (seconds + DELAY)
@@ -117,7 +163,7 @@ impl Mt6835 {
     }
 
     /// What a read of a register gives.
-    fn read(&mut self, environment: &mut impl ShaftAngle, address: u16, now: Instant) -> u8 {
+    fn read(&mut self, environment: &impl ShaftAngle, address: u16, now: Instant) -> u8 {
         match address {
             ANGLE..=CRC => self.frame(environment, now)[usize::from(address - ANGLE)],
             CALIBRATION => self.calibration << 6,
@@ -140,40 +186,68 @@ impl Mt6835 {
         }
     }
 
-    /// Takes the angle of this moment as zero, in RAM.
-    fn set_zero(&mut self, environment: &mut impl ShaftAngle, now: Instant) -> u8 {
+    /// Takes the angle of the moment of the command as zero, in RAM.
+    fn set_zero(&mut self, turns: f64) {
         self.ram[usize::from(ZERO_HIGH)] = 0;
         self.ram[usize::from(ZERO_LOW)] &= 0x0F;
-        let turns = environment.shaft_turns(now);
         let zero = (self.steps(turns) >> 9) as u16;
         self.ram[usize::from(ZERO_HIGH)] = (zero >> 4) as u8;
         self.ram[usize::from(ZERO_LOW)] |= (zero << 4) as u8;
-        ACKNOWLEDGE
     }
 
     /// Copies the RAM to the EEPROM, which takes [`PROGRAMMING`].
-    fn program(&mut self, now: Instant) -> u8 {
+    fn program(&mut self, now: Instant) {
         self.eeprom = self.ram;
         self.programmings += 1;
         self.ready_at = now + PROGRAMMING;
-        ACKNOWLEDGE
     }
 
-    /// Whether a transaction is one that the chip can follow.
-    fn is_sound(&mut self, transaction: &Transaction) -> bool {
-        let command = transaction.sent.first().copied().unwrap_or(0);
-        let length = if command >> 4 == 0xA { 6 } else { 3 };
-        let misuse = if transaction.hertz > FASTEST {
+    /// Looks at the first byte of a transaction: too fast a clock, too early.
+    fn judge(&mut self, exchange: &Exchange) {
+        let misuse = if exchange.hertz > FASTEST {
             Misuse::ClockTooFast
-        } else if transaction.now < self.ready_at {
+        } else if exchange.since < self.ready_at {
             Misuse::TooEarly
-        } else if transaction.sent.len() != length {
-            Misuse::Length
         } else {
-            return true;
+            return;
         };
-        self.violations.record(misuse, command, transaction.now);
-        false
+        self.course.is_refused = true;
+        self.violations.record(misuse, exchange.sent, exchange.since);
+    }
+
+    /// Whether the bytes so far ask for an angle of their moment.
+    fn asks(&self) -> bool {
+        match (self.course.bytes, self.course.command()) {
+            (1, BURST | SET_ZERO) => true,
+            (2, READ) => (ANGLE..=CRC).contains(&self.course.address()),
+            _ => false,
+        }
+    }
+
+    /// What goes out from the third byte on.
+    fn reply(&mut self, environment: &impl ShaftAngle, now: Instant) -> [u8; 4] {
+        let address = self.course.address();
+        match (self.course.command(), address) {
+            (READ, _) => [self.read(environment, address, now), 0, 0, 0],
+            (BURST, ANGLE) => self.frame(environment, now),
+            (SET_ZERO | PROGRAM, 0) => [ACKNOWLEDGE, 0, 0, 0],
+            _ => [0; 4],
+        }
+    }
+
+    /// Executes the command of a transaction that was long enough.
+    fn execute(&mut self, course: &Course, now: Instant) {
+        let [first, _, third] = course.sent;
+        match (course.command(), course.address()) {
+            (READ, _) | (BURST, ANGLE) => {}
+            (WRITE, address) => self.write(address, third, now),
+            (SET_ZERO, 0) => self.set_zero(course.turns),
+            (PROGRAM, 0) => self.program(now),
+            (SET_ZERO | BURST | PROGRAM, _) => {
+                self.violations.record(Misuse::ForbiddenValue, first, now);
+            }
+            _ => self.violations.record(Misuse::UnknownCommand, first, now),
+        }
     }
 }
 
@@ -184,22 +258,41 @@ impl<E: ShaftAngle> SpiChip<E> for Mt6835 {
 
     fn event(&mut self, _: &mut E) {}
 
-    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]) {
-        reply.fill(0);
-        let now = transaction.now;
-        if !self.is_sound(transaction) {
+    fn select(&mut self, _: &mut E, _: Instant) {
+        self.course = Course::default();
+    }
+
+    fn exchange(&mut self, environment: &mut E, exchange: &Exchange) -> u8 {
+        let index = usize::from(self.course.bytes);
+        if index == 0 {
+            self.judge(exchange);
+        }
+        if let Some(byte) = self.course.sent.get_mut(index) {
+            *byte = exchange.sent;
+        }
+        self.course.bytes = self.course.bytes.saturating_add(1);
+        if self.course.is_refused {
+            return 0;
+        }
+        if self.asks() {
+            self.course.turns = environment.shaft_turns(exchange.since);
+        }
+        if index == 2 {
+            self.course.reply = self.reply(environment, exchange.since);
+        }
+        index.checked_sub(2).and_then(|byte| self.course.reply.get(byte)).copied().unwrap_or(0)
+    }
+
+    /// What a command changes it changes now, where the transaction was as long as it must be.
+    fn deselect(&mut self, _: &mut E, since: Instant, is_whole: bool) {
+        let course = core::mem::take(&mut self.course);
+        if course.is_refused {
             return;
         }
-        let [first, second, third, ..] = *transaction.sent else { return };
-        let address = u16::from_be_bytes([first & 0x0F, second]);
-        match (first >> 4, address) {
-            (0x3, _) => reply[2] = self.read(environment, address, now),
-            (0x6, _) => self.write(address, third, now),
-            (0xA, ANGLE) => reply[2..6].copy_from_slice(&self.frame(environment, now)),
-            (0x5, 0) => reply[2] = self.set_zero(environment, now),
-            (0xC, 0) => reply[2] = self.program(now),
-            (0x5 | 0xA | 0xC, _) => self.violations.record(Misuse::ForbiddenValue, first, now),
-            _ => self.violations.record(Misuse::UnknownCommand, first, now),
+        if is_whole && course.is_complete() {
+            self.execute(&course, since);
+        } else {
+            self.violations.record(Misuse::Length, course.sent[0], since);
         }
     }
 

@@ -25,7 +25,7 @@ use embassy_time::{Duration, Instant};
 use self::demand::{Demand, FRACTION_BITS};
 use self::map::{ADDRESSES, MAP, address};
 use self::ramp::{Motion, Ramp};
-use crate::chip::{SpiChip, Transaction};
+use crate::chip::{Exchange, SpiChip};
 use crate::environment::Mechanics;
 use crate::registers::{self, Access, Registers};
 use crate::violation::{Misuse, Violations};
@@ -40,7 +40,7 @@ pub const FREE_RUNNING: u32 = 350;
 const RESET_DELAY: Duration = Duration::from_micros(10);
 
 /// Bytes of a datagram (4.1).
-const DATAGRAM: usize = 5;
+const DATAGRAM: u8 = 5;
 
 /// Microsteps in one electrical period: where the field stands after a reset.
 const PERIOD: i64 = 1024;
@@ -102,6 +102,19 @@ pub enum ChipFault {
     Foreign,
 }
 
+/// What has passed since the select line fell.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// The forty bits that go out and come in, the next one in the highest of 64 bits.
+    shift: u64,
+    /// Bytes that have passed; it stops at its limit.
+    bytes: u8,
+    /// The first of them.
+    command: u8,
+    /// Whether the chip was still starting.
+    is_early: bool,
+}
+
 /// The chip.
 #[derive(Clone, Debug)]
 pub struct Tmc5160 {
@@ -139,6 +152,8 @@ pub struct Tmc5160 {
     pending: u32,
     /// The status byte of the next datagram (4.1.2).
     latched: u8,
+    /// The transaction under way.
+    course: Course,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -165,6 +180,7 @@ impl Tmc5160 {
             remainder: 0,
             pending: 0,
             latched: 0,
+            course: Course::default(),
             violations: Violations::default(),
         };
         chip.ramp.ask(Demand::of(&chip.registers));
@@ -284,21 +300,16 @@ impl Tmc5160 {
         self.violations.record(misuse, address, self.at);
     }
 
-    /// Whether a transaction is one; what is wrong with it is recorded.
-    fn accepts(&mut self, transaction: &Transaction) -> bool {
-        let command = transaction.sent.first().copied().unwrap_or_default();
-        if transaction.hertz > self.oscillator.bus_hertz() {
-            self.violate(Misuse::ClockTooFast, command);
+    /// Looks at the first byte of a transaction: too fast a clock, too early.
+    fn judge(&mut self, exchange: &Exchange) {
+        self.course.command = exchange.sent;
+        if exchange.hertz > self.oscillator.bus_hertz() {
+            self.violate(Misuse::ClockTooFast, exchange.sent);
         }
-        let early = transaction.now < self.started + RESET_DELAY;
-        if early {
-            self.violate(Misuse::TooEarly, command);
+        self.course.is_early = exchange.since < self.started + RESET_DELAY;
+        if self.course.is_early {
+            self.violate(Misuse::TooEarly, exchange.sent);
         }
-        let whole = transaction.sent.len() == DATAGRAM;
-        if !whole {
-            self.violate(Misuse::Length, command);
-        }
-        whole && !early
     }
 }
 
@@ -311,23 +322,38 @@ impl<E: Mechanics> SpiChip<E> for Tmc5160 {
         self.settle(environment, self.at + STEP);
     }
 
-    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]) {
-        self.settle(environment, transaction.now);
-        reply.fill(0);
-        if !self.accepts(transaction) {
-            return;
+    fn select(&mut self, environment: &mut E, now: Instant) {
+        self.settle(environment, now);
+        let shift = u64::from(self.latched) << 56 | u64::from(self.pending) << 24;
+        self.course = Course { shift, ..Course::default() };
+    }
+
+    /// Shifts a byte through: what came in leaves again five bytes later (4.3).
+    fn exchange(&mut self, _: &mut E, exchange: &Exchange) -> u8 {
+        if self.course.bytes == 0 {
+            self.judge(exchange);
         }
-        if let (Some((status, data)), [command, sent @ ..]) =
-            (reply.split_first_mut(), transaction.sent)
-        {
-            *status = self.latched;
-            data.copy_from_slice(&self.pending.to_be_bytes());
-            let word = sent.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
-            self.pending = self.execute(*command, word);
+        let Course { shift, bytes, is_early, .. } = &mut self.course;
+        let reply = (*shift >> 56) as u8;
+        *shift = *shift << 8 | u64::from(exchange.sent) << 24;
+        *bytes = bytes.saturating_add(1);
+        if *is_early { 0 } else { reply }
+    }
+
+    /// Executes a whole datagram (4.1).
+    fn deselect(&mut self, environment: &mut E, since: Instant, is_whole: bool) {
+        let Course { shift, bytes, command, is_early } = core::mem::take(&mut self.course);
+        if since > self.at {
+            self.settle(environment, since);
         }
-        self.note();
-        self.latch();
-        self.drive(environment);
+        if !is_whole || bytes != DATAGRAM {
+            self.violate(Misuse::Length, command);
+        } else if !is_early {
+            self.pending = self.execute(command, (shift >> 24) as u32);
+            self.note();
+            self.latch();
+            self.drive(environment);
+        }
     }
 
     fn power_cycle(&mut self, now: Instant) {

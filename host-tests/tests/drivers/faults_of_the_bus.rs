@@ -11,7 +11,7 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{Error, ErrorKind, ErrorType, Operation, SpiDevice};
-use hal_mock::chip::{ReadyLine, Select, Single, SpiChip, Transaction};
+use hal_mock::chip::{Exchange, ReadyLine, Select, Single, SpiChip};
 use hal_mock::fault::{BusFault, FaultPlan, FaultyReady, FaultySpi, When};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Violations;
@@ -39,12 +39,19 @@ impl SpiChip<()> for Counter {
         self.edges += 1;
     }
 
-    fn transact(&mut self, (): &mut (), transaction: &Transaction, reply: &mut [u8]) {
-        self.heard.push(transaction.sent.to_vec());
-        let answer = [self.heard.len() as u8].into_iter();
-        let answer = answer.chain(transaction.sent.iter().map(|byte| !byte));
-        reply.iter_mut().zip(answer).for_each(|(byte, answer)| *byte = answer);
+    fn select(&mut self, (): &mut (), _: Instant) {
+        self.heard.push(Vec::new());
     }
+
+    fn exchange(&mut self, (): &mut (), exchange: &Exchange) -> u8 {
+        let count = self.heard.len() as u8;
+        let heard = self.heard.last_mut().expect("it is selected");
+        let answer = heard.last().map_or(count, |byte| !byte);
+        heard.push(exchange.sent);
+        answer
+    }
+
+    fn deselect(&mut self, (): &mut (), _: Instant, _: bool) {}
 
     fn ready_line(&self) -> ReadyLine {
         ReadyLine { active: true, next: self.next_event() }

@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 use hal_mock::board::{StageBoard, StageChips};
-use hal_mock::chip::{ReadyLine, Rig, Select, SpiChip, Transaction};
+use hal_mock::chip::{Exchange, ReadyLine, Rig, Select, SpiChip, Transaction};
 use hal_mock::environment::{Mechanics, ShaftAngle};
 use hal_mock::fault::Blackout;
 use hal_mock::plant::{Plant, PlantConfiguration};
@@ -18,6 +18,7 @@ struct Metronome {
     turns_per_s: f64,
     seen: Vec<(u64, f64)>,
     restarts: Vec<u64>,
+    command: Option<u8>,
     violations: Violations,
 }
 
@@ -42,9 +43,17 @@ impl SpiChip<Plant<'_>> for Metronome {
         self.next += self.period;
     }
 
-    fn transact(&mut self, plant: &mut Plant, transaction: &Transaction, reply: &mut [u8]) {
-        self.violations.record(Misuse::Length, transaction.sent[0], transaction.now);
-        reply.fill((plant.shaft_turns(transaction.now) * 100.0).round() as u8);
+    fn select(&mut self, _: &mut Plant, _: Instant) {
+        self.command = None;
+    }
+
+    fn exchange(&mut self, plant: &mut Plant, exchange: &Exchange) -> u8 {
+        self.command.get_or_insert(exchange.sent);
+        (plant.shaft_turns(exchange.since) * 100.0).round() as u8
+    }
+
+    fn deselect(&mut self, _: &mut Plant, since: Instant, _: bool) {
+        self.violations.record(Misuse::Length, self.command.unwrap_or(0), since);
     }
 
     fn ready_line(&self) -> ReadyLine {
