@@ -3,8 +3,7 @@
 use orientation::device::Device;
 
 /// Counters since the start; each saturates at the limit of its type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Health {
     /// Samples that were acquired.
     pub samples: u32,

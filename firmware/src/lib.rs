@@ -56,6 +56,7 @@ pub mod watch;
 pub mod configuration;
 pub mod platform;
 pub mod run;
+pub mod settings;
 pub mod shared;
 pub mod spin;
 pub mod storage;

@@ -1,5 +1,5 @@
 //! Data kept over a loss of supply: the axis misalignment of the gyro on a turntable, one for each
-//! speed, with date and temperature; and the heading of a vehicle at rest.
+//! speed, with date and temperature; the heading of a vehicle at rest; and the [`settings`].
 //!
 //! The axis misalignment is estimated by rate-modulated turns; a recent one makes these turns
 //! unnecessary. Images without storage contain none of this code.
@@ -22,12 +22,14 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::event::Event;
 use crate::ports::{Recorder, Store};
+use crate::settings;
 use crate::shared::{Channels, Shared, discard};
 
 /// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
 const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
-/// Size of the longer of the two kinds of item, bytes.
-const LONGEST: usize = if BYTES > Heading::BYTES { BYTES } else { Heading::BYTES };
+/// Size of the longest kind of item, bytes: a record of settings.
+const LONGEST: usize = settings::BYTES;
+const _: () = assert!(LONGEST >= BYTES && LONGEST >= Heading::BYTES);
 
 /// A store in pages of a flash that are reserved for it. A new item is written beside the old one;
 /// until it is complete, the old one is valid.
@@ -76,7 +78,8 @@ impl<T: Store> Store for &SharedStore<T> {
     }
 }
 
-/// The slot of the heading; the slots of axis misalignments are the indices of speeds.
+/// The slot of the heading; the slots of axis misalignments are the indices of speeds, that of the
+/// settings is [`settings::SLOT`].
 pub const HEADING: u8 = 0x80;
 
 /// The date, and the permitted age of a calibration.

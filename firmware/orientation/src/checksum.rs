@@ -1,7 +1,7 @@
 //! Checksum of the data kept in flash: CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB8 8320,
 //! initial value and final XOR all ones). The saved calibration, the reference table (etalon) and
-//! the stored heading are all guarded by it, so one routine serves every block. A record in flash
-//! is a version, numbers of eight bytes and the checksum of both, all little-endian.
+//! the stored heading are all guarded by it, so one routine serves every block, the settings of an
+//! instrument too. A record of numbers in flash is a version, numbers of eight bytes and the checksum of both, all little-endian.
 
 /// Remainders of the reflected IEEE 802.3 polynomial for four bits: a table of 64 bytes, where one
 /// for whole bytes would take 1 KB of flash.
@@ -50,7 +50,7 @@ pub(crate) fn record<const BYTES: usize>(version: u32, numbers: &[u64]) -> [u8; 
     for (place, number) in bytes[4..].chunks_exact_mut(8).zip(numbers) {
         place.copy_from_slice(&number.to_le_bytes());
     }
-    let checksum = of_bytes(&bytes[..BYTES - 4]);
+    let checksum = crc32_of_bytes(&bytes[..BYTES - 4]);
     bytes[BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
     bytes
 }
@@ -59,15 +59,16 @@ pub(crate) fn record<const BYTES: usize>(version: u32, numbers: &[u64]) -> [u8; 
 pub(crate) fn numbers<const NUMBERS: usize>(version: u32, bytes: &[u8]) -> Option<[u64; NUMBERS]> {
     let (kept, checksum) = bytes.split_last_chunk()?;
     let (found, numbers) = kept.split_first_chunk()?;
-    let is_sound = u32::from_le_bytes(*checksum) == of_bytes(kept);
+    let is_sound = u32::from_le_bytes(*checksum) == crc32_of_bytes(kept);
     let (numbers, rest) = numbers.as_chunks();
     let is_whole = is_sound && rest.is_empty() && u32::from_le_bytes(*found) == version;
     let numbers: &[[u8; 8]; NUMBERS] = numbers.try_into().ok().filter(|_| is_whole)?;
     Some(numbers.map(u64::from_le_bytes))
 }
 
-/// The CRC-32 of whole words of bytes.
-fn of_bytes(bytes: &[u8]) -> u32 {
+/// The CRC-32 of bytes, whose number is a multiple of four.
+#[must_use]
+pub fn crc32_of_bytes(bytes: &[u8]) -> u32 {
     let (words, _) = bytes.as_chunks();
     crc32(words.iter().map(|word| u32::from_le_bytes(*word)))
 }

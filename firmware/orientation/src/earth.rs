@@ -8,7 +8,7 @@ pub const EARTH_RATE: f64 = 7.292_115e-5;
 
 /// Greatest latitude at which an azimuth is determined, rad (85°): beyond it the horizontal Earth
 /// rate is below 9 % of the whole.
-pub(crate) const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
+pub const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
 
 /// Equatorial radius of the ellipsoid, m (WGS84).
 const SEMI_MAJOR_AXIS: f64 = 6_378_137.0;

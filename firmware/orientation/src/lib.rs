@@ -130,7 +130,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-mod checksum;
+pub mod checksum;
 pub mod units;
 pub mod words;
 

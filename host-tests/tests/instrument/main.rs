@@ -12,6 +12,7 @@ mod keeping_instrument;
 mod mount;
 mod recordings;
 mod replaying;
+mod settings;
 mod spin;
 mod stops_instrument;
 mod stops_instrument_faults;

@@ -48,14 +48,14 @@ pub(crate) const LONGEST: f64 = 1e6;
 /// Shortest and longest sample period, s.
 pub(crate) const PERIODS: [f64; 2] = [1e-6, 1e3];
 /// Greatest quantity for which no better limit is known: its square is finite with room to spare.
-pub(crate) const GREATEST: f64 = 1e9;
+pub const GREATEST: f64 = 1e9;
 
 /// Refuses the first quantity, given by name, value and range, that is out of its range or not a number.
 ///
 /// # Errors
 /// [`SetupError::OutOfRange`].
 #[inline(never)]
-pub(crate) fn check_ranges(quantities: &[(&'static str, f64, [f64; 2])]) -> Result<(), SetupError> {
+pub fn check_ranges(quantities: &[(&'static str, f64, [f64; 2])]) -> Result<(), SetupError> {
     for &(name, value, range @ [least, greatest]) in quantities {
         if !(least..=greatest).contains(&value) {
             return Err(SetupError::OutOfRange(Quantity { name, value, range }));

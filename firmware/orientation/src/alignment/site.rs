@@ -83,7 +83,7 @@ impl Site {
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`].
-    pub(crate) fn check(&self) -> Result<(), SetupError> {
+    pub fn check(&self) -> Result<(), SetupError> {
         let [along, across] = self.g_sensitivity.map(|part| part.0);
         let (positive, either) = ([0.0, GREATEST], [-GREATEST, GREATEST]);
         let [q, n, b, k, r] = self.noise.model().coefficients();
