@@ -9,7 +9,7 @@
 
 use embassy_time::Instant;
 
-use crate::chip::{Exchange, ReadyLine, Rig, Select, SpiChip, Transaction};
+use crate::chip::{BusLimits, Exchange, ReadyLine, Rig, Select, SpiChip, Transaction};
 use crate::fault::Blackout;
 use crate::violation::{Violation, Violations};
 
@@ -29,6 +29,8 @@ pub enum Task<'t, 'b> {
     Exchange(&'t Exchange, &'t mut u8),
     /// Has the select line rise, for an access of a moment, after a whole byte or not.
     Deselect(Instant, bool),
+    /// Learns what the chip asks of its bus.
+    Limits(&'t mut BusLimits),
     /// Looks at the data-ready line.
     Line(&'t mut ReadyLine),
     /// Takes the supply away for a moment.
@@ -47,6 +49,7 @@ impl Task<'_, '_> {
             Self::Select(now) => chip.select(environment, now),
             Self::Exchange(exchange, reply) => *reply = chip.exchange(environment, exchange),
             Self::Deselect(since, is_whole) => chip.deselect(environment, since, is_whole),
+            Self::Limits(limits) => *limits = chip.limits(),
             Self::Line(line) => *line = chip.ready_line(),
             Self::Restart(now) => chip.power_cycle(now),
             Self::Violations(found) => *found = Some(chip.violations().clone()),
@@ -162,6 +165,12 @@ impl<P, C: Chips<P>> Rig for Board<'_, P, C> {
     fn deselect(&mut self, select: Select, now: Instant, since: Instant, is_whole: bool) {
         self.advance(now);
         self.with(select, Task::Deselect(since, is_whole));
+    }
+
+    fn limits(&mut self, select: Select) -> BusLimits {
+        let mut limits = BusLimits::default();
+        self.with(select, Task::Limits(&mut limits));
+        limits
     }
 
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine {

@@ -7,6 +7,7 @@
 //! had taken no time.
 
 use embassy_time::{Duration, Instant};
+use embedded_hal::spi::Mode;
 
 use crate::violation::Violations;
 
@@ -76,6 +77,19 @@ pub(crate) fn bus_time(bytes: usize, hertz: u32) -> Duration {
     })
 }
 
+/// What a chip asks of its bus beside a clock that is not too fast, as its data sheet has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BusLimits {
+    /// The mode that the chip has; none where it takes any.
+    pub mode: Option<Mode>,
+    /// Least time from the fall of select to the first edge of the clock, ns.
+    pub select_to_clock_ns: u32,
+    /// Least time from the last edge of the clock to the rise of select, ns.
+    pub clock_to_deselect_ns: u32,
+    /// Least time from the rise of select to its next fall, ns.
+    pub deselected_ns: u32,
+}
+
 /// A data-ready line of a chip at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadyLine {
@@ -118,6 +132,11 @@ pub trait SpiChip<E: ?Sized> {
         self.deselect(environment, now, true);
     }
 
+    /// What the chip asks of its bus; without limits of its own it takes any.
+    fn limits(&self) -> BusLimits {
+        BusLimits::default()
+    }
+
     /// The data-ready line; chips without one never become ready.
     fn ready_line(&self) -> ReadyLine {
         ReadyLine::default()
@@ -151,6 +170,9 @@ pub trait Rig {
 
     /// Has the select line of a chip rise at `now` ([`SpiChip::deselect`]).
     fn deselect(&mut self, select: Select, now: Instant, since: Instant, is_whole: bool);
+
+    /// What a chip asks of its bus.
+    fn limits(&mut self, select: Select) -> BusLimits;
 
     /// The data-ready line of the selected chip at `now`.
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine;
@@ -187,6 +209,10 @@ impl<C: SpiChip<E>, E> Rig for Single<C, E> {
     fn deselect(&mut self, _: Select, now: Instant, since: Instant, is_whole: bool) {
         advance(&mut self.chip, &mut self.environment, now);
         self.chip.deselect(&mut self.environment, since, is_whole);
+    }
+
+    fn limits(&mut self, _: Select) -> BusLimits {
+        self.chip.limits()
     }
 
     fn ready_line(&mut self, _: Select, now: Instant) -> ReadyLine {

@@ -2,6 +2,10 @@
 //!
 //! A transfer takes the time of its bits at the bus clock; the chip sees it when it begins. A chip that
 //! is not addressed, or not ready, does not acknowledge.
+//!
+//! A chip answers condition by condition and byte by byte ([`I2cChip::start`] to [`I2cChip::stop`]); a
+//! transfer ([`I2cChip::transfer`]) is a run of these without a pause, so that both ways go through the
+//! same registers and the same checks.
 
 use core::cell::RefCell;
 
@@ -35,6 +39,19 @@ impl Transfer<'_> {
     }
 }
 
+/// A start condition, the first one or a repeated one, and the address that follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// When the condition came.
+    pub now: Instant,
+    /// Bus clock, Hz.
+    pub hertz: u32,
+    /// The 7-bit address.
+    pub address: u8,
+    /// Whether bytes are read; otherwise they are written.
+    pub is_read: bool,
+}
+
 /// A chip on an I²C bus in an environment `E`.
 pub trait I2cChip<E> {
     /// When the chip next does something of itself, such as a conversion.
@@ -43,9 +60,42 @@ pub trait I2cChip<E> {
     /// Does what is due at [`Self::next_event`].
     fn event(&mut self, environment: &mut E);
 
-    /// Takes a transfer and answers it into `reply`; returns whether it acknowledged. All events up to the
+    /// Takes a start condition with an address; returns whether the chip acknowledged. All events up to then
+    /// have happened.
+    fn start(&mut self, environment: &mut E, start: &Start) -> bool;
+
+    /// Takes a byte that the controller writes; returns whether the chip acknowledged. It belongs to `since`:
+    /// when the transfer began, later by all pauses in it.
+    fn write(&mut self, environment: &mut E, byte: u8, since: Instant) -> bool;
+
+    /// Gives the byte that the controller begins to read at `at`.
+    fn read(&mut self, environment: &mut E, at: Instant) -> u8;
+
+    /// Takes the stop condition of a transfer that belongs to `since`.
+    fn stop(&mut self, environment: &mut E, since: Instant);
+
+    /// Takes a transfer and answers it into `reply`; returns whether it acknowledged all. All events up to the
     /// beginning of the transfer have happened.
-    fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool;
+    fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool {
+        let Transfer { now, hertz, address, sent } = *transfer;
+        let mut start = Start { now, hertz, address, is_read: false };
+        let mut is_acknowledged = true;
+        if !sent.is_empty() || reply.is_empty() {
+            is_acknowledged = self.start(environment, &start)
+                && sent.iter().all(|byte| self.write(environment, *byte, now));
+        }
+        if is_acknowledged && !reply.is_empty() {
+            start.is_read = true;
+            is_acknowledged = self.start(environment, &start);
+        }
+        if is_acknowledged {
+            for (index, byte) in reply.iter_mut().enumerate() {
+                *byte = self.read(environment, transfer.time_of(index));
+            }
+        }
+        self.stop(environment, now);
+        is_acknowledged
+    }
 
     /// Loses its supply for a moment and starts again at `now` with its reset values.
     fn power_cycle(&mut self, now: Instant);
@@ -55,11 +105,16 @@ pub trait I2cChip<E> {
 }
 
 impl<C: I2cChip<E>, E> Single<C, E> {
-    /// Does what is due before a transfer and has the chip take it; returns whether it acknowledged.
-    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
-        while self.chip.next_event().is_some_and(|at| at <= transfer.now) {
+    /// Lets the chip do everything that is due until `now`, that moment included.
+    pub(crate) fn pass(&mut self, now: Instant) {
+        while self.chip.next_event().is_some_and(|at| at <= now) {
             self.chip.event(&mut self.environment);
         }
+    }
+
+    /// Does what is due before a transfer and has the chip take it; returns whether it acknowledged.
+    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
+        self.pass(transfer.now);
         self.chip.transfer(&mut self.environment, transfer, reply)
     }
 }

@@ -98,4 +98,5 @@ pub mod tmc5160;
 pub mod turntable;
 pub mod vehicle;
 pub mod violation;
+pub mod wires;
 pub mod world;

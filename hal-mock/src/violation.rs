@@ -49,22 +49,39 @@ impl fmt::Display for Violation {
     }
 }
 
-/// The forbidden accesses of one chip. They survive a loss of supply: the record is the test's, not the
-/// chip's.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Violations {
+/// What broke rules, of any kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record<T> {
     /// The first sixteen of them, in order of time.
-    pub first: Vec<Violation, KEPT>,
+    pub first: Vec<T, KEPT>,
     /// How many there were, kept or not.
     pub count: usize,
+}
+
+/// The forbidden accesses of one chip. They survive a loss of supply: the record is the test's, not the
+/// chip's.
+pub type Violations = Record<Violation>;
+
+impl<T> Default for Record<T> {
+    /// Nothing was broken.
+    fn default() -> Self {
+        Self { first: Vec::new(), count: 0 }
+    }
+}
+
+impl<T> Record<T> {
+    /// Counts one more, and keeps it while there is room.
+    pub fn keep(&mut self, broken: T) {
+        self.count += 1;
+        // Where there is no more room the count still shows it.
+        let _ = self.first.push(broken);
+    }
 }
 
 impl Violations {
     /// Records a forbidden access to a register, or of a command byte, at a moment.
     pub fn record(&mut self, misuse: Misuse, address: u8, at: Instant) {
-        self.count += 1;
         let microseconds = u32::try_from(at.as_micros()).unwrap_or(u32::MAX);
-        // Where there is no more room the count still shows it.
-        let _ = self.first.push(Violation { misuse, address, microseconds });
+        self.keep(Violation { misuse, address, microseconds });
     }
 }

@@ -18,7 +18,7 @@ mod transaction;
 
 use embassy_time::Instant;
 
-use crate::chip::{Exchange, ReadyLine, SpiChip};
+use crate::chip::{BusLimits, Exchange, ReadyLine, SpiChip};
 use crate::clock::Cadence;
 use crate::environment::AnalogueInput;
 use crate::violation::{Misuse, Violations};
@@ -219,6 +219,10 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
 
     fn deselect(&mut self, _: &mut E, since: Instant, is_whole: bool) {
         self.end(since, is_whole);
+    }
+
+    fn limits(&self) -> BusLimits {
+        timing::BUS
     }
 
     fn ready_line(&self) -> ReadyLine {

@@ -1,6 +1,9 @@
 //! When conversions come (SBAS661C tables 9-3 and 9-13, section 9.6).
 
 use embassy_time::Duration;
+use embedded_hal::spi::MODE_1;
+
+use crate::chip::BusLimits;
 
 /// From power-on to the first communication: 65 536 clocks of 7.3728 MHz (figure 9-52).
 pub(super) const POWER_UP: Duration = Duration::from_micros(8889);
@@ -10,6 +13,13 @@ pub(super) const RESET: Duration = Duration::from_micros(2);
 pub(super) const REFERENCE: Duration = Duration::from_millis(50);
 /// Fastest bus clock, Hz (section 7.6).
 pub(super) const GREATEST_BUS_HERTZ: u32 = 8_000_000;
+/// The rest of the bus (sections 9.5.1 and 7.6: td(CSSC), td(SCCS), tw(CSH)).
+pub(super) const BUS: BusLimits = BusLimits {
+    mode: Some(MODE_1),
+    select_to_clock_ns: 50,
+    clock_to_deselect_ns: 40,
+    deselected_ns: 30,
+};
 
 /// Conversions per second by code of the data rate.
 pub(super) fn hertz(rate: u8) -> f64 {

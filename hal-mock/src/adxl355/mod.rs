@@ -15,8 +15,9 @@ mod fifo;
 mod registers;
 
 use embassy_time::{Duration, Instant};
+use embedded_hal::spi::MODE_0;
 
-use crate::chip::{Exchange, ReadyLine, SpiChip};
+use crate::chip::{BusLimits, Exchange, ReadyLine, SpiChip};
 use crate::clock::Cadence;
 use crate::environment::ForceInput;
 use crate::registers::{read_refusal, reset_bytes};
@@ -35,6 +36,14 @@ pub const RESET_TIME: Duration = Duration::from_millis(5);
 
 /// Bus clocks, Hz (SPI Characteristics).
 const CLOCKS: core::ops::RangeInclusive<u32> = 100_000..=10_000_000;
+
+/// The rest of the bus (SPI Characteristics: tCSS, tCSH, tCSD; Serial Communications: CPHA = CPOL = 0).
+const BUS: BusLimits = BusLimits {
+    mode: Some(MODE_0),
+    select_to_clock_ns: 20,
+    clock_to_deselect_ns: 20,
+    deselected_ns: 40,
+};
 
 /// Answer to the self-test force, g (Specifications, typical values).
 const SELF_TEST_RESPONSE: [f64; 3] = [0.3, 0.3, 1.5];
@@ -375,6 +384,10 @@ impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
         if bytes == 1 || !is_whole {
             self.violations.record(Misuse::Length, command >> 1, since);
         }
+    }
+
+    fn limits(&self) -> BusLimits {
+        BUS
     }
 
     /// High where the data sheet has it high: for half a period after a new sample, unless that is read

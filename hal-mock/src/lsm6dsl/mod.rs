@@ -15,7 +15,7 @@ use embassy_time::{Duration, Instant};
 
 use crate::clock::Cadence;
 use crate::environment::MotionInput;
-use crate::i2c::{I2cChip, Transfer};
+use crate::i2c::{I2cChip, Start};
 use crate::registers::{read_refusal, reset_bytes};
 use crate::violation::{Misuse, Violations};
 use registers::{
@@ -55,6 +55,27 @@ const FORCE: usize = 0;
 /// The gyros, by [`CTRL2_G`].
 const RATE: usize = 1;
 
+/// What has passed since the start condition of a transfer to this chip.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// When the start condition came; none where the chip was not addressed.
+    began: Option<Instant>,
+    /// Bus clock, Hz.
+    hertz: u32,
+    /// The register that was named.
+    register: Option<u8>,
+    /// The register that is next.
+    address: u8,
+    /// From one written register to the next.
+    step: u8,
+    /// Whether the chip does not listen yet, but for its control register.
+    is_early: bool,
+    /// Whether a register was written.
+    is_written: bool,
+    /// Whether bytes are read.
+    is_read: bool,
+}
+
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Lsm6dsl {
@@ -70,6 +91,8 @@ pub struct Lsm6dsl {
     measuring: [Option<Measuring>; 2],
     /// Ratio of its oscillator to the nominal one.
     clock: f64,
+    /// The transfer under way.
+    course: Course,
     /// What a self-test adds to each axis: g, and °/s.
     pub self_test: (f64, f64),
     /// What was done to the chip that its data sheet forbids.
@@ -88,6 +111,7 @@ impl Lsm6dsl {
             is_powering_up: true,
             measuring: [None; 2],
             clock,
+            course: Course::default(),
             self_test: SELF_TEST,
             violations: Violations::default(),
         }
@@ -148,25 +172,28 @@ impl Lsm6dsl {
         self.at(address)
     }
 
-    /// Reads registers in a row; samples that fall due meanwhile land between two bytes.
-    fn read_row(
-        &mut self,
-        environment: &mut impl MotionInput,
-        transfer: &Transfer,
-        reply: &mut [u8],
-    ) {
-        let mut address = transfer.sent.first().copied().unwrap_or(0);
-        for (index, byte) in reply.iter_mut().enumerate() {
-            let is_held = address & 1 == 1 && self.at(CTRL3_C) & BDU != 0;
-            while !is_held && self.next().is_some_and(|(at, _)| at <= transfer.time_of(index)) {
-                self.convert(environment);
-            }
-            match read_refusal(MAP, address.into()) {
-                Some(misuse) => self.violations.record(misuse, address, transfer.now),
-                None => *byte = self.read(address),
-            }
-            address += u8::from(self.at(CTRL3_C) & IF_INC != 0);
+    /// Whether samples that fall due must wait: while registers are named and written, and with block data
+    /// update between the two bytes of an axis.
+    fn holds(&self) -> bool {
+        let Course { began, address, is_read, .. } = self.course;
+        began.is_some() && (!is_read || address & 1 == 1 && self.at(CTRL3_C) & BDU != 0)
+    }
+
+    /// Reads the next register of a row; samples that have fallen due meanwhile land before it.
+    fn read_next(&mut self, environment: &mut impl MotionInput, began: Instant, at: Instant) -> u8 {
+        while !self.holds() && self.next().is_some_and(|(due, _)| due <= at) {
+            self.convert(environment);
         }
+        let address = self.course.address;
+        let byte = match read_refusal(MAP, address.into()) {
+            Some(misuse) => {
+                self.violations.record(misuse, address, began);
+                0
+            }
+            None => self.read(address),
+        };
+        self.course.address = address.wrapping_add(u8::from(self.at(CTRL3_C) & IF_INC != 0));
+        byte
     }
 
     /// Writes a register, or records why it must not be written.
@@ -206,19 +233,34 @@ impl Lsm6dsl {
         });
     }
 
-    /// Whether the chip acknowledges; while it resets or boots only its control register is looked at.
-    fn listens(&mut self, transfer: &Transfer, reads: bool) -> bool {
-        let register = transfer.sent.first().copied().unwrap_or(0);
-        if transfer.now >= self.ready_at {
+    /// Takes the register that a transfer names; returns whether the chip acknowledged. While it resets or
+    /// boots only its control register is looked at.
+    fn name(&mut self, register: u8, since: Instant) -> bool {
+        if self.course.hertz > FASTEST {
+            self.violations.record(Misuse::ClockTooFast, register, since);
+        }
+        if since >= self.ready_at {
             self.is_powering_up = false;
             self.registers[usize::from(CTRL3_C)] &= !(SW_RESET | BOOT);
-            return true;
+        } else if register != CTRL3_C || self.is_powering_up {
+            self.violations.record(Misuse::TooEarly, register, since);
+            self.course = Course::default();
+            return false;
         }
-        let looks = register == CTRL3_C && reads && !self.is_powering_up;
-        if !looks {
-            self.violations.record(Misuse::TooEarly, register, transfer.now);
+        self.course.is_early = since < self.ready_at;
+        self.course.step = u8::from(self.at(CTRL3_C) & IF_INC != 0);
+        self.course.register = Some(register);
+        self.course.address = register;
+        true
+    }
+
+    /// Begins to read; a transfer that has written, or that names no register, is too long or too short.
+    fn turn_round(&mut self, began: Instant) {
+        self.course.is_read = true;
+        self.course.address = self.course.register.unwrap_or(0);
+        if self.course.register.is_none() || self.course.is_written {
+            self.violations.record(Misuse::Length, self.course.address, began);
         }
-        looks
     }
 }
 
@@ -233,36 +275,66 @@ const fn self_test_sign(bits: u8, negative: u8) -> i8 {
 
 impl<E: MotionInput> I2cChip<E> for Lsm6dsl {
     fn next_event(&self) -> Option<Instant> {
-        self.next().map(|(at, _)| at)
+        self.next().map(|(at, _)| at).filter(|_| !self.holds())
     }
 
     fn event(&mut self, environment: &mut E) {
         self.convert(environment);
     }
 
-    fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool {
-        if transfer.address != self.address {
+    fn start(&mut self, _: &mut E, start: &Start) -> bool {
+        if start.address != self.address {
+            self.course = Course::default();
             return false;
         }
-        let [register, data @ ..] = transfer.sent else {
-            self.violations.record(Misuse::Length, 0, transfer.now);
-            return true;
-        };
-        if transfer.hertz > FASTEST {
-            self.violations.record(Misuse::ClockTooFast, *register, transfer.now);
+        let began = self.course.began.unwrap_or(start.now);
+        if !start.is_read || self.course.began.is_none() {
+            self.course = Course { began: Some(began), hertz: start.hertz, ..Course::default() };
         }
-        if !self.listens(transfer, !reply.is_empty()) {
-            return false;
+        if start.is_read {
+            self.turn_round(began);
         }
-        if !reply.is_empty() && !data.is_empty() {
-            self.violations.record(Misuse::Length, *register, transfer.now);
-        }
-        let step = self.at(CTRL3_C) & IF_INC != 0;
-        for (index, value) in (0..).zip(data) {
-            self.write(register + if step { index } else { 0 }, *value, transfer.now);
-        }
-        self.read_row(environment, transfer, reply);
         true
+    }
+
+    fn write(&mut self, _: &mut E, byte: u8, since: Instant) -> bool {
+        let Course { began: Some(_), register, address, step, is_early, is_read: false, .. } =
+            self.course
+        else {
+            return false;
+        };
+        let Some(register) = register else { return self.name(byte, since) };
+        if is_early {
+            self.violations.record(Misuse::TooEarly, register, since);
+            self.course = Course::default();
+            return false;
+        }
+        self.course.is_written = true;
+        self.course.address = address.wrapping_add(step);
+        self.write(address, byte, since);
+        true
+    }
+
+    fn read(&mut self, environment: &mut E, at: Instant) -> u8 {
+        match self.course {
+            Course { began: Some(began), register: Some(_), is_read: true, .. } => {
+                self.read_next(environment, began, at)
+            }
+            _ => 0,
+        }
+    }
+
+    fn stop(&mut self, _: &mut E, since: Instant) {
+        let Course { began, register, is_early, is_written, is_read, .. } =
+            core::mem::take(&mut self.course);
+        let is_void = began.is_some() && !is_read && !is_written;
+        match register {
+            None if is_void => self.violations.record(Misuse::Length, 0, since),
+            Some(register) if is_void && is_early => {
+                self.violations.record(Misuse::TooEarly, register, since);
+            }
+            _ => {}
+        }
     }
 
     fn power_cycle(&mut self, now: Instant) {

@@ -8,9 +8,10 @@
 mod registers;
 
 use embassy_time::{Duration, Instant};
+use embedded_hal::spi::MODE_3;
 
 use crate::checksum::remainder;
-use crate::chip::{Exchange, SpiChip};
+use crate::chip::{BusLimits, Exchange, SpiChip};
 use crate::environment::ShaftAngle;
 use crate::registers::{read_refusal, reset_bytes, write_refusal};
 use crate::violation::{Misuse, Violations};
@@ -24,6 +25,15 @@ pub const PROGRAMMING: Duration = Duration::from_secs(6);
 
 /// Fastest bus clock, Hz.
 const FASTEST: u32 = 16_000_000;
+
+/// The rest of the bus (SPI Interface, timing: TL, TH, `TCSnH`). TH, half a clock, counts from the last falling
+/// edge, and ends with the last edge.
+const BUS: BusLimits = BusLimits {
+    mode: Some(MODE_3),
+    select_to_clock_ns: 100,
+    clock_to_deselect_ns: 0,
+    deselected_ns: 150,
+};
 
 /// Steps in a turn.
 const STEPS: f64 = 2_097_152.0;
@@ -294,6 +304,10 @@ impl<E: ShaftAngle> SpiChip<E> for Mt6835 {
         } else {
             self.violations.record(Misuse::Length, course.sent[0], since);
         }
+    }
+
+    fn limits(&self) -> BusLimits {
+        BUS
     }
 
     fn power_cycle(&mut self, now: Instant) {

@@ -21,11 +21,12 @@ mod rules;
 mod status;
 
 use embassy_time::{Duration, Instant};
+use embedded_hal::spi::MODE_3;
 
 use self::demand::{Demand, FRACTION_BITS};
 use self::map::{ADDRESSES, MAP, address};
 use self::ramp::{Motion, Ramp};
-use crate::chip::{Exchange, SpiChip};
+use crate::chip::{BusLimits, Exchange, SpiChip};
 use crate::environment::Mechanics;
 use crate::registers::{self, Access, Registers};
 use crate::violation::{Misuse, Violations};
@@ -353,6 +354,17 @@ impl<E: Mechanics> SpiChip<E> for Tmc5160 {
             self.note();
             self.latch();
             self.drive(environment);
+        }
+    }
+
+    /// From select to clock and back tCC, between datagrams tCSH of an asynchronous clock: two periods of CLK
+    /// and 10 ns, rounded up (4.3).
+    fn limits(&self) -> BusLimits {
+        BusLimits {
+            mode: Some(MODE_3),
+            select_to_clock_ns: 10,
+            clock_to_deselect_ns: 10,
+            deselected_ns: 2_000_000_000_u32.div_ceil(self.oscillator.hertz()) + 10,
         }
     }
 
