@@ -36,15 +36,13 @@ const _: () = assert!(LONGEST >= BYTES && LONGEST >= Heading::BYTES);
 pub struct FlashStore<F: NorFlash> {
     /// The log-structured map in the flash.
     map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
-    /// Buffer for one item.
-    buffer: [u8; BUFFER],
 }
 
 impl<F: NorFlash> FlashStore<F> {
     /// Takes a flash and a range of at least two of its pages. `MapConfig::new` checks the range in
     /// a constant when the image is built.
     pub const fn new(flash: F, range: MapConfig<F>) -> Self {
-        Self { map: MapStorage::new(flash, range, Cache::new_uncached()), buffer: [0; BUFFER] }
+        Self { map: MapStorage::new(flash, range, Cache::new_uncached()) }
     }
 
     /// Releases the flash.
@@ -55,12 +53,15 @@ impl<F: NorFlash> FlashStore<F> {
 
 impl<F: NorFlash> Store for FlashStore<F> {
     async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
-        let found = self.map.fetch_item::<[u8; N]>(&mut self.buffer, &slot).await;
+        // A buffer takes memory only while it is used: a store is moved, which would copy one.
+        let mut buffer = [0; BUFFER];
+        let found = self.map.fetch_item::<[u8; N]>(&mut buffer, &slot).await;
         found.map_err(|_| Fault::Bus)
     }
 
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
-        let kept = self.map.store_item(&mut self.buffer, &slot, item).await;
+        let mut buffer = [0; BUFFER];
+        let kept = self.map.store_item(&mut buffer, &slot, item).await;
         kept.map_err(|_| Fault::Bus)
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines are
 //! sent by the virtual COM port, 115 200 baud. The carrier is chosen by a feature, as in `cargo board
-//! --features vehicle`; the rest of the configuration is in `firmware/stm32/src/configuration.rs`.
+//! --features vehicle`; latitude, gyro and schedule are in `firmware/stm32/src/settings.rs`, unless a record in
+//! the flash states them, the rest of the configuration in `configuration.rs` beside it.
 //!
 //! | connector | pin | controller | signal |
 //! |---|---|---|---|

@@ -1,7 +1,8 @@
 //! Checksum of the data kept in flash: CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB8 8320,
 //! initial value and final XOR all ones). The saved calibration, the reference table (etalon) and
 //! the stored heading are all guarded by it, so one routine serves every block, the settings of an
-//! instrument too. A record of numbers in flash is a version, numbers of eight bytes and the checksum of both, all little-endian.
+//! instrument too. A record of numbers in flash is a version, numbers of eight bytes and the
+//! checksum of both, all little-endian.
 
 /// Remainders of the reflected IEEE 802.3 polynomial for four bits: a table of 64 bytes, where one
 /// for whole bytes would take 1 KB of flash.

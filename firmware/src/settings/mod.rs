@@ -85,13 +85,13 @@ pub struct Gyro {
 }
 
 impl Gyro {
-    /// Scale of the codes of its converter, which has its internal reference and unity gain.
+    /// Scale of the codes of its converter, which has this gain and its internal reference.
     ///
     /// # Errors
     /// [`SetupError::OutOfRange`] for a scale factor of zero, or one that cannot be represented.
-    pub fn scale(&self) -> Result<Scale, SetupError> {
+    pub fn scale(&self, gain: Gain) -> Result<Scale, SetupError> {
         let (name, value) = ("magnitude of volts_per_rad_per_s", self.volts_per_rad_per_s);
-        let scale = Scale::new(value, INTERNAL_REFERENCE_VOLTS, Gain::X1);
+        let scale = Scale::new(value, INTERNAL_REFERENCE_VOLTS, gain);
         let quantity = Quantity { name, value: value.abs(), range: SCALE_FACTORS };
         scale.ok_or(SetupError::OutOfRange(quantity))
     }
@@ -127,7 +127,7 @@ impl<C: CarrierSchedule> Settings<C> {
             ("limit", limit.0, LIMITS),
             ("bias_sigma", errors.bias_sigma.0, [0.0, GREATEST]),
         ])?;
-        self.gyro.scale()?;
+        self.gyro.scale(Gain::X1)?;
         self.site().check()?;
         self.schedule.check()
     }

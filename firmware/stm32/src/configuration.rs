@@ -1,30 +1,30 @@
-//! Configuration of the instrument, to be set before it is flashed: **edit this file**, the link takes
-//! no commands. The carrier is chosen by a feature.
+//! Configuration of the instrument beside its settings, to be set before it is flashed: **edit this file**
+//! and [`crate::settings`]; the link takes no commands. The carrier is chosen by a feature. No record in
+//! the flash changes anything here.
 //!
 //! | what | where to get it |
 //! |---|---|
-//! | [`LATITUDE`] | a map; 0.01° is near enough |
-//! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
-//! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
-//! | [`HOLDS`] | on a stage, two frames or a turntable, once the azimuth is known: a choice |
-//! | [`GEOMETRY`], [`ORTHOGONALITY_SIGMA`], [`PASSES`] | of two frames: their calibration, and how often each heading is taken |
-//! | [`SPEEDS`], [`SENSOR`], [`MODULATED_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
-//! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
-//! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
+//! | [`GEOMETRY`], [`ORTHOGONALITY_SIGMA`] | of two frames: their calibration |
+//! | [`SENSOR`] | of a turning platform: what turns |
+//! | [`FORCE_CALIBRATED_SIGMA`] | in a vehicle and on two frames: what the accelerometer's calibration leaves |
+//! | [`ALIGNS_ALWAYS`] | in a vehicle, where the azimuth is known from before a restart: a choice |
 //! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`], [`SPIN_BIAS_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
-use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
 use firmware::calibration::Harmonics;
 use firmware::configuration::{
     Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
 use firmware::platform::Platform;
 use firmware::ports::Frames;
+use firmware::settings::{
+    CarrierSchedule, Settings, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
+    VehicleSchedule,
+};
 use firmware::spin::configuration::{Channel, SpinConfiguration};
 use orientation::alignment::period::CONVERTER_TOLERANCE;
 use orientation::alignment::rotating;
@@ -43,14 +43,14 @@ use orientation::alignment::stops::session::Procedure as Driving;
 use orientation::attitude as keep;
 use orientation::earth::Latitude;
 use orientation::navigation::{Policy, Realignment};
-use orientation::noise::model::{GyroNoise, StatedNoise};
+use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::roll::{self as spin, Flight};
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{
-    AngularRate, DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared,
-    Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds, TURN,
+    DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared, Radians,
+    RadiansPerRootSecond, RadiansPerSecond, Seconds,
 };
 
 /// Platform of this instrument, by the feature that is chosen of this crate. Code for the others is not
@@ -73,24 +73,6 @@ pub const PLATFORM: Platform = match [
     _ => panic!("more than one carrier is chosen"),
 };
 
-/// Geodetic latitude, °, north positive; up to ±85°, beyond which no azimuth is determined.
-const LATITUDE: f64 = 47.58;
-const _: () = assert!(-85.0 <= LATITUDE && LATITUDE <= 85.0);
-
-/// Rate beyond which the gyro's own output may saturate, °/s: 97 % of its range.
-const GYRO_LIMIT: f64 = 0.97 * 40.0;
-/// Scale factor of the gyro at the converter's input, V per °/s, negative where it is mounted
-/// upside down. The converter's range is ±2.5 V.
-const GYRO_SCALE: f64 = 0.05;
-
-/// Angle random walk N of the gyro, °/√h (OIUS-1000 class).
-const GYRO_N: f64 = 0.001;
-/// Bias instability B of the gyro, °/h.
-const GYRO_B: f64 = 0.007;
-/// Rate random walk K of the gyro, °/h/√h.
-const GYRO_K: f64 = 0.0;
-/// Standard deviation of the gyro's scale factor, 1σ, relative.
-const GYRO_SCALE_SIGMA: f64 = 5e-4;
 /// g-sensitivity along the gyro's axis and 90° clockwise of it, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.0, 0.0];
 /// Standard deviation of each g-sensitivity, 1σ, °/h/g.
@@ -108,26 +90,6 @@ const ENCODER_SIGMA: Radians = Radians::from_degrees(0.05);
 /// Configuration of the converter: sample rate, filter and gain.
 pub const CONVERTER: Converter =
     Converter { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 };
-/// Scale of the converter's codes; a scale factor of zero does not compile.
-pub const SCALE: Scale =
-    match Scale::new(GYRO_SCALE / DEGREE, INTERNAL_REFERENCE_VOLTS, CONVERTER.gain) {
-        Some(scale) => scale,
-        None => unreachable!(),
-    };
-/// Rate beyond which the gyro may saturate.
-pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
-
-/// Length of a survey at rest before the alignment, s, in which the gyro's noise is measured; the
-/// plan then follows from it, with the total time of the dwells below. `None`: the noise configured
-/// above is used. An hour shows B and K, ten minutes N.
-const SURVEY: Option<f64> = None;
-/// Required 1σ of the azimuth, °, and the time allowed, s, from the end of the survey or else from
-/// the beginning. `None`: the session ends with its schedule.
-const ACCURACY: Option<(f64, f64)> = None;
-/// Positions on the full circle; the first is repeated at the end.
-const POSITIONS: usize = 24;
-/// Time at each position.
-const DWELL: Seconds = Seconds(10.0);
 /// Rotation time of the stage: 1.20 s for 15° and 18.41 s for 360°, plus the settling check.
 const ROTATION: Rotation =
     Rotation { rest: Seconds(0.75), speed: RadiansPerSecond(0.35), wraps: false };
@@ -135,47 +97,44 @@ const ROTATION: Rotation =
 const RINGING: Seconds = Seconds(0.25);
 
 /// Sample period of the converter that takes the precise gyros.
-fn period() -> Seconds {
+pub fn period() -> Seconds {
     Seconds(1.0 / CONVERTER.rate.hertz())
 }
 
 /// Site and instrument.
-fn site() -> Site {
-    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+fn site<C: CarrierSchedule>(settings: &Settings<C>) -> Site {
     Site {
-        noise: StatedNoise::Whole(GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0)),
-        scale_sigma: GYRO_SCALE_SIGMA,
         g_sensitivity: G_SENSITIVITY.map(GSensitivity::from_degrees_per_hour),
         g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(G_SENSITIVITY_SIGMA),
         accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
         encoder_sigma: ENCODER_SIGMA,
-        required_sigma: Radians(ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE),
-        ..Site::at(latitude)
+        ..settings.site()
     }
 }
 
 /// Site and instrument on a stage.
-pub fn setting() -> Setting {
-    Setting::new(site())
+pub fn setting(settings: &Settings<StageSchedule>) -> Setting {
+    Setting { half: settings.schedule.half, ..Setting::new(site(settings)) }
 }
 
 /// Procedure of the session on a stage.
-pub fn procedure() -> Procedure {
-    let schedule = Schedule::closed_circle(POSITIONS, DWELL);
+pub fn procedure(settings: &Settings<StageSchedule>) -> Procedure {
+    let StageSchedule { positions, dwell, survey, allowed, .. } = settings.schedule;
+    let schedule = Schedule::closed_circle(positions.into(), dwell);
     let plan_seconds = schedule.seconds();
     let mut procedure = dwelling(schedule);
-    if let Some(seconds) = SURVEY {
+    if let Some(seconds) = survey {
         let orders = &Order::COMPARED;
         procedure = procedure.after(Survey {
-            seconds: Seconds(seconds),
+            seconds,
             rotation: ROTATION,
             orders,
             shortest: Seconds(2.0),
             plan_seconds,
         });
     }
-    match ACCURACY {
-        Some((_, seconds)) => procedure.until_accurate(Seconds(seconds)),
+    match allowed {
+        Some(seconds) => procedure.until_accurate(seconds),
         None => procedure,
     }
 }
@@ -189,11 +148,9 @@ fn dwelling(schedule: Schedule) -> Procedure {
     }
 }
 
-/// Whether a stage, a mount or a turntable holds azimuth, pitch and roll without end after the alignment, by the
-/// LSM6DSL of the board itself. It compensates the sway of the base too: the board is fixed to the
-/// base, the chip's x axis forward, y to the right, z down.
-pub const HOLDS: bool = true;
-/// Decimation of the LSM6DSL: read once in this many samples of the gyro, 200 times a second.
+/// Decimation of the LSM6DSL of the board itself: read once in this many samples of the gyro, 200 times a
+/// second. By it the result is held on a stage, two frames or a turntable, and the sway of the base is
+/// compensated: the board is fixed to the base, the chip's x axis forward, y to the right, z down.
 pub const BASE_DIVIDER: u32 = 2;
 /// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
 /// its oscillator and the outputs that are not read.
@@ -225,13 +182,12 @@ pub fn base_sensors() -> CoarseSensors {
 }
 
 /// Site and gyros for attitude and heading on the base of a stage, two frames or a turntable.
-pub fn base_keeper() -> keep::Setting {
+pub fn base_keeper(latitude: Latitude) -> keep::Setting {
     let (bias_deg_s, scale_sigma, force_bias_sigma) = BASE_SIGMAS;
     let usual = keep::Gyro::coarse();
     let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
     let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
     let gyro = keep::Gyro { noise, bias_sigma: RadiansPerSecond(bias_deg_s * DEGREE), scale_sigma };
-    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
     let force_bias_sigma = MetresPerSecondSquared(force_bias_sigma);
     let sample_seconds = Seconds(base_period());
     keep::Setting { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds }
@@ -239,15 +195,15 @@ pub fn base_keeper() -> keep::Setting {
 
 /// Policy after the alignment on a stage, two frames or a turntable: the azimuth is held without end, and its σ
 /// grows; only a restart aligns anew.
-pub fn base_policy() -> Policy {
-    let [_, _, beside] = base_keeper().gyros;
+pub fn base_policy<C>(settings: &Settings<C>) -> Policy {
+    let [_, _, beside] = base_keeper(settings.latitude).gyros;
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
         realignment: Realignment::Never,
         knows_stops: false,
         skips_known: false,
         beside,
-        precise: kept_gyro(),
+        precise: settings.gyro.errors,
     }
 }
 
@@ -263,25 +219,23 @@ const GEOMETRY: TwoFrame = TwoFrame {
 };
 /// Standard deviation of each non-orthogonality that the calibration leaves, 1σ.
 const ORTHOGONALITY_SIGMA: Radians = Radians::from_degrees(0.05);
-/// Number of times that the four headings are taken, each for a dwell.
-const PASSES: usize = 6;
 /// Headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
 const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
 
 /// Site and instrument on two frames.
-pub fn mount_setting() -> Setting {
-    let site = site();
+pub fn mount_setting(settings: &Settings<TwoFrameSchedule>) -> Setting {
+    let site = site(settings);
     let encoder_sigma = azimuth_sigma(ORTHOGONALITY_SIGMA, ENCODER_SIGMA, site.latitude);
     let accelerometer_bias_sigma = FORCE_CALIBRATED_SIGMA;
     let site = Site { accelerometer_bias_sigma, encoder_sigma, ..site };
-    Setting { mount: TWO_FRAMES, ..Setting::new(site) }
+    Setting { mount: TWO_FRAMES, half: settings.schedule.half, ..Setting::new(site) }
 }
 
 /// Procedure of the session on two frames.
-pub fn mount_procedure() -> Procedure {
-    let pass =
-        PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds: DWELL });
-    let positions = core::iter::repeat_n(pass, PASSES).flatten().collect();
+pub fn mount_procedure(settings: &Settings<TwoFrameSchedule>) -> Procedure {
+    let TwoFrameSchedule { passes, dwell: seconds, .. } = settings.schedule;
+    let pass = PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds });
+    let positions = core::iter::repeat_n(pass, passes.into()).flatten().collect();
     Procedure { arrival: ARRIVAL, ..dwelling(Schedule::Listed(positions)) }
 }
 
@@ -299,31 +253,22 @@ pub fn instrument() -> Configuration {
     Configuration { encoder: ENCODER, ..Configuration::at(rate) }
 }
 
-/// Speeds of a rotating platform, turns per second: one for a gyro, two for a molecular-electronic
-/// sensor.
-const SPEEDS: &[f64] = &[0.137];
 /// Kind of sensor on the platform: [`Sensor::GYRO`] or [`Sensor::MOLECULAR`].
 const SENSOR: Sensor = Sensor::GYRO;
-/// Rate-modulated turns before those at constant rate, to measure the axis misalignment; zero to
-/// use the misalignment stored in flash. `None`: the default number.
-const MODULATED_TURNS: Option<u32> = None;
-
 /// Standard deviation of the encoder's zero on a rotating platform, as it enters the azimuth, 1σ,
 /// rad: without an index no rotation shows it.
 const ENCODER_ZERO_SIGMA: Radians = Radians::from_degrees(0.15);
 
 /// Site and instrument on a rotating platform.
-pub fn turning_setting() -> rotating::Setting {
+pub fn turning_setting(settings: &Settings<TurntableSchedule>) -> rotating::Setting {
     let encoder_zero_sigma = ENCODER_ZERO_SIGMA;
-    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(site(), SENSOR) }
+    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(site(settings), SENSOR) }
 }
 
 /// Procedure of the session on a rotating platform.
-pub fn turning_procedure() -> Turning {
-    let mut speeds = [RadiansPerSecond::default(); SPEEDS.len()];
-    speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| speed.0 = hertz * TURN);
-    let usual = Turning::new(&speeds, period());
-    Turning { modulated_turns: MODULATED_TURNS.unwrap_or(usual.modulated_turns), ..usual }
+pub fn turning_procedure(settings: &Settings<TurntableSchedule>) -> Turning {
+    let TurntableSchedule { ref speeds, turns, modulated_turns } = settings.schedule;
+    Turning { turns, modulated_turns, ..Turning::new(speeds, period()) }
 }
 
 /// Configuration of the platform's devices.
@@ -331,11 +276,6 @@ pub fn platform() -> TurntableConfiguration {
     TurntableConfiguration::default()
 }
 
-/// Number of stops of a vehicle after which the session concludes, at least two; three with
-/// different headings make the gyros' biases observable.
-const STOPS: usize = 3;
-/// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, °/h.
-const BIAS_SIGMA: f64 = 0.5;
 /// Standard deviation of the accelerometers' biases after calibration, 1σ, m/s²: in a vehicle they
 /// act as tilt.
 const FORCE_CALIBRATED_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e-4 * 9.80665);
@@ -344,18 +284,19 @@ const FORCE_CALIBRATED_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e
 const FORCE_NOISE: ForceNoise = ForceNoise(1.2 * 25e-6 * 9.80665);
 
 /// Site and instrument in a vehicle.
-pub fn driving_setting() -> stops::Setting {
-    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site() };
+pub fn driving_setting(settings: &Settings<VehicleSchedule>) -> stops::Setting {
+    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site(settings) };
     stops::Setting {
-        bias_sigma: Some(RadiansPerSecond::from_degrees_per_hour(BIAS_SIGMA)),
+        bias_sigma: Some(settings.gyro.errors.bias_sigma),
         force_noise: FORCE_NOISE,
         ..stops::Setting::new(site)
     }
 }
 
 /// Procedure of the session in a vehicle.
-pub fn driving_procedure() -> Driving {
-    Driving::new(STOPS, period())
+pub fn driving_procedure(settings: &Settings<VehicleSchedule>) -> Driving {
+    let VehicleSchedule { stops, stop, .. } = settings.schedule;
+    Driving { stop_seconds: stop, ..Driving::new(stops.into(), period()) }
 }
 
 /// Configuration of the vehicle's devices.
@@ -363,40 +304,29 @@ pub fn vehicle() -> VehicleConfiguration {
     VehicleConfiguration::at(CONVERTER.rate.hertz())
 }
 
-/// Whether a vehicle realigns once the azimuth is known; the last stop of an alignment is the first
-/// of the next.
-const REALIGNS: bool = true;
 /// Whether an alignment runs although the azimuth is known from before a restart, since when the
 /// vehicle has not moved.
 const ALIGNS_ALWAYS: bool = true;
 
 /// Site and gyros for attitude and heading.
-pub fn keeper() -> keep::Setting {
-    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+pub fn keeper(settings: &Settings<VehicleSchedule>) -> keep::Setting {
     keep::Setting {
         force_bias_sigma: FORCE_CALIBRATED_SIGMA,
-        ..keep::Setting::precise(latitude, period(), kept_gyro())
-    }
-}
-
-/// Properties of a gyro for attitude and heading.
-fn kept_gyro() -> keep::Gyro {
-    keep::Gyro {
-        noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
-        bias_sigma: RadiansPerSecond::from_degrees_per_hour(BIAS_SIGMA),
-        scale_sigma: GYRO_SCALE_SIGMA,
+        ..keep::Setting::precise(settings.latitude, period(), settings.gyro.errors)
     }
 }
 
 /// Policy after the alignment: the azimuth is held without end.
-pub fn policy() -> Policy {
+pub fn policy(settings: &Settings<VehicleSchedule>) -> Policy {
+    let precise = settings.gyro.errors;
+    let realigns = settings.schedule.realigns;
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
-        realignment: if REALIGNS { Realignment::BetweenStops } else { Realignment::Never },
+        realignment: if realigns { Realignment::BetweenStops } else { Realignment::Never },
         knows_stops: true,
         skips_known: !ALIGNS_ALWAYS,
-        beside: kept_gyro(),
-        precise: kept_gyro(),
+        beside: precise,
+        precise,
     }
 }
 
@@ -412,16 +342,13 @@ const SPIN_WALK: f64 = 0.5;
 const SPIN_SCALE_SIGMA: f64 = 1e-3;
 /// Standard deviation of its bias, 1σ, °/h.
 const SPIN_BIAS_SIGMA: f64 = 200.0;
-/// Course and pitch at the start of the flight, °: no sensor on the body measures them.
-const LAUNCH: [f64; 2] = [0.0, 0.0];
-
 /// Configuration of the converters of a spinning body: the next rate above the 10 kHz of Nekrasova
 /// 2017.
 pub const SPIN_CONVERTER: Converter =
     Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
 
 /// The flight to be tracked, by the properties of the gyro about x.
-pub fn flight() -> Flight {
+pub fn flight(settings: &Settings<SpinSchedule>) -> Flight {
     let setting = spin::Setting {
         sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
         angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
@@ -429,7 +356,8 @@ pub fn flight() -> Flight {
         bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),
         method: spin::Method::PhaseLocked,
     };
-    Flight::new(&setting, LAUNCH.map(Radians::from_degrees), None)
+    let SpinSchedule { course, pitch } = settings.schedule;
+    Flight::new(&setting, [course, pitch], None)
 }
 
 /// Configuration of the sensors; `None` where a scale factor is zero.

@@ -8,6 +8,7 @@
 mod configuration;
 mod flash;
 mod ports;
+mod settings;
 pub mod watchdog;
 pub mod wiring;
 
@@ -24,6 +25,7 @@ use firmware::health::Health;
 use firmware::keep::Keeping;
 use firmware::link;
 use firmware::log::DefmtLog;
+use firmware::settings::Settings;
 use firmware::shared::Shared;
 use firmware::sway::SwayCompensation;
 use orientation::alignment::setup::SetupError;
@@ -52,10 +54,10 @@ fn on_base(bus: BaseBus) -> &'static mut ports::Base {
 }
 
 /// Attitude and heading of a platform's base after the alignment, where they are held.
-fn keeping<T>(store: T) -> Option<Keeping<'static, T>> {
-    configuration::HOLDS.then(|| {
-        let keeper = keeper(&configuration::base_keeper());
-        Keeping { keeper, policy: configuration::base_policy(), store }
+fn keeping<C, T>(settings: &Settings<C>, store: T) -> Option<Keeping<'static, T>> {
+    settings.holds.then(|| {
+        let keeper = keeper(&configuration::base_keeper(settings.latitude));
+        Keeping { keeper, policy: configuration::base_policy(settings), store }
     })
 }
 

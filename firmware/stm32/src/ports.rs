@@ -13,7 +13,9 @@ use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, BaseImu};
 use firmware::platform::Platform;
 use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
+use firmware::settings;
 
+use crate::begun;
 use crate::configuration;
 use crate::configuration::PLATFORM;
 use crate::wiring::{BaseBus, ConverterWires, Device, Ready, StageDevice};
@@ -39,15 +41,16 @@ pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
 pub type Spinning = SpinSensors<Converter>;
 
-/// Connects the sensors on a stage, a turntable or two frames to their wires.
+/// Connects the sensors on a stage, a turntable or two frames to their wires; logs why, if the gyro's
+/// scale factor does not allow it.
 pub fn inputs<E, B>(
-    converter: ConverterWires,
+    (wires, settings): (ConverterWires, &settings::Gyro),
     force: Device,
     encoder: E,
     base: B,
-) -> Sensors<Gyro, Accelerometer, E, B> {
-    let gyro = gyro(self::converter(converter, configuration::CONVERTER));
-    Sensors { gyro, accelerometer: accelerometer(force), encoder, base }
+) -> Option<Sensors<Gyro, Accelerometer, E, B>> {
+    let gyro = gyro(converter(wires, configuration::CONVERTER), settings)?;
+    Some(Sensors { gyro, accelerometer: accelerometer(force), encoder, base })
 }
 
 /// Encoder of an axis.
@@ -66,12 +69,16 @@ pub fn base(bus: BaseBus) -> Base {
     }
 }
 
-/// Connects the sensors of a vehicle to their wires.
-pub fn triad(converters: [ConverterWires; 3], accelerometer: Device) -> Triad {
-    VehicleSensors {
-        gyros: converters.map(|wires| gyro(converter(wires, configuration::CONVERTER).clocked())),
-        accelerometer: self::accelerometer(accelerometer),
-    }
+/// Connects the sensors of a vehicle to their wires; logs why, if the gyros' scale factor does not allow
+/// it.
+pub fn triad(
+    (converters, settings): ([ConverterWires; 3], &settings::Gyro),
+    accelerometer: Device,
+) -> Option<Triad> {
+    let gyro = |wires| gyro(converter(wires, configuration::CONVERTER).clocked(), settings);
+    let [forward, right, down] = converters.map(gyro);
+    let gyros = [forward?, right?, down?];
+    Some(VehicleSensors { gyros, accelerometer: self::accelerometer(accelerometer) })
 }
 
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
@@ -85,9 +92,10 @@ fn converter(wires: ConverterWires, configuration: Conversion) -> Converter {
     Ads1262::new(wires.bus, wires.ready, Delay, configuration)
 }
 
-/// Gyro with its scale and saturation limit.
-fn gyro(converter: Converter) -> Gyro {
-    AnalogueGyro { converter, scale: configuration::SCALE, limit: configuration::LIMIT }
+/// Gyro with its scale and saturation limit; logs why, if it has no scale.
+fn gyro(converter: Converter, settings: &settings::Gyro) -> Option<Gyro> {
+    let scale = begun(settings.scale(configuration::CONVERTER.gain))?;
+    Some(AnalogueGyro { converter, scale, limit: settings.limit() })
 }
 
 /// Accelerometer with the output rate of this carrier.

@@ -14,19 +14,20 @@ use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::{Outlets, SpinWires};
-use crate::{Channels, configuration, ports, report_conclusion};
+use crate::{Channels, configuration, ports, report_conclusion, settings};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(spawner: Spawner, wires: SpinWires) {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
+    let SpinWires { converters, outlets: Outlets { mut link, mut flash } } = wires;
+    let Some(settings) = settings::load(&mut flash, settings::spin) else { return };
     let Some(sensors) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };
-    let SpinWires { converters, outlets: Outlets { mut link, flash: _ } } = wires;
     let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
-    let flight = FLIGHT.init_with(configuration::flight);
+    let flight = FLIGHT.init_with(|| configuration::flight(&settings));
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(converters), sensors, channels)));
     let mut body = Strapdown::new(&channels.shared);
     let outside = (&mut link, &mut NoRecorder);

@@ -19,26 +19,30 @@ use crate::ports::MountInputs;
 use crate::wiring::{AxisPlatformWires, FramesWires, Outlets};
 use crate::{
     Channels, OnBase, begun, channels, configuration, keeping, on_base, ports, report_conclusion,
-    stage_acquisition,
+    settings, stage_acquisition,
 };
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn on_a_stage(spawner: Spawner, wires: AxisPlatformWires) {
-    let session = session(configuration::setting(), configuration::procedure());
-    let Some(session) = session else { return };
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
-    let Outlets { mut link, flash } = outlets;
+    let Outlets { mut link, mut flash } = outlets;
+    let Some(settings) = settings::load(&mut flash, settings::stage) else { return };
+    let session = session(configuration::setting(&settings), configuration::procedure(&settings));
+    let Some(session) = session else { return };
     let encoder = ports::encoder(axes.encoder);
     let base = SwayCompensation::new(on_base(base));
-    let inputs = ports::inputs(converter, accelerometer, encoder, base);
+    let converter = (converter, &settings.gyro);
+    let Some(inputs) = ports::inputs(converter, accelerometer, encoder, base) else { return };
     let channels = channels();
     spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let mut motor = ports::motor(axes.motor);
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
     let outside = (&mut link, &mut NoRecorder);
-    let health = navigate(&mut stage, session, keeping(store(flash)), &(), outside, channels).await;
+    let health =
+        navigate(&mut stage, session, keeping(&settings, store(flash)), &(), outside, channels)
+            .await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
@@ -51,21 +55,25 @@ pub async fn on_two_frames(spawner: Spawner, wires: FramesWires) {
         Ok(frames) => frames,
         Err(error) => return defmt::error!("board: no mount: {}", error),
     };
-    let session = session(configuration::mount_setting(), configuration::mount_procedure());
-    let Some(session) = session else { return };
     let FramesWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
-    let (Outlets { mut link, flash }, Frames { outer, inner }) = (outlets, axes);
+    let (Outlets { mut link, mut flash }, Frames { outer, inner }) = (outlets, axes);
+    let Some(settings) = settings::load(&mut flash, settings::two_frame) else { return };
+    let session =
+        session(configuration::mount_setting(&settings), configuration::mount_procedure(&settings));
+    let Some(session) = session else { return };
     let (frames, channels) = (&*FRAMES.init(frames), channels());
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
     let base = SwayCompensation::new(on_base(base));
-    let inputs = ports::inputs(converter, accelerometer, encoders, base);
+    let converter = (converter, &settings.gyro);
+    let Some(inputs) = ports::inputs(converter, accelerometer, encoders, base) else { return };
     spawner.spawn(defmt::unwrap!(mount_acquisition(inputs, frames, channels)));
     let mut motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
     let mut gimbal = Gimbal::new(&mut motors, frames, &channels.shared);
     let outside = (&mut link, &mut NoRecorder);
     let health =
-        navigate(&mut gimbal, session, keeping(store(flash)), &(), outside, channels).await;
+        navigate(&mut gimbal, session, keeping(&settings, store(flash)), &(), outside, channels)
+            .await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 

@@ -3,6 +3,7 @@
 
 use embassy_executor::Spawner;
 use firmware::run::navigate;
+use firmware::settings::{Settings, TurntableSchedule};
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
 use firmware::turntable::Turntable;
@@ -12,7 +13,7 @@ use static_cell::StaticCell;
 use crate::flash::{Store, store};
 use crate::wiring::{AxisPlatformWires, Outlets};
 use crate::{
-    Channels, begun, channels, configuration, keeping, on_base, ports, report_conclusion,
+    Channels, begun, channels, configuration, keeping, on_base, ports, report_conclusion, settings,
     stage_acquisition,
 };
 
@@ -24,28 +25,35 @@ const TODAY: Today = Today { date: None, longest: None };
 pub async fn align(spawner: Spawner, wires: AxisPlatformWires) {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
         wires;
-    let Outlets { mut link, flash } = outlets;
+    let Outlets { mut link, mut flash } = outlets;
+    let Some(settings) = settings::load(&mut flash, settings::turntable) else {
+        return;
+    };
     let channels = channels();
     let base = SwayCompensation::for_keeping(on_base(base));
-    let inputs = ports::inputs(converter, accelerometer, ports::encoder(axes.encoder), base);
+    let encoder = ports::encoder(axes.encoder);
+    let converter = (converter, &settings.gyro);
+    let Some(inputs) = ports::inputs(converter, accelerometer, encoder, base) else { return };
     spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let store = &SharedStore::new(store(flash));
-    let Some(session) = session(store, channels).await else { return };
+    let Some(session) = session(&settings, store, channels).await else { return };
     let mut motor = ports::motor(axes.motor);
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
     let outside = (&mut link, &mut CalibrationStore { store, channels });
-    let health = navigate(&mut platform, session, keeping(store), &(), outside, channels).await;
+    let health =
+        navigate(&mut platform, session, keeping(&settings, store), &(), outside, channels).await;
     report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.
 async fn session(
-    mut store: &SharedStore<Store>,
+    settings: &Settings<TurntableSchedule>,
+    mut store: &SharedStore<Store<'static>>,
     channels: &Channels,
 ) -> Option<&'static mut Session> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let mut setting = configuration::turning_setting();
-    let mut procedure = configuration::turning_procedure();
+    let mut setting = configuration::turning_setting(settings);
+    let mut procedure = configuration::turning_procedure(settings);
     begun(procedure.check())?;
     load_calibration(&mut store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))

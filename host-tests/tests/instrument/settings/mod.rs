@@ -32,7 +32,7 @@ fn settings<C>(schedule: C) -> Settings<C> {
         rate_ramp: RateRamp(1.25),
     };
     let errors =
-        attitude::Gyro { noise, bias_sigma: RadiansPerSecond(1.5), scale_sigma: 0.0009765625 };
+        attitude::Gyro { noise, bias_sigma: RadiansPerSecond(1.5), scale_sigma: 1.0 / 1024.0 };
     Settings {
         latitude: Latitude::from_degrees(45.0).expect("a latitude"),
         gyro: Gyro { volts_per_rad_per_s: -2.0, limit: RadiansPerSecond(1.75), errors },
@@ -286,7 +286,7 @@ fn refused<C: CarrierSchedule + PartialEq + std::fmt::Debug>(
 }
 
 /// Refuses settings for each of these values of a quantity.
-fn out_of_range<C>(name: &str, usual: C, values: &[f64], change: fn(&mut Settings<C>, f64))
+fn out_of_range<C>(name: &str, usual: &C, values: &[f64], change: fn(&mut Settings<C>, f64))
 where
     C: CarrierSchedule + Clone + PartialEq + std::fmt::Debug,
 {
@@ -301,31 +301,31 @@ where
 fn a_quantity_of_place_or_gyro_out_of_range_is_refused_by_name() {
     let negative = &[-1.0, f64::NAN, f64::INFINITY];
     let volts = &[0.0, 1e-12, -1e12, f64::NAN, f64::INFINITY];
-    out_of_range("magnitude of volts_per_rad_per_s", stage(), volts, |settings, value| {
+    out_of_range("magnitude of volts_per_rad_per_s", &stage(), volts, |settings, value| {
         settings.gyro.volts_per_rad_per_s = value;
     });
-    out_of_range("latitude", stage(), &[-85.01, 85.01, 90.0], |settings, value| {
+    out_of_range("latitude", &stage(), &[-85.01, 85.01, 90.0], |settings, value| {
         settings.latitude = Latitude::from_degrees(value).expect("a latitude");
     });
-    out_of_range("limit", stage(), &[0.0, -1.0, 2.2, f64::NAN], |settings, value| {
+    out_of_range("limit", &stage(), &[0.0, -1.0, 2.2, f64::NAN], |settings, value| {
         settings.gyro.limit.0 = value;
     });
-    out_of_range("bias_sigma", vehicle(), negative, |settings, value| {
+    out_of_range("bias_sigma", &vehicle(), negative, |settings, value| {
         settings.gyro.errors.bias_sigma.0 = value;
     });
-    out_of_range("scale_sigma", stage(), negative, |settings, value| {
+    out_of_range("scale_sigma", &stage(), negative, |settings, value| {
         settings.gyro.errors.scale_sigma = value;
     });
-    out_of_range("angle_random_walk", spin(), negative, |settings, value| {
+    out_of_range("angle_random_walk", &spin(), negative, |settings, value| {
         settings.gyro.errors.noise.angle_random_walk.0 = value;
     });
-    out_of_range("bias_instability", stage(), negative, |settings, value| {
+    out_of_range("bias_instability", &stage(), negative, |settings, value| {
         settings.gyro.errors.noise.bias_instability.0 = value;
     });
-    out_of_range("rate_random_walk", stage(), negative, |settings, value| {
+    out_of_range("rate_random_walk", &stage(), negative, |settings, value| {
         settings.gyro.errors.noise.rate_random_walk.0 = value;
     });
-    out_of_range("required_sigma", turntable(), negative, |settings, value| {
+    out_of_range("required_sigma", &turntable(), negative, |settings, value| {
         settings.required_sigma.0 = value;
     });
 }
@@ -334,46 +334,46 @@ fn a_quantity_of_place_or_gyro_out_of_range_is_refused_by_name() {
 fn a_quantity_of_a_schedule_out_of_range_is_refused_by_name() {
     let dwells = &[0.0, -4.0, 0.49, 601.0, f64::NAN];
     let long = &[59.0, 36_001.0, -60.0, f64::NAN];
-    out_of_range("positions", stage(), &[0.0, 1.0, 65.0, 255.0], |settings, value| {
+    out_of_range("positions", &stage(), &[0.0, 1.0, 65.0, 255.0], |settings, value| {
         settings.schedule.positions = value as u8;
     });
-    out_of_range("dwell", stage(), dwells, |settings, value| {
+    out_of_range("dwell", &stage(), dwells, |settings, value| {
         settings.schedule.dwell.0 = value;
     });
-    out_of_range("survey", stage(), long, |settings, value| {
+    out_of_range("survey", &stage(), long, |settings, value| {
         settings.schedule.survey = Some(Seconds(value));
     });
-    out_of_range("allowed", stage(), long, |settings, value| {
+    out_of_range("allowed", &stage(), long, |settings, value| {
         settings.schedule.allowed = Some(Seconds(value));
     });
-    out_of_range("passes", two_frame(), &[0.0, 17.0], |settings, value| {
+    out_of_range("passes", &two_frame(), &[0.0, 17.0], |settings, value| {
         settings.schedule.passes = value as u8;
     });
-    out_of_range("dwell", two_frame(), dwells, |settings, value| {
+    out_of_range("dwell", &two_frame(), dwells, |settings, value| {
         settings.schedule.dwell.0 = value;
     });
-    out_of_range("number of speeds", turntable(), &[0.0], |settings, _| {
+    out_of_range("number of speeds", &turntable(), &[0.0], |settings, _| {
         settings.schedule.speeds.clear();
     });
-    out_of_range("speeds", turntable(), &[0.0, -1.0, 0.12, 3.15, f64::NAN], |settings, value| {
+    out_of_range("speeds", &turntable(), &[0.0, -1.0, 0.12, 3.15, f64::NAN], |settings, value| {
         settings.schedule.speeds[1].0 = value;
     });
-    out_of_range("turns", turntable(), &[0.0, 1.0, 1001.0], |settings, value| {
+    out_of_range("turns", &turntable(), &[0.0, 1.0, 1001.0], |settings, value| {
         settings.schedule.turns = value as u32;
     });
-    out_of_range("modulated_turns", turntable(), &[1.0, 3.0, 1001.0], |settings, value| {
+    out_of_range("modulated_turns", &turntable(), &[1.0, 3.0, 1001.0], |settings, value| {
         settings.schedule.modulated_turns = value as u32;
     });
-    out_of_range("stops", vehicle(), &[0.0, 1.0, 9.0], |settings, value| {
+    out_of_range("stops", &vehicle(), &[0.0, 1.0, 9.0], |settings, value| {
         settings.schedule.stops = value as u8;
     });
-    out_of_range("stop", vehicle(), &[0.0, 9.9, 3601.0, f64::NAN], |settings, value| {
+    out_of_range("stop", &vehicle(), &[0.0, 9.9, 3601.0, f64::NAN], |settings, value| {
         settings.schedule.stop.0 = value;
     });
-    out_of_range("course", spin(), &[-6.3, 6.3, f64::NAN], |settings, value| {
+    out_of_range("course", &spin(), &[-6.3, 6.3, f64::NAN], |settings, value| {
         settings.schedule.course.0 = value;
     });
-    out_of_range("pitch", spin(), &[-1.6, 1.6, f64::NAN], |settings, value| {
+    out_of_range("pitch", &spin(), &[-1.6, 1.6, f64::NAN], |settings, value| {
         settings.schedule.pitch.0 = value;
     });
 }
