@@ -43,13 +43,14 @@ impl Word {
     pub(super) fn read(self) -> (u64, Ecc) {
         let syndrome = check(self.data) ^ self.check;
         let cleared = self.data.count_zeros() + self.check.count_zeros();
-        let wrong = COLUMNS.iter().position(|column| *column == syndrome);
-        match (syndrome, cleared, wrong) {
-            (0, ..) | (_, 0, _) => (self.data, Ecc::Sound),
-            (_, 1, _) => (Self::ERASED.data, Ecc::Corrected),
-            (_, _, Some(bit)) => (self.data ^ (1 << bit), Ecc::Corrected),
-            _ if syndrome.is_power_of_two() => (self.data, Ecc::Corrected),
-            _ => (self.data, Ecc::Uncorrectable),
+        if syndrome == 0 || cleared == 0 {
+            return (self.data, Ecc::Sound);
+        }
+        match COLUMNS.iter().position(|column| *column == syndrome) {
+            _ if cleared == 1 => (Self::ERASED.data, Ecc::Corrected),
+            Some(bit) => (self.data ^ (1 << bit), Ecc::Corrected),
+            None if syndrome.is_power_of_two() => (self.data, Ecc::Corrected),
+            None => (self.data, Ecc::Uncorrectable),
         }
     }
 }

@@ -16,6 +16,7 @@ mod settings;
 mod spin;
 mod stops_instrument;
 mod stops_instrument_faults;
+mod store;
 mod sway;
 mod turntable_instrument;
 mod turntable_instrument_storage;

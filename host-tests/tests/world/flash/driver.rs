@@ -92,7 +92,7 @@ fn a_loss_within_an_operation_is_at_some_moment_of_it() {
         let mut flash = PoweredFlash::new(erased(seed), seed);
         flash.loss = Some(Loss::Within(1));
         assert_eq!(write(&mut flash, 0, &[1; 3 * ROW]), Err(Trouble::Supply));
-        moments.push(flash.now() - row);
+        moments.push(flash.now().saturating_sub(row));
         flash.restart();
         flash.interrupt = Interrupt::Returns;
         assert_eq!(read(&mut flash, 0), Ok([1; ROW]));
@@ -107,7 +107,9 @@ fn a_loss_within_an_operation_is_at_some_moment_of_it() {
 fn an_uncorrectable_row_stops_a_program_whose_interrupt_does_not_return() {
     let mut flash = powered();
     assert_eq!(write(&mut flash, 0, &[1; 2 * ROW]), Ok(()));
-    [3, 40].iter().for_each(|bit| flash.flash.invert(8, *bit));
+    for bit in [3, 40] {
+        flash.flash.invert(8, bit);
+    }
     assert_eq!(read(&mut flash, 0), Ok([1; ROW]));
     assert_eq!(read::<1>(&mut flash, 8), Err(Trouble::Interrupt));
     assert_eq!(read::<1>(&mut flash, 0), Err(Trouble::Interrupt));

@@ -33,6 +33,7 @@ fn programmed(offset: u32, bytes: [u8; ROW]) -> Flash<Box<Cells>> {
     flash
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it is compared with what reads return")]
 fn sound(bytes: [u8; ROW]) -> Result<Read, Busy> {
     Ok(Read { bytes, ecc: Ecc::Sound })
 }
@@ -113,7 +114,7 @@ fn the_other_bank_is_readable_while_one_is_busy() {
     for (written, other) in [(0, UPPER), (UPPER, 0)] {
         let mut flash = programmed(other, DATA);
         flash.program(written + 8, DATA, LATER).expect("it is erased");
-        let last = LATER + row - Duration::from_nanos(1);
+        let last = LATER + row.saturating_sub(Duration::from_nanos(1));
         assert_eq!(flash.read(other, last), sound(DATA));
         // Any row of the same bank waits, and the program's writes to either bank do.
         let busy = Busy { until: LATER + row };
@@ -139,7 +140,9 @@ fn an_erasure_restores_its_page_or_bank_and_nothing_else() {
     let page = UPPER + 9 * PAGE as u32;
     let edges = [page - 8, page, page + PAGE as u32 - 8, page + PAGE as u32];
     let mut flash = erased(1);
-    edges.iter().for_each(|row| flash.burn(*row, &DATA));
+    for row in edges {
+        flash.burn(row, &DATA);
+    }
     flash.erase_page(Bank::Upper, 9, START).expect("nothing is under way");
     let found = edges.map(|row| flash.read(row, LATER));
     assert_eq!(found, [DATA, ERASED, ERASED, DATA].map(sound));

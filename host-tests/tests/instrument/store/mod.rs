@@ -1,0 +1,125 @@
+//! The store in the flash of the STM32L475: the supply is lost at any moment, at random moments, and other programs
+//! have used the pages before.
+//!
+//! Tests that are expected to fail show known defects; each names its figure.
+
+mod cuts;
+mod remains;
+mod sequences;
+
+use drivers::fault::Fault;
+use firmware::ports::Store as _;
+use firmware::storage::{FlashStore, HEADING};
+use hal_mock::flash::nor::PoweredFlash;
+use hal_mock::flash::{Cells, Flash, PAGE, SIZE, Times};
+use host::virtual_time::run;
+use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
+use orientation::attitude::restart::Remembered;
+use orientation::units::{Radians, RadiansPerSecond, Seconds};
+use sequential_storage::map::MapConfig;
+
+/// The flash of a board, behind its driver.
+type Board = PoweredFlash<Box<Cells>>;
+/// First byte of the store: it has the last two pages, as on the board (`firmware/stm32/src/flash.rs`).
+const FIRST: u32 = (SIZE - 2 * PAGE) as u32;
+
+/// An erased flash. The seed decides what a loss of supply does to it.
+fn erased(seed: u64) -> Board {
+    let cells: Box<Cells> = vec![0; size_of::<Cells>()].try_into().expect("as long as the cells");
+    PoweredFlash::new(Flash::erased(cells, Times::TYPICAL, seed), seed)
+}
+
+/// The store in this flash. It keeps nothing in memory from one access to the next.
+fn store(flash: &mut Board) -> FlashStore<&mut Board> {
+    FlashStore::new(flash, const { MapConfig::new(FIRST..SIZE as u32) })
+}
+
+/// A kind of item that the instrument stores. Each item is known by a number.
+trait Item<const N: usize> {
+    /// The stored form of the item of this number.
+    fn bytes(number: u64) -> [u8; N];
+    /// The number of a stored form; [`None`] if it is none.
+    fn number(bytes: &[u8; N]) -> Option<u64>;
+}
+
+/// The heading of a vehicle at rest.
+struct Heading;
+
+impl Item<{ Remembered::BYTES }> for Heading {
+    fn bytes(number: u64) -> [u8; Remembered::BYTES] {
+        Remembered {
+            azimuth: Radians(number as f64),
+            sigma: Radians(0.01),
+            pitch: Radians(0.02),
+            roll: Radians(-0.03),
+            rates: [4e-5, 5e-5, -6e-5].map(RadiansPerSecond),
+            rest: Seconds(60.0),
+        }
+        .to_bytes()
+    }
+
+    fn number(bytes: &[u8; Remembered::BYTES]) -> Option<u64> {
+        Remembered::from_bytes(bytes).map(|heading| heading.azimuth.0 as u64)
+    }
+}
+
+/// The axis misalignment at a speed.
+struct Misalignment;
+
+impl Item<BYTES> for Misalignment {
+    fn bytes(number: u64) -> [u8; BYTES] {
+        AxisMisalignment {
+            sine: 0.01,
+            quadrature: Seconds(1e-6),
+            sine_sigma: 1e-6,
+            quadrature_sigma: Seconds(1e-6),
+            frequency: RadiansPerSecond(0.9),
+            date: number,
+            temperature: 21.5,
+        }
+        .to_bytes()
+    }
+
+    fn number(bytes: &[u8; BYTES]) -> Option<u64> {
+        AxisMisalignment::from_bytes(bytes).map(|misalignment| misalignment.date)
+    }
+}
+
+/// A slot of the store, with its kind of item.
+#[derive(Clone, Copy)]
+struct Slot {
+    key: u8,
+    save: fn(&mut Board, u8, u64) -> Result<(), Fault>,
+    load: fn(&mut Board, u8) -> Result<Option<u64>, Fault>,
+}
+
+/// The slots that the instrument uses.
+const SLOTS: [Slot; 3] = [
+    Slot::of::<Heading, { Remembered::BYTES }>(HEADING),
+    Slot::of::<Misalignment, BYTES>(0),
+    Slot::of::<Misalignment, BYTES>(1),
+];
+
+impl Slot {
+    const fn of<I: Item<N>, const N: usize>(key: u8) -> Self {
+        Self { key, save: save::<I, N>, load: load::<I, N> }
+    }
+
+    fn save(&self, flash: &mut Board, number: u64) -> Result<(), Fault> {
+        (self.save)(flash, self.key, number)
+    }
+
+    /// The number of the item in the slot, which is whole.
+    fn load(&self, flash: &mut Board) -> Result<Option<u64>, Fault> {
+        (self.load)(flash, self.key)
+    }
+}
+
+fn save<I: Item<N>, const N: usize>(flash: &mut Board, key: u8, number: u64) -> Result<(), Fault> {
+    run(store(flash).save(key, &I::bytes(number))).expect("it ends")
+}
+
+fn load<I: Item<N>, const N: usize>(flash: &mut Board, key: u8) -> Result<Option<u64>, Fault> {
+    let found = run(store(flash).load::<N>(key)).expect("it ends")?;
+    Ok(found.map(|bytes| I::number(&bytes).expect("the item is whole")))
+}
