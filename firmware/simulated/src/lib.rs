@@ -10,6 +10,7 @@
 
 pub mod base;
 pub mod coarse;
+pub mod executed;
 pub mod fault;
 pub mod flash;
 pub mod hold;

@@ -49,6 +49,8 @@ const HARMONICS: [Harmonic; 2] = [
 ];
 /// 1σ of what the calibration of the harmonics leaves, rad: 2″.
 const ENCODER_SIGMA: f64 = 2.0 / 3600.0 * DEGREE;
+/// 1σ of the gyro's g-sensitivity, °/h/g, and of the encoder, rad, as an image states them that has no calibration.
+const UNCALIBRATED_SIGMAS: (f64, f64) = (0.1, 0.05 * DEGREE);
 
 /// Data rates of the converter at which a stage path runs.
 pub const RATES: [DataRate; 7] = [
@@ -179,6 +181,9 @@ pub struct Scenario {
     pub roll_deg: f64,
     /// The precise gyro.
     pub gyro: GyroClass,
+    /// Whether the board is given a calibration of gyro and encoder; without one the encoder is true, and the board
+    /// states greater σ.
+    pub is_calibrated: bool,
     /// Samples a second: one of the converter's data rates, Hz.
     pub sample_rate_hz: f64,
     /// Positions on the full circle.
@@ -216,6 +221,7 @@ impl Default for Scenario {
             pitch_deg: 0.6,
             roll_deg: -0.4,
             gyro: GyroClass::FIBRE_OPTIC,
+            is_calibrated: true,
             sample_rate_hz: 400.0,
             positions: 24,
             dwell_s: 10.0,
@@ -259,13 +265,18 @@ impl Scenario {
     #[must_use]
     pub fn site(&self) -> Option<Site> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;
+        let (g_sensitivity, (g_sensitivity_sigma, encoder_sigma)) = if self.is_calibrated {
+            (G_SENSITIVITY, (G_SENSITIVITY_SIGMA, ENCODER_SIGMA))
+        } else {
+            ([0.0; 2], UNCALIBRATED_SIGMAS)
+        };
         Some(Site {
             noise: StatedNoise::Whole(self.gyro.noise()),
             scale_sigma: SCALE_SIGMA,
-            g_sensitivity: G_SENSITIVITY.map(GSensitivity::from_degrees_per_hour),
-            g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(G_SENSITIVITY_SIGMA),
+            g_sensitivity: g_sensitivity.map(GSensitivity::from_degrees_per_hour),
+            g_sensitivity_sigma: GSensitivity::from_degrees_per_hour(g_sensitivity_sigma),
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
-            encoder_sigma: Radians(ENCODER_SIGMA),
+            encoder_sigma: Radians(encoder_sigma),
             required_sigma: Radians(self.required_sigma()),
             ..Site::at(latitude)
         })
@@ -348,11 +359,12 @@ impl Scenario {
     /// What the board is given about its devices.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
-        Configuration { encoder: calibration(), ..Configuration::at(self.sample_rate_hz) }
+        Configuration { encoder: calibration(self.harmonics()), ..Configuration::at(self.sample_rate_hz) }
     }
 
     /// What is true of the instruments.
     pub fn instruments(&self) -> InstrumentsConfiguration {
+        let [first, second] = self.harmonics();
         InstrumentsConfiguration {
             latitude_deg: self.latitude_deg,
             azimuth_deg: self.azimuth_deg,
@@ -369,13 +381,14 @@ impl Scenario {
                 bias_sigma_m_s2: FORCE_BIAS_SIGMA.0,
                 ..AccelerometerConfiguration::default()
             },
-            encoder: EncoderConfiguration {
-                step_rad: 0.0,
-                first: HARMONICS[0],
-                second: HARMONICS[1],
-            },
+            encoder: EncoderConfiguration { step_rad: 0.0, first, second },
             ..InstrumentsConfiguration::default()
         }
+    }
+
+    /// The encoder's harmonics, which are true and calibrated, or none.
+    fn harmonics(&self) -> [Harmonic; 2] {
+        if self.is_calibrated { HARMONICS } else { Default::default() }
     }
 
     /// What is true of everything that the chips feel and move.
@@ -431,11 +444,11 @@ pub fn sway(scenario: &Scenario) -> SwayConfiguration {
 }
 
 /// The encoder's harmonics as a calibration found them: sine and cosine parts of what is true.
-fn calibration() -> Harmonics {
+fn calibration([first, second]: [Harmonic; 2]) -> Harmonics {
     let parts = |harmonic: Harmonic| {
         let Harmonic { amplitude_rad, phase_rad } = harmonic;
         [amplitude_rad * libm::cos(phase_rad), amplitude_rad * libm::sin(phase_rad)]
             .map(|part| part as f32)
     };
-    Harmonics { first: parts(HARMONICS[0]), second: parts(HARMONICS[1]) }
+    Harmonics { first: parts(first), second: parts(second) }
 }

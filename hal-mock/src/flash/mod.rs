@@ -110,7 +110,7 @@ impl<M: DerefMut<Target = Cells>> Flash<M> {
     }
 
     /// Programs bytes from this offset on as a debugger does before the start: at once, with their
-    /// check bits, whatever was there. The rest of the first and of the last row is kept.
+    /// check bits, whatever was there; rows of ones stay erased. The rest of the first and of the last row is kept.
     ///
     /// # Panics
     /// Where the flash ends before the bytes.
@@ -118,8 +118,8 @@ impl<M: DerefMut<Target = Cells>> Flash<M> {
         let from = offset as usize;
         self.cells[..SIZE][from..from + bytes.len()].copy_from_slice(bytes);
         for row in rows(offset & !(ROW as u32 - 1)..offset + bytes.len() as u32) {
-            let word = Word::of(self.word(row).data);
-            self.set_word(row, word);
+            let data = self.word(row).data;
+            self.set_word(row, if data == u64::MAX { Word::ERASED } else { Word::of(data) });
         }
     }
 

@@ -17,13 +17,13 @@ use crate::tmc5160::{Oscillator, Tmc5160};
 #[derive(Clone, Debug)]
 pub struct GimbalChips {
     /// The converter of the gyro in the inner frame.
-    gyro: Ads1262,
+    pub gyro: Ads1262,
     /// The accelerometer on the base.
     accelerometer: Adxl355,
     /// The encoders of the outer and the inner frame.
     encoders: [Mt6835; 2],
     /// The motor drivers of the outer and the inner frame.
-    actuators: [Tmc5160; 2],
+    pub actuators: [Tmc5160; 2],
 }
 
 /// The gimbal with its chips.

@@ -1,0 +1,268 @@
+//! Registers of the flash (RM0351, chapter 3) before its cells.
+
+use std::time::Duration;
+
+use hal_mock::flash::{Bank, Cells, Ecc, Flash as Array, PAGE, ROW, Refused as NotProgrammed, SIZE, Times};
+
+use super::Refused;
+use crate::time::Time;
+
+/// `FLASH_CR`: stores program rows.
+const PROGRAM: u32 = 1;
+/// `FLASH_CR`: a page is erased.
+const ERASE_PAGE: u32 = 2;
+/// `FLASH_CR`: the lower bank is erased.
+const ERASE_LOWER: u32 = 4;
+/// `FLASH_CR`: the upper bank is erased.
+const ERASE_UPPER: u32 = 1 << 15;
+/// `FLASH_CR`: the erasure begins.
+const START: u32 = 1 << 16;
+/// `FLASH_CR`: it cannot be written.
+const LOCK: u32 = 1 << 31;
+/// `FLASH_SR`: an operation has ended.
+const DONE: u32 = 1;
+/// `FLASH_SR`: the row was programmed before.
+const PROGRAMMED: u32 = 1 << 3;
+/// `FLASH_SR`: the stores are not those of a row.
+const UNALIGNED: u32 = 1 << 5;
+/// `FLASH_SR`: the control register does not ask for what is done.
+const SEQUENCE: u32 = 1 << 7;
+/// `FLASH_SR`: any error.
+const ERRORS: u32 = 0x3FA;
+/// `FLASH_SR`: an operation is under way.
+const BUSY: u32 = 1 << 16;
+/// `FLASH_CR`: the end of an operation interrupts.
+const TELLS_END: u32 = 1 << 24;
+/// `FLASH_CR`: an error interrupts.
+const TELLS_ERROR: u32 = 1 << 25;
+/// The keys that open the control register, in their order.
+const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+/// The option bytes as delivered (RM0351, 3.4.1), brown-out level 0.
+const OPTIONS: u32 = 0xFFEF_F8AA;
+
+/// What the program does to its flash.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlashUse {
+    /// Rows that were programmed.
+    pub rows: u64,
+    /// Pages that were erased.
+    pub pages: u64,
+}
+
+/// The flash with its registers.
+pub struct Flash {
+    /// The cells.
+    pub array: Array<Box<Cells>>,
+    /// `FLASH_ACR`.
+    access: u32,
+    /// `FLASH_SR` without the bit that says busy.
+    status: u32,
+    /// `FLASH_CR`.
+    control: u32,
+    /// `FLASH_ECCR`.
+    ecc: u32,
+    /// The first key was written.
+    is_half_open: bool,
+    /// The first half of a row: its offset and data.
+    half: Option<(u32, u32)>,
+    /// Whether something is under way whose end is to be told.
+    is_running: bool,
+    /// Whether a row was read that cannot be corrected, which interrupts.
+    pub is_broken: bool,
+    /// What was done to it.
+    pub used: FlashUse,
+    /// The supply is lost when so many operations have been begun: a fault that is injected.
+    pub cut_after: Option<u64>,
+}
+
+/// The time of the cells.
+fn since_start(now: Time) -> Duration {
+    Duration::from_nanos(now.as_nanoseconds())
+}
+
+impl Flash {
+    /// An erased flash with typical times. The seed decides what a lost supply leaves.
+    pub fn new(seed: u64) -> Self {
+        // Vectors become boxes without a copy on the stack.
+        let cells: Box<Cells> =
+            vec![0; size_of::<Cells>()].into_boxed_slice().try_into().unwrap_or_else(|_| unreachable!());
+        Self {
+            array: Array::erased(cells, Times::TYPICAL, seed),
+            access: 0x600,
+            status: 0,
+            control: LOCK,
+            ecc: 0,
+            is_half_open: false,
+            half: None,
+            is_running: false,
+            is_broken: false,
+            used: FlashUse::default(),
+            cut_after: None,
+        }
+    }
+
+    /// A reset: what is under way is torn.
+    pub fn reset(&mut self, now: Time) {
+        self.array.lose_supply(since_start(now));
+        (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK, 0);
+        (self.is_half_open, self.half, self.is_running, self.is_broken) = (false, None, false, false);
+    }
+
+    /// Wait states of a fetch.
+    pub fn wait_states(&self) -> u32 {
+        self.access & 7
+    }
+
+    /// Whether an operation is under way.
+    fn is_busy(&mut self, now: Time) -> bool {
+        let is_busy = self.array.busy(since_start(now)).is_some();
+        if !is_busy && std::mem::take(&mut self.is_running) && self.control & TELLS_END != 0 {
+            self.status |= DONE;
+        }
+        is_busy
+    }
+
+    /// When the operation that is under way ends.
+    pub fn due(&mut self, now: Time) -> Time {
+        if !self.is_running { return Time::NEVER }
+        let busy = self.array.busy(since_start(now));
+        busy.map_or(now, |busy| Time::nanoseconds(busy.until.as_nanos() as u64))
+    }
+
+    /// Completes what has ended.
+    pub fn advance(&mut self, now: Time) {
+        self.is_busy(now);
+    }
+
+    /// Whether it interrupts: an end or an error, where they are enabled.
+    pub fn interrupts(&self) -> bool {
+        self.control & TELLS_END != 0 && self.status & DONE != 0
+            || self.control & TELLS_ERROR != 0 && self.status & ERRORS != 0
+    }
+
+    /// Reads a register.
+    pub fn read(&mut self, offset: u32, now: Time) -> Result<u32, Refused> {
+        Ok(match offset {
+            0x00 => self.access,
+            0x10 => (if self.is_busy(now) { BUSY } else { 0 }) | self.status,
+            0x14 => self.control,
+            0x18 => self.ecc,
+            0x20 => OPTIONS,
+            _ => return Err(Refused::Unknown),
+        })
+    }
+
+    /// Writes a register.
+    pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
+        match offset {
+            0x00 => {
+                self.array.switch_cache(value & 1 << 10 != 0);
+                if value & 1 << 12 != 0 {
+                    self.array.reset_cache();
+                }
+                self.access = value & !0x1800;
+            }
+            0x08 if self.control & LOCK == 0 => {}
+            0x08 if value == KEYS[0] && !self.is_half_open => self.is_half_open = true,
+            0x08 if value == KEYS[1] && self.is_half_open => {
+                (self.control, self.is_half_open) = (self.control & !LOCK, false);
+            }
+            0x08 => return Err(Refused::NotModelled("a wrong key, which locks the flash until the next reset")),
+            0x10 => self.status &= !value,
+            0x14 if self.control & LOCK != 0 => {}
+            0x14 => {
+                self.control = value & !START;
+                if value & START != 0 {
+                    self.erase(now);
+                }
+            }
+            0x18 => self.ecc = self.ecc & !(value & 0xC000_0000) & !(1 << 24) | value & 1 << 24,
+            _ => return Err(Refused::Unknown),
+        }
+        Ok(())
+    }
+
+    /// Erases what the control register says.
+    fn erase(&mut self, now: Time) {
+        let bank = |upper: bool| if upper { Bank::Upper } else { Bank::Lower };
+        let time = since_start(now);
+        let begun = match self.control & (ERASE_PAGE | ERASE_LOWER | ERASE_UPPER | PROGRAM) {
+            ERASE_PAGE => {
+                let page = (self.control >> 3 & 0xFF) as u8;
+                self.array.erase_page(bank(self.control & 1 << 11 != 0), page, time)
+            }
+            ERASE_LOWER => self.array.erase_bank(Bank::Lower, time),
+            ERASE_UPPER => self.array.erase_bank(Bank::Upper, time),
+            _ => return self.status |= SEQUENCE,
+        };
+        match begun {
+            Ok(()) => {
+                self.used.pages += 1;
+                self.is_running = true;
+            }
+            Err(_) => self.status |= SEQUENCE,
+        }
+    }
+
+    /// A store into the flash: the second word of a row programs it. Meanwhile the core waits where the store
+    /// falls into an operation that is under way; then it says until when.
+    pub fn store(&mut self, offset: u32, value: u32, size: u32, now: Time) -> Option<Time> {
+        if let Some(busy) = self.array.busy(since_start(now)) {
+            return Some(Time::nanoseconds(busy.until.as_nanos() as u64));
+        }
+        self.is_busy(now);
+        if self.control & (PROGRAM | LOCK) != PROGRAM || size != 4 || self.status & ERRORS != 0 {
+            self.status |= SEQUENCE;
+            return None;
+        }
+        match self.half.take() {
+            None if offset.is_multiple_of(ROW as u32) => self.half = Some((offset, value)),
+            Some((start, first)) if offset == start + 4 => {
+                let data = (u64::from(value) << 32 | u64::from(first)).to_le_bytes();
+                match self.array.program(start, data, since_start(now)) {
+                    Ok(()) => {
+                        self.used.rows += 1;
+                        self.is_running = true;
+                    }
+                    Err(NotProgrammed::Programmed) => self.status |= PROGRAMMED,
+                    Err(_) => self.status |= SEQUENCE,
+                }
+            }
+            _ => self.status |= UNALIGNED,
+        }
+        None
+    }
+
+    /// A load from the flash by the core, of up to eight bytes that do not leave a row, or until when it waits.
+    pub fn load(&mut self, offset: u32, size: u32, now: Time) -> Result<u32, Time> {
+        let read = self.array.load(offset, since_start(now)).map_err(|busy| Time::nanoseconds(busy.until.as_nanos() as u64))?;
+        match read.ecc {
+            Ecc::Sound => {}
+            Ecc::Corrected => self.report(offset, 1 << 30),
+            _ => {
+                self.report(offset, 1 << 31);
+                self.is_broken = true;
+            }
+        }
+        let place = offset as usize % ROW;
+        let bytes = &read.bytes[place..(place + size as usize).min(ROW)];
+        Ok(bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)))
+    }
+
+    /// Notes what the check of a row found; the address of the first finding stays.
+    fn report(&mut self, offset: u32, flag: u32) {
+        if self.ecc & 0xC000_0000 == 0 {
+            let bank = if offset as usize >= SIZE / 2 { 1 << 19 } else { 0 };
+            self.ecc = self.ecc & 1 << 24 | bank | (offset % (SIZE as u32 / 2)) >> 3;
+        }
+        self.ecc |= flag;
+    }
+
+    /// Operations that were begun.
+    pub fn operations(&self) -> u64 {
+        self.used.rows + self.used.pages
+    }
+}
+
+/// The pages of the store: the last two.
+pub const STORE: std::ops::Range<u32> = (SIZE - 2 * PAGE) as u32..SIZE as u32;

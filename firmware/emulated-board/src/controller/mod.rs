@@ -1,0 +1,521 @@
+//! The microcontroller STM32L475VG around its core: those of its peripherals that an image of this project uses.
+//!
+//! Register facts are those of the reference manual RM0351. A register that is not listed, a peripheral without its
+//! clock and a function that is not modelled are errors, never a value.
+
+mod dma;
+mod exti;
+pub mod flash;
+mod gpio;
+mod i2c;
+mod power;
+pub mod rcc;
+mod spi;
+pub mod system;
+mod timer;
+mod usart;
+mod watchdog;
+
+use thiserror::Error;
+
+use self::dma::{CHANNELS, Dma, Item};
+use self::exti::Exti;
+use self::flash::Flash;
+use self::gpio::Port;
+use self::i2c::I2c;
+use self::power::Power;
+use self::rcc::{Oscillators, Rcc};
+use self::spi::Spi;
+use self::system::System;
+use self::timer::Timer;
+use self::usart::Usart;
+use self::watchdog::Watchdog;
+use crate::processor::exceptions::{Exceptions, FIRST_INTERRUPT};
+use crate::time::Time;
+use crate::wiring::{Pin, Wiring};
+
+/// Ports A to H.
+const PORTS: usize = 8;
+
+/// Why an access is not answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Refused {
+    /// The model has no such register.
+    #[error("the model has no such register")]
+    Unknown,
+    /// The peripheral has no clock.
+    #[error("the peripheral has no clock")]
+    NoClock,
+    /// A function that the model does not have.
+    #[error("not modelled: {0}")]
+    NotModelled(&'static str),
+}
+
+/// Why the controller starts again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResetReason {
+    /// The supply came up, or was too low.
+    Supply,
+    /// The program asked for it.
+    Software,
+    /// The watchdog was not fed.
+    Watchdog,
+    /// The reset pin.
+    Pin,
+}
+
+/// The memory that direct memory access reaches.
+pub trait Memory {
+    /// Reads bytes; whether there is memory.
+    fn read(&self, address: u32, bytes: &mut [u8]) -> bool;
+
+    /// Writes bytes; whether there is memory.
+    fn write(&mut self, address: u32, bytes: &[u8]) -> bool;
+}
+
+/// The peripherals, by where their registers begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Peripheral {
+    Spi(usize),
+    I2c,
+    Power,
+    Watchdog,
+    System,
+    Configuration,
+    Exti,
+    Usart,
+    Timer,
+    Dma(usize),
+    Rcc,
+    Flash,
+    Gpio(usize),
+    Debug,
+}
+
+/// The peripheral at an address, and what gives it its clock: offset of a register of [`Rcc`] and bit.
+const fn peripheral(address: u32) -> Option<(Peripheral, Option<(u32, u32)>)> {
+    Some(match address & !0x3FF {
+        0x4000_3000 => (Peripheral::Watchdog, None),
+        0x4000_3800 => (Peripheral::Spi(1), Some((0x58, 14))),
+        0x4000_5800 => (Peripheral::I2c, Some((0x58, 22))),
+        0x4000_7000 => (Peripheral::Power, Some((0x58, 28))),
+        0x4001_0000 => (Peripheral::Configuration, Some((0x60, 0))),
+        0x4001_0400 => (Peripheral::Exti, None),
+        0x4001_3000 => (Peripheral::Spi(0), Some((0x60, 12))),
+        0x4001_3800 => (Peripheral::Usart, Some((0x60, 14))),
+        0x4001_4000 => (Peripheral::Timer, Some((0x60, 16))),
+        0x4002_0000 => (Peripheral::Dma(0), Some((0x48, 0))),
+        0x4002_0400 => (Peripheral::Dma(1), Some((0x48, 1))),
+        0x4002_1000 => (Peripheral::Rcc, None),
+        0x4002_2000 => (Peripheral::Flash, None),
+        base @ 0x4800_0000..0x4800_2000 => {
+            let port = (base - 0x4800_0000) / 0x400;
+            (Peripheral::Gpio(port as usize), Some((0x4C, port)))
+        }
+        0xE000_E000..0xE000_F000 => (Peripheral::System, None),
+        0xE004_2000 => (Peripheral::Debug, None),
+        _ => return None,
+    })
+}
+
+/// Requests of peripherals for direct memory access: controller, channel from zero, selection (tables 44, 45).
+const REQUESTS: [(usize, usize, u32, Request); 10] = [
+    (0, 1, 1, Request::FromSpi(0)),
+    (0, 2, 1, Request::ToSpi(0)),
+    (0, 3, 1, Request::FromSpi(1)),
+    (0, 4, 1, Request::ToSpi(1)),
+    (0, 3, 3, Request::ToI2c),
+    (0, 4, 3, Request::FromI2c),
+    (0, 3, 2, Request::ToUsart),
+    (0, 4, 2, Request::FromUsart),
+    (1, 5, 2, Request::ToUsart),
+    (1, 6, 2, Request::FromUsart),
+];
+
+/// Who asks for direct memory access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Request {
+    FromSpi(usize),
+    ToSpi(usize),
+    FromI2c,
+    ToI2c,
+    FromUsart,
+    ToUsart,
+}
+
+/// Interrupts of the channels of both DMA controllers.
+const DMA_INTERRUPTS: [[u32; CHANNELS]; 2] = [[11, 12, 13, 14, 15, 16, 17], [56, 57, 58, 59, 60, 68, 69]];
+
+/// The microcontroller without its core.
+pub struct Controller {
+    /// Exceptions of the core.
+    pub exceptions: Exceptions,
+    /// Registers of the core.
+    pub system: System,
+    /// Reset and clocks.
+    rcc: Rcc,
+    power: Power,
+    /// Flash.
+    pub flash: Flash,
+    ports: [Port; PORTS],
+    /// Interrupts by edges.
+    pub exti: Exti,
+    timer: Timer,
+    /// Serial buses 1 and 2.
+    pub spi: [Spi; 2],
+    dma: [Dma; 2],
+    i2c: I2c,
+    /// The serial port.
+    pub usart: Usart,
+    /// The watchdog.
+    pub watchdog: Watchdog,
+    /// `DBGMCU_CR`, `APB1FZR1`, `APB1FZR2`, `APB2FZR`.
+    debug: [u32; 4],
+    /// Clock of the core and of the buses, Hz.
+    hertz: u64,
+    /// What is on the pins.
+    pub wiring: Box<dyn Wiring>,
+    /// A reset that is due.
+    pub reset: Option<ResetReason>,
+    /// When the crystal begins to oscillate, where the clock then changes.
+    crystal: Time,
+}
+
+impl Controller {
+    /// A controller whose supply comes up.
+    pub fn new(oscillators: Oscillators, seed: u64, wiring: Box<dyn Wiring>) -> Self {
+        Self {
+            exceptions: Exceptions::default(),
+            system: System::new(),
+            rcc: Rcc::new(oscillators),
+            power: Power::default(),
+            flash: Flash::new(seed),
+            ports: std::array::from_fn(Port::new),
+            exti: Exti::default(),
+            timer: Timer::default(),
+            spi: [Spi::new(), Spi::new()],
+            dma: Default::default(),
+            i2c: I2c::new(),
+            usart: Usart::new(),
+            watchdog: Watchdog::default(),
+            debug: [0; 4],
+            hertz: 4_000_000,
+            wiring,
+            reset: None,
+            crystal: Time::NEVER,
+        }
+    }
+
+    /// Starts again: all registers but those of the backup domain have their reset values.
+    pub fn restart(&mut self, reason: ResetReason, now: Time) {
+        self.rcc.reset(reason);
+        self.flash.reset(now);
+        (self.exceptions, self.system, self.power) = Default::default();
+        self.system = System::new();
+        self.usart.reset();
+        self.exti.reset();
+        (self.timer, self.dma, self.i2c) = (Timer::default(), Default::default(), I2c::new());
+        self.spi = [Spi::new(), Spi::new()];
+        self.watchdog = Watchdog::default();
+        self.debug = [0; 4];
+        self.reset = None;
+        for index in 0..PORTS {
+            self.ports[index] = Port::new(index);
+            self.drive(index, now);
+        }
+        self.reclock(now);
+    }
+
+    /// Clock of the core, Hz.
+    pub const fn hertz(&self) -> u64 {
+        self.hertz
+    }
+
+    /// When something next happens of itself.
+    pub fn due(&mut self, now: Time) -> Time {
+        let spi = self.spi.iter().map(|spi| spi.due(self.hertz)).min().unwrap_or(Time::NEVER);
+        let rest = [
+            self.timer.due(), self.usart.due(), self.i2c.due(), self.watchdog.due(), self.wiring.due(), self.crystal,
+            self.flash.due(now),
+        ];
+        rest.into_iter().fold(spi, Time::min)
+    }
+
+    /// Lets everything happen that is due until now.
+    pub fn advance(&mut self, memory: &mut dyn Memory, now: Time) {
+        loop {
+            let at = self.due(now);
+            if at > now || self.reset.is_some() {
+                break;
+            }
+            self.happen(memory, at);
+        }
+    }
+
+    /// Does what is due.
+    fn happen(&mut self, memory: &mut dyn Memory, at: Time) {
+        self.timer.advance(at);
+        for bus in 0..2 {
+            if self.spi[bus].due(self.hertz) <= at {
+                self.spi[bus].receive(self.wiring.finish(bus));
+            }
+        }
+        self.usart.advance(at);
+        if self.i2c.due() <= at {
+            self.i2c.advance(at, self.hertz, &mut *self.wiring);
+        }
+        self.flash.advance(at);
+        if self.wiring.due() <= at {
+            for (pin, rises) in self.wiring.edges(at) {
+                self.exti.edge(pin.port, pin.number, rises);
+            }
+        }
+        if self.crystal <= at {
+            self.reclock(at);
+        }
+        if self.watchdog.due() <= at {
+            self.reset = Some(ResetReason::Watchdog);
+        }
+        self.settle(memory, at);
+    }
+
+    /// Serves direct memory access, begins what waits, and sets the lines of the interrupts.
+    fn settle(&mut self, memory: &mut dyn Memory, now: Time) {
+        while self.transfer(memory) {}
+        for (bus, spi) in self.spi.iter_mut().enumerate() {
+            if let Some(byte) = spi.begin(now) {
+                self.wiring.begin(bus, byte, spi.clock(self.hertz), now);
+            }
+        }
+        self.usart.begin(now, self.hertz);
+        if self.i2c.due() == Time::NEVER {
+            self.i2c.advance(now, self.hertz, &mut *self.wiring);
+        }
+        // What has begun may leave room for another byte.
+        while self.transfer(memory) {}
+        self.raise();
+    }
+
+    /// Transfers one item of a channel whose peripheral asks for it; whether there was one.
+    fn transfer(&mut self, memory: &mut dyn Memory) -> bool {
+        for (controller, channel, selection, request) in REQUESTS {
+            let dma = &mut self.dma[controller];
+            let is_chosen = dma.channels[channel].is_armed() && dma.selection(channel) == selection;
+            if !is_chosen || !self.asks(request) {
+                continue;
+            }
+            let Some(item) = self.dma[controller].take(channel) else { continue };
+            if !self.carry(memory, item) {
+                self.dma[controller].fail(channel);
+            }
+            return true;
+        }
+        false
+    }
+
+    /// Whether a peripheral asks for an item.
+    fn asks(&self, request: Request) -> bool {
+        match request {
+            Request::FromSpi(bus) => self.spi[bus].has_byte(),
+            Request::ToSpi(bus) => self.spi[bus].wants_byte(),
+            Request::FromI2c => self.i2c.has_byte(),
+            Request::ToI2c => self.i2c.wants_byte(),
+            Request::FromUsart => self.usart.has_byte(),
+            Request::ToUsart => self.usart.wants_byte(),
+        }
+    }
+
+    /// Carries an item between memory and a data register; whether both are there.
+    fn carry(&mut self, memory: &mut dyn Memory, item: Item) -> bool {
+        let Some((peripheral, _)) = peripheral(item.peripheral) else { return false };
+        let offset = item.peripheral & 0x3FF;
+        let mut bytes = [0; 4];
+        let held = &mut bytes[..item.memory_size as usize];
+        if item.is_to_peripheral {
+            if !memory.read(item.memory, held) {
+                return false;
+            }
+            let value = u32::from_le_bytes(bytes);
+            let written = match peripheral {
+                Peripheral::Spi(bus) => self.spi[bus].write(offset, value, item.peripheral_size),
+                Peripheral::I2c => self.i2c.write(offset, value),
+                Peripheral::Usart => self.usart.write(offset, value),
+                _ => Err(Refused::Unknown),
+            };
+            return written.is_ok();
+        }
+        let value = match peripheral {
+            Peripheral::Spi(bus) => self.spi[bus].read(offset, item.peripheral_size),
+            Peripheral::I2c => self.i2c.read(offset),
+            Peripheral::Usart => self.usart.read(offset),
+            _ => Err(Refused::Unknown),
+        };
+        value.is_ok_and(|value| memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize]))
+    }
+
+    /// Sets the lines of the interrupts.
+    fn raise(&mut self) {
+        let lines = &mut self.exceptions.lines;
+        let mut set = |interrupt: u32, is_active: bool| lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active;
+        set(4, self.flash.interrupts());
+        let edges = self.exti.active();
+        (0..5).for_each(|line| set(6 + line, edges >> line & 1 != 0));
+        set(23, edges & 0x3E0 != 0);
+        set(40, edges & 0xFC00 != 0);
+        for (dma, interrupts) in self.dma.iter().zip(DMA_INTERRUPTS) {
+            for (channel, interrupt) in interrupts.into_iter().enumerate() {
+                set(interrupt, dma.interrupts(channel));
+            }
+        }
+        set(24, self.timer.interrupts());
+        let [event, error] = self.i2c.interrupts();
+        set(33, event);
+        set(34, error);
+        set(37, self.usart.interrupts());
+        // A row that cannot be corrected (3.3.2).
+        self.exceptions.pending[2] |= std::mem::take(&mut self.flash.is_broken);
+    }
+
+    /// Determines the clock anew.
+    fn reclock(&mut self, now: Time) {
+        self.crystal = self.rcc.crystal_due().filter(|due| *due > now).unwrap_or(Time::NEVER);
+        if let Ok(hertz) = self.rcc.hertz(now) {
+            self.hertz = hertz;
+        }
+    }
+
+    /// Tells the wires which levels a port drives.
+    fn drive(&mut self, port: usize, now: Time) {
+        for number in 0..16 {
+            self.wiring.drive(Pin { port, number }, self.ports[port].driven(number), now);
+        }
+    }
+
+    /// The levels of a port's pins.
+    fn levels(&mut self, port: usize, now: Time) -> u16 {
+        (0..16).fold(0, |levels, number| {
+            let driven = self.ports[port].driven(number);
+            let level = driven.unwrap_or_else(|| self.wiring.level(Pin { port, number }, now));
+            levels | u16::from(level) << number
+        })
+    }
+
+    /// Reads a register by an access of so many bytes; `active` is the exception that is being handled.
+    ///
+    /// # Errors
+    /// What the model does not know.
+    pub fn read(
+        &mut self,
+        memory: &mut dyn Memory,
+        address: u32,
+        size: u32,
+        (now, active): (Time, u32),
+    ) -> Result<u32, Refused> {
+        self.advance(memory, now);
+        let (peripheral, gate) = peripheral(address).ok_or(Refused::Unknown)?;
+        if gate.is_some_and(|(offset, bit)| !self.rcc.has_clock(offset, bit)) {
+            return Err(Refused::NoClock);
+        }
+        let offset = address & 0x3FC;
+        let word = match peripheral {
+            Peripheral::Spi(bus) => self.spi[bus].read(offset, size),
+            Peripheral::I2c => self.i2c.read(offset),
+            Peripheral::Power => self.power.read(offset),
+            Peripheral::Watchdog => self.watchdog.read(offset),
+            Peripheral::System => self.system.read(address & 0xFFC, &self.exceptions, active),
+            Peripheral::Configuration => self.exti.ports(offset).copied(),
+            Peripheral::Exti => self.exti.read(offset),
+            Peripheral::Usart => self.usart.read(offset),
+            Peripheral::Timer => self.timer.read(offset, now),
+            Peripheral::Dma(controller) => self.dma[controller].read(offset),
+            Peripheral::Rcc => self.rcc.read(offset, now),
+            Peripheral::Flash => self.flash.read(offset, now),
+            Peripheral::Gpio(port) => {
+                let levels = if offset == 0x10 { self.levels(port, now) } else { 0 };
+                self.ports[port].read(offset, levels)
+            }
+            Peripheral::Debug => self.debug_word(address).copied(),
+        }?;
+        self.settle(memory, now);
+        Ok(word >> (8 * (address & 3)))
+    }
+
+    /// Writes a register by an access of so many bytes.
+    ///
+    /// # Errors
+    /// What the model does not know.
+    pub fn write(
+        &mut self,
+        memory: &mut dyn Memory,
+        address: u32,
+        (value, size): (u32, u32),
+        now: Time,
+    ) -> Result<(), Refused> {
+        self.advance(memory, now);
+        let (peripheral, gate) = peripheral(address).ok_or(Refused::Unknown)?;
+        if gate.is_some_and(|(offset, bit)| !self.rcc.has_clock(offset, bit)) {
+            return Err(Refused::NoClock);
+        }
+        let offset = address & 0x3FF;
+        match peripheral {
+            Peripheral::Spi(bus) => self.spi[bus].write(offset, value, size),
+            Peripheral::I2c => self.i2c.write(offset, value),
+            Peripheral::Power => self.power.write(offset, value),
+            Peripheral::Watchdog => self.watchdog.write(offset, value, now),
+            Peripheral::System => self.system.write(address & 0xFFF, value, size, &mut self.exceptions),
+            Peripheral::Configuration => self.exti.ports(offset).map(|ports| *ports = value),
+            Peripheral::Exti => self.exti.write(offset, value),
+            Peripheral::Usart => self.usart.write(offset, value),
+            Peripheral::Timer => self.timer.write(offset, value, now, self.hertz),
+            Peripheral::Dma(controller) => self.dma[controller].write(offset, value),
+            Peripheral::Rcc => self.write_clocks(offset, value, now),
+            Peripheral::Flash => self.flash.write(offset, value, now),
+            Peripheral::Gpio(port) => {
+                let written = self.ports[port].write(offset, value);
+                self.drive(port, now);
+                written
+            }
+            Peripheral::Debug => self.debug_word(address).map(|word| *word = value),
+        }?;
+        if self.system.wants_reset {
+            self.reset = Some(ResetReason::Software);
+        }
+        self.settle(memory, now);
+        Ok(())
+    }
+
+    /// A register of the debug unit.
+    fn debug_word(&mut self, address: u32) -> Result<&mut u32, Refused> {
+        let place = (address & 0x3FF).checked_sub(4).ok_or(Refused::Unknown)? / 4;
+        self.debug.get_mut(place as usize).ok_or(Refused::Unknown)
+    }
+
+    /// Writes a register of the clocks, with what follows from it.
+    fn write_clocks(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
+        if offset == 0x90 && !self.power.is_backup_open() {
+            return Ok(());
+        }
+        self.rcc.write(offset, value, now)?;
+        self.reset_peripherals(offset, value);
+        self.reclock(now);
+        self.rcc.hertz(now).map(|_| ())
+    }
+
+    /// Puts peripherals into reset, by a reset register and its bits.
+    fn reset_peripherals(&mut self, offset: u32, bits: u32) {
+        let is_set = |bit: u32| bits >> bit & 1 != 0;
+        match offset {
+            0x28 => (0..2).filter(|dma| is_set(*dma)).for_each(|dma| self.dma[dma as usize] = Dma::default()),
+            0x38 => {
+                if is_set(14) { self.spi[1] = Spi::new() }
+                if is_set(22) { self.i2c = I2c::new() }
+            }
+            0x40 => {
+                if is_set(12) { self.spi[0] = Spi::new() }
+                if is_set(14) { self.usart.reset() }
+                if is_set(16) { self.timer = Timer::default() }
+            }
+            _ => {}
+        }
+    }
+}

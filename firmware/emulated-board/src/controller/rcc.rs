@@ -1,0 +1,187 @@
+//! Reset and clock control (RM0351, chapter 6): which clock runs, what resets it, which peripheral has its clock.
+
+use super::{Refused, ResetReason};
+use crate::time::Time;
+
+/// Frequency of the internal oscillator LSI, Hz; 31 040 to 32 960 (DS10198, table 62).
+pub const LSI_HERTZ: u64 = 32_000;
+/// The crystal X2 of the board, Hz.
+pub const LSE_HERTZ: u64 = 32_768;
+/// The internal oscillator HSI16, Hz.
+const HSI_HERTZ: u64 = 16_000_000;
+/// Ranges of the oscillator MSI, Hz (`RCC_CR`, MSIRANGE).
+const MSI_HERTZ: [u64; 12] = [
+    100_000, 200_000, 400_000, 800_000, 1_000_000, 2_000_000, 4_000_000, 8_000_000, 16_000_000, 24_000_000,
+    32_000_000, 48_000_000,
+];
+/// Start of the crystal (DS10198, table 59, typical with any drive).
+const LSE_START: Time = Time::microseconds(2_000_000);
+
+/// Bits of `RCC_CSR` by the reason of a reset.
+const fn flags(reason: ResetReason) -> u32 {
+    const PIN: u32 = 1 << 26;
+    match reason {
+        // Every reset pulls the pin.
+        ResetReason::Supply => 1 << 27 | PIN,
+        ResetReason::Software => 1 << 28 | PIN,
+        ResetReason::Watchdog => 1 << 29 | PIN,
+        ResetReason::Pin => PIN,
+    }
+}
+
+/// What is true of the board's oscillators.
+#[derive(Clone, Copy, Debug)]
+pub struct Oscillators {
+    /// Whether the crystal of 32 768 Hz oscillates.
+    pub has_crystal: bool,
+    /// Relative error of the oscillator MSI where it is not locked to the crystal.
+    pub msi_error: f64,
+}
+
+/// The registers.
+#[derive(Clone, Debug)]
+pub struct Rcc {
+    /// The registers as written, by word.
+    words: [u32; 40],
+    /// Oscillators of the board.
+    oscillators: Oscillators,
+    /// When the crystal was switched on.
+    crystal_since: Option<Time>,
+}
+
+/// Word of `RCC_CR`.
+const CR: usize = 0x00 / 4;
+/// Word of `RCC_CFGR`.
+const CFGR: usize = 0x08 / 4;
+/// Word of `RCC_PLLCFGR`.
+const PLLCFGR: usize = 0x0C / 4;
+/// First and last word of the registers that give peripherals their clock.
+const ENABLES: [usize; 2] = [0x48 / 4, 0x60 / 4];
+/// Word of `RCC_BDCR`.
+const BDCR: usize = 0x90 / 4;
+/// Word of `RCC_CSR`.
+const CSR: usize = 0x94 / 4;
+
+impl Rcc {
+    /// The registers after the supply came up.
+    pub fn new(oscillators: Oscillators) -> Self {
+        let mut rcc = Self { words: [0; 40], oscillators, crystal_since: None };
+        rcc.reset(ResetReason::Supply);
+        rcc
+    }
+
+    /// A reset: the backup domain stays unless the supply was lost, the reasons add up until they are cleared.
+    pub fn reset(&mut self, reason: ResetReason) {
+        let (backup, reasons) = match reason {
+            ResetReason::Supply => (0, 0),
+            _ => (self.words[BDCR], self.words[CSR] & 0xFF00_0000),
+        };
+        self.words = [0; 40];
+        self.words[CR] = 0x63;
+        self.words[PLLCFGR] = 0x1000;
+        self.words[ENABLES[0]] = 0x100;
+        self.words[0x68 / 4] = 0x0001_1303;
+        self.words[BDCR] = backup;
+        self.words[CSR] = 0x600 | reasons | flags(reason);
+        if backup & 1 == 0 {
+            self.crystal_since = None;
+        }
+    }
+
+    /// Reads a register.
+    pub fn read(&self, offset: u32, now: Time) -> Result<u32, Refused> {
+        let word = (offset / 4) as usize;
+        let value = *self.words.get(word).ok_or(Refused::Unknown)?;
+        Ok(match word {
+            CR => value | (value & 0x0101_0101) << 1 | (value & 1 << 8) << 2,
+            CFGR => value & !0xC | (value & 3) << 2,
+            BDCR if self.crystal_runs(now) => value | 2,
+            CSR => value | (value & 1) << 1,
+            _ => value,
+        })
+    }
+
+    /// Writes a register.
+    pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
+        let word = (offset / 4) as usize;
+        let held = self.words.get_mut(word).ok_or(Refused::Unknown)?;
+        match word {
+            CSR if value & 1 << 23 != 0 => *held = value & 0xFFF,
+            CSR => *held = *held & 0xFF00_0000 | value & 0xFFF,
+            BDCR if value & 1 << 16 != 0 => {
+                *held = value & 1 << 16;
+                self.crystal_since = None;
+            }
+            BDCR => {
+                *held = value & !2;
+                match (value & 1, self.crystal_since) {
+                    (0, _) => self.crystal_since = None,
+                    (_, None) => self.crystal_since = Some(now),
+                    _ => {}
+                }
+            }
+            _ => *held = value,
+        }
+        Ok(())
+    }
+
+    /// Whether the crystal oscillates.
+    fn crystal_runs(&self, now: Time) -> bool {
+        self.oscillators.has_crystal && self.crystal_since.is_some_and(|since| now >= since + LSE_START)
+    }
+
+    /// When the crystal oscillates, where it is to.
+    pub fn crystal_due(&self) -> Option<Time> {
+        Some(self.crystal_since? + LSE_START).filter(|_| self.oscillators.has_crystal)
+    }
+
+    /// Whether a peripheral has its clock: the offset of its enable register and the bit in it.
+    pub fn has_clock(&self, offset: u32, bit: u32) -> bool {
+        self.words[(offset / 4) as usize] >> bit & 1 != 0
+    }
+
+    /// Frequency of the core and of both peripheral buses, Hz.
+    ///
+    /// # Errors
+    /// A divider or a source that is not modelled.
+    pub fn hertz(&self, now: Time) -> Result<u64, Refused> {
+        let configuration = self.words[CFGR];
+        if configuration & 0x3FF0 != 0 {
+            return Err(Refused::NotModelled("a divider of the buses' clocks"));
+        }
+        match configuration & 3 {
+            0 => Ok(self.msi(now)),
+            1 => Ok(HSI_HERTZ),
+            3 => self.pll(now),
+            _ => Err(Refused::NotModelled("the crystal HSE")),
+        }
+    }
+
+    /// Frequency of the oscillator MSI, Hz: with the crystal the nearest multiple of it below (AN2606's figure for
+    /// 4 MHz is 122 of them).
+    fn msi(&self, now: Time) -> u64 {
+        let control = self.words[CR];
+        let range = if control & 8 != 0 { control >> 4 & 0xF } else { self.words[CSR] >> 8 & 0xF };
+        let nominal = MSI_HERTZ[(range as usize).min(MSI_HERTZ.len() - 1)];
+        if control & 4 != 0 && self.crystal_runs(now) {
+            return nominal / LSE_HERTZ * LSE_HERTZ;
+        }
+        (nominal as f64 * (1.0 + self.oscillators.msi_error)).round() as u64
+    }
+
+    /// Frequency of the output R of the main PLL, Hz.
+    fn pll(&self, now: Time) -> Result<u64, Refused> {
+        let configuration = self.words[PLLCFGR];
+        let source = match configuration & 3 {
+            1 => self.msi(now),
+            2 => HSI_HERTZ,
+            _ => return Err(Refused::NotModelled("the PLL's source")),
+        };
+        let divider = u64::from(configuration >> 4 & 7) + 1;
+        let multiplier = u64::from(configuration >> 8 & 0x7F);
+        let output = 2 * (u64::from(configuration >> 25 & 3) + 1);
+        Ok(source * multiplier / divider / output)
+    }
+
+}
+

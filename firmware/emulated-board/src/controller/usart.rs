@@ -1,0 +1,170 @@
+//! The serial port USART1 (RM0351, chapter 40): frames of eight bits, no parity, one stop bit, both ways.
+
+use std::collections::VecDeque;
+
+use super::Refused;
+use crate::time::Time;
+
+/// Bits of a frame on the wire.
+const FRAME: u64 = 10;
+/// `USART_CR1`: it is enabled.
+const ENABLED: u32 = 1;
+/// `USART_CR1`: it receives.
+const RECEIVES: u32 = 4;
+/// `USART_CR1`: it sends.
+const SENDS: u32 = 8;
+/// `USART_ISR`: a byte came before the one before it was read.
+const OVERRUN: u32 = 1 << 3;
+/// `USART_ISR`: a byte has come.
+const RECEIVED: u32 = 1 << 5;
+/// `USART_ISR`: all that was to be sent has been.
+const COMPLETE: u32 = 1 << 6;
+/// `USART_ISR`: another byte can be sent.
+const EMPTY: u32 = 1 << 7;
+
+/// The registers.
+#[derive(Clone, Debug, Default)]
+pub struct Usart {
+    /// `USART_CR1`, `CR2`, `CR3`.
+    control: [u32; 3],
+    /// `USART_BRR`.
+    divider: u32,
+    /// Flags that stay.
+    flags: u32,
+    /// The byte that waits to be sent.
+    waiting: Option<u8>,
+    /// The byte on the wire, and when its frame ends.
+    shifting: Option<(u8, Time)>,
+    /// The byte that was received.
+    received: Option<u8>,
+    /// Bytes that the other side sends, and when the frame of the first ends.
+    incoming: (VecDeque<u8>, Option<Time>),
+    /// Bytes that were sent.
+    pub sent: Vec<u8>,
+    /// Bytes of the other side that were lost, because the one before was not read.
+    pub overruns: u64,
+}
+
+impl Usart {
+    /// The registers after a reset.
+    pub fn new() -> Self {
+        Self { flags: COMPLETE, ..Self::default() }
+    }
+
+    /// A reset; what was sent is not the port's any more.
+    pub fn reset(&mut self) {
+        let (sent, incoming) = (std::mem::take(&mut self.sent), std::mem::take(&mut self.incoming));
+        *self = Self { sent, incoming: (incoming.0, None), overruns: self.overruns, ..Self::new() };
+    }
+
+    /// Time of a frame, by the clock of the peripheral, Hz.
+    fn frame(&self, hertz: u64) -> Time {
+        Time::periods(FRAME * u64::from(self.divider.max(16)), hertz)
+    }
+
+    /// The other side sends bytes.
+    pub fn offer(&mut self, bytes: &[u8]) {
+        self.incoming.0.extend(bytes);
+    }
+
+    /// Begins frames that wait.
+    pub fn begin(&mut self, now: Time, hertz: u64) {
+        let is_on = |bit| self.control[0] & (ENABLED | bit) == ENABLED | bit;
+        let (sends, receives) = (is_on(SENDS), is_on(RECEIVES));
+        let end = now + self.frame(hertz);
+        if sends && self.shifting.is_none() && let Some(byte) = self.waiting.take() {
+            self.shifting = Some((byte, end));
+        }
+        let (bytes, next) = &mut self.incoming;
+        if receives && !bytes.is_empty() {
+            next.get_or_insert(end);
+        }
+    }
+
+    /// When a frame ends.
+    pub fn due(&self) -> Time {
+        let sending = self.shifting.map_or(Time::NEVER, |(_, end)| end);
+        sending.min(self.incoming.1.unwrap_or(Time::NEVER))
+    }
+
+    /// Ends frames that end until now.
+    pub fn advance(&mut self, now: Time) {
+        if let Some((byte, _)) = self.shifting.take_if(|(_, end)| *end <= now) {
+            self.sent.push(byte);
+            if self.waiting.is_none() {
+                self.flags |= COMPLETE;
+            }
+        }
+        if self.incoming.1.take_if(|end| *end <= now).is_some() && let Some(byte) = self.incoming.0.pop_front() {
+            if self.received.is_some() {
+                self.flags |= OVERRUN;
+                self.overruns += 1;
+            } else {
+                self.received = Some(byte);
+            }
+        }
+    }
+
+    /// Whether it asks for a byte to send by direct memory access.
+    pub fn wants_byte(&self) -> bool {
+        self.control[2] & 0x80 != 0 && self.control[0] & (ENABLED | SENDS) == ENABLED | SENDS && self.waiting.is_none()
+    }
+
+    /// Whether it has a byte for the direct memory access.
+    pub fn has_byte(&self) -> bool {
+        self.control[2] & 0x40 != 0 && self.received.is_some()
+    }
+
+    /// The status (40.8.8).
+    fn status(&self) -> u32 {
+        let empty = if self.waiting.is_none() { EMPTY } else { 0 };
+        let received = if self.received.is_some() { RECEIVED } else { 0 };
+        // TEACK and REACK follow the enable bits.
+        let acknowledged = if self.control[0] & ENABLED != 0 {
+            (self.control[0] & SENDS) << 18 | (self.control[0] & RECEIVES) << 20
+        } else {
+            0
+        };
+        self.flags | empty | received | acknowledged
+    }
+
+    /// Whether it interrupts: bits of `USART_CR1` are at the places of their flags; errors by `CR3`.
+    pub fn interrupts(&self) -> bool {
+        let status = self.status();
+        status & self.control[0] & (RECEIVED | COMPLETE | EMPTY | 0x10) != 0
+            || (status & OVERRUN != 0 && (self.control[0] & RECEIVED != 0 || self.control[2] & 1 != 0))
+    }
+
+    /// Reads a register.
+    pub fn read(&mut self, offset: u32) -> Result<u32, Refused> {
+        Ok(match offset {
+            0x00 | 0x04 | 0x08 => self.control[(offset / 4) as usize],
+            0x0C => self.divider,
+            0x10 | 0x14 | 0x18 => 0,
+            0x1C => self.status(),
+            0x24 => self.received.take().unwrap_or(0).into(),
+            _ => return Err(Refused::Unknown),
+        })
+    }
+
+    /// Writes a register.
+    pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
+        match offset {
+            0x00 if value & 0x1000_9400 != 0 => {
+                return Err(Refused::NotModelled("frames of other lengths, parity or oversampling by eight"));
+            }
+            0x00 | 0x04 | 0x08 => self.control[(offset / 4) as usize] = value,
+            0x0C => self.divider = value,
+            0x10 | 0x14 => {}
+            0x18 if value & 8 != 0 => self.received = None,
+            0x18 => {}
+            0x20 => self.flags &= !value,
+            0x28 => {
+                self.waiting = Some(value as u8);
+                self.flags &= !COMPLETE;
+            }
+            _ => return Err(Refused::Unknown),
+        }
+        Ok(())
+    }
+}

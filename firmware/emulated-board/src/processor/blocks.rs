@@ -1,0 +1,92 @@
+//! Runs of instructions that are executed as one: how many instructions each has, and what becomes of the time.
+
+use std::collections::HashMap;
+
+/// Instructions that follow each other up to a branch.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Address of the first one.
+    pub address: u32,
+    /// Addresses of all, as distances in bytes from the first.
+    pub offsets: Vec<u16>,
+    /// Whether one of them changes whether interrupts are taken.
+    pub masks: bool,
+    /// Whether one of them sends an event, which the next wait for an event takes.
+    pub signals: bool,
+    /// How often it was executed.
+    pub count: u64,
+}
+
+impl Block {
+    /// Reads the instructions of a block from its bytes (ARMv7-M Architecture Reference Manual, A5.1).
+    pub fn decode(address: u32, bytes: &[u8]) -> Self {
+        let halves: Vec<u16> = bytes.chunks_exact(2).map(|half| u16::from_le_bytes([half[0], half[1]])).collect();
+        let mut block = Self { address, offsets: Vec::new(), masks: false, signals: false, count: 0 };
+        let mut place = 0;
+        while let Some(first) = halves.get(place) {
+            block.offsets.push(2 * place as u16);
+            let is_wide = first >> 11 >= 0b11101;
+            // CPS; MSR.
+            block.masks |= first & 0xFFE8 == 0xB660 || (is_wide && first & 0xFFE0 == 0xF380);
+            // SEV.
+            block.signals |= *first == 0xBF40;
+            place += if is_wide { 2 } else { 1 };
+        }
+        block
+    }
+}
+
+/// The blocks that were executed.
+#[derive(Debug, Default)]
+pub struct Blocks {
+    /// In the order in which they came.
+    pub all: Vec<Block>,
+    /// Their places by address and length in bytes.
+    places: HashMap<(u32, u32), usize, std::hash::BuildHasherDefault<Fold>>,
+    /// The latest one at each address, as half-words from the beginning of the flash: its length and its place.
+    latest: Vec<(u32, u32)>,
+}
+
+impl Blocks {
+    /// The place of a block, which is decoded where it is new.
+    pub fn place(&mut self, address: u32, size: u32, read: impl FnOnce(&mut [u8])) -> usize {
+        let slot = (address.wrapping_sub(crate::FLASH) / 2) as usize;
+        if let Some((length, place)) = self.latest.get(slot) && *length == size {
+            return *place as usize;
+        }
+        let place = *self.places.entry((address, size)).or_insert_with(|| {
+            let mut bytes = vec![0; size as usize];
+            read(&mut bytes);
+            self.all.push(Block::decode(address, &bytes));
+            self.all.len() - 1
+        });
+        if slot < crate::FLASH_BYTES / 2 {
+            self.latest.resize(self.latest.len().max(slot + 1), (0, 0));
+            self.latest[slot] = (size, place as u32);
+        }
+        place
+    }
+
+    /// Instructions that were executed.
+    pub fn instructions(&self) -> u64 {
+        self.all.iter().map(|block| block.count * block.offsets.len() as u64).sum()
+    }
+}
+
+/// A hash of few numbers, for a table that is asked often.
+#[derive(Debug, Default)]
+struct Fold(u64);
+
+impl std::hash::Hasher for Fold {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u32((*byte).into()));
+    }
+
+    fn write_u32(&mut self, word: u32) {
+        self.0 = (self.0 ^ u64::from(word)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+}

@@ -1,0 +1,482 @@
+//! The core: Unicorn executes the instructions, this module takes the exceptions and counts the time.
+//!
+//! Unicorn has neither interrupt controller nor exceptions of the M profile. So it is stopped between two blocks of
+//! instructions where something is due; the registers are stacked and unstacked here as the Architecture Reference
+//! Manual has it (B1.5.6 to B1.5.8). Floating-point registers are stacked at once instead of lazily, which takes the
+//! same memory.
+
+pub mod blocks;
+pub mod exceptions;
+mod stacking;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use thiserror::Error;
+use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, Unicorn, uc_error};
+
+use self::blocks::Blocks;
+use self::exceptions::{BUS_FAULT, Masks, SUPERVISOR_CALL, USAGE_FAULT};
+use crate::controller::{Controller, Memory, Refused, ResetReason};
+use crate::image::Image;
+use crate::time::Time;
+use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
+
+/// An address at which nothing is executed.
+const NOWHERE: u64 = 0xF000_0000;
+/// Size of a page that Unicorn maps, bytes.
+const PAGE: usize = 4096;
+/// Cycles that the entry into an exception takes, and the return from it (Cortex-M4 TRM, 3.9.1).
+const EXCEPTION_CYCLES: u64 = 12;
+
+/// Something that the model does not know, and where the program asked for it.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Unknown {
+    /// A register.
+    #[error("{access} {address:#010x} near {place}: {reason}")]
+    Register {
+        /// What was tried: a read, or a write of a value.
+        access: String,
+        /// The address.
+        address: u32,
+        /// Function and line of the code.
+        place: String,
+        /// Why it is refused.
+        reason: Refused,
+    },
+    /// The core stopped for a reason that is not modelled.
+    #[error("the core stopped near {place}: {reason}")]
+    Stopped {
+        /// Function and line of the code.
+        place: String,
+        /// What Unicorn says.
+        reason: String,
+    },
+}
+
+/// Why the core does not go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Halt {
+    /// It waits for an event, or for an interrupt.
+    Sleeping,
+    /// It returns from an exception.
+    Returning,
+    /// It takes an exception of its own.
+    Taking(u32),
+    /// It asked the model for something that it does not know.
+    Lost(u32, Refused, Option<u32>),
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts {
+    /// Exceptions that were taken.
+    pub exceptions: u64,
+    /// Time asleep.
+    pub asleep: Time,
+    /// The longest time with interrupts off, and the address at which it ended.
+    pub masked: (Time, u32),
+}
+
+/// All that the hooks of Unicorn share with the program around it.
+struct State {
+    /// The controller.
+    controller: Controller,
+    /// Time until now.
+    now: Time,
+    /// Time of an instruction.
+    instruction: Time,
+    /// Cycles of an instruction.
+    cycles: f64,
+    /// When the controller next does something.
+    due: Time,
+    /// What was executed.
+    blocks: Blocks,
+    /// The block that is being executed.
+    current: Option<usize>,
+    /// Whether an exception may have to be taken.
+    is_pending: bool,
+    /// An event that the next wait takes.
+    event: bool,
+    /// Since when interrupts are off.
+    masked_since: Option<Time>,
+    /// Number of the exception that is being handled.
+    active: u32,
+    /// Why the core is stopped.
+    halt: Option<Halt>,
+    /// Counts.
+    counts: Counts,
+}
+
+impl State {
+    /// Ends the block that was being executed, and says whether the core must stop before the next one.
+    fn next(&mut self, address: u32, size: u32, uc: &mut Unicorn<'_, ()>) -> bool {
+        let masks_changed = self.account();
+        if masks_changed {
+            self.watch_masks(uc, address);
+        }
+        if self.now >= self.due {
+            let now = self.now;
+            self.controller.advance(&mut Ram(uc), now);
+            self.look();
+        }
+        if self.halt.is_some() || self.controller.reset.is_some() {
+            return true;
+        }
+        if self.is_pending && self.controller.exceptions.next(masks(uc)).is_some() {
+            return true;
+        }
+        let read = |bytes: &mut [u8]| { let _ = uc.mem_read(address.into(), bytes); };
+        self.current = Some(self.blocks.place(address, size, read));
+        false
+    }
+
+    /// Counts the block that was executed; whether it may have changed the masks.
+    fn account(&mut self) -> bool {
+        let Some(block) = self.current.take().and_then(|place| self.blocks.all.get_mut(place)) else { return false };
+        block.count += 1;
+        self.event |= block.signals;
+        self.now = self.now + self.instruction.times(block.offsets.len() as u64);
+        block.masks
+    }
+
+    /// Looks what the controller has become.
+    fn look(&mut self) {
+        self.due = self.controller.due(self.now);
+        self.is_pending = self.controller.exceptions.waits();
+        self.instruction = Time::seconds(self.cycles / self.controller.hertz() as f64);
+    }
+
+    /// Follows whether interrupts are off.
+    fn watch_masks(&mut self, uc: &Unicorn<'_, ()>, address: u32) {
+        match (masks(uc).all, self.masked_since) {
+            (true, None) => self.masked_since = Some(self.now),
+            (false, Some(since)) => {
+                self.counts.masked = self.counts.masked.max((self.now - since, address));
+                self.masked_since = None;
+            }
+            _ => {}
+        }
+    }
+
+    /// Stops the core.
+    fn halt(&mut self, uc: &mut Unicorn<'_, ()>, halt: Halt) {
+        self.halt.get_or_insert(halt);
+        let _ = uc.emu_stop();
+    }
+}
+
+/// The masks of the core.
+fn masks(uc: &Unicorn<'_, ()>) -> Masks {
+    let read = |register| uc.reg_read(register).unwrap_or(0);
+    Masks {
+        all: read(RegisterARM::PRIMASK) & 1 != 0,
+        faults: read(RegisterARM::FAULTMASK) & 1 != 0,
+        base: read(RegisterARM::BASEPRI) as u8,
+    }
+}
+
+/// The memory behind Unicorn.
+struct Ram<'u, 'a>(&'u mut Unicorn<'a, ()>);
+
+impl Memory for Ram<'_, '_> {
+    fn read(&self, address: u32, bytes: &mut [u8]) -> bool {
+        self.0.mem_read(address.into(), bytes).is_ok()
+    }
+
+    fn write(&mut self, address: u32, bytes: &[u8]) -> bool {
+        is_ram(address) && self.0.mem_write(address.into(), bytes).is_ok()
+    }
+}
+
+/// Whether an address is in RAM.
+fn is_ram(address: u32) -> bool {
+    let within = |start: u32, bytes: usize| address.checked_sub(start).is_some_and(|at| (at as usize) < bytes);
+    within(RAM, RAM_BYTES) || within(RAM2, RAM2_BYTES)
+}
+
+/// The core with its memory and its controller.
+pub struct Processor {
+    uc: Unicorn<'static, ()>,
+    state: Rc<RefCell<State>>,
+    image: Rc<Image>,
+}
+
+impl Processor {
+    /// A core before its start. An instruction takes so many cycles; RAM holds what chance left in it.
+    ///
+    /// # Errors
+    /// What Unicorn says.
+    pub fn new(image: Rc<Image>, mut controller: Controller, cycles: f64) -> Result<Self, uc_error> {
+        let mut uc = Unicorn::new(Arch::ARM, Mode::MCLASS | Mode::THUMB)?;
+        uc.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
+        let code = image.flash.len().next_multiple_of(PAGE);
+        uc.mem_map(FLASH.into(), code as u64, Prot::READ | Prot::EXEC)?;
+        uc.mem_write(FLASH.into(), &image.flash)?;
+        uc.mem_map(RAM.into(), RAM_BYTES as u64, Prot::READ | Prot::WRITE)?;
+        uc.mem_map(RAM2.into(), RAM2_BYTES as u64, Prot::READ | Prot::WRITE)?;
+        controller.flash.array.burn(0, &image.flash);
+        let state = Rc::new(RefCell::new(State {
+            controller,
+            now: Time::ZERO,
+            instruction: Time::ZERO,
+            cycles,
+            due: Time::ZERO,
+            blocks: Blocks::default(),
+            current: None,
+            is_pending: false,
+            event: false,
+            masked_since: None,
+            active: 0,
+            halt: None,
+            counts: Counts::default(),
+        }));
+        let mut processor = Self { uc, state, image };
+        processor.hook()?;
+        processor.map_store(code)?;
+        processor.map_registers(0x4000_0000, 0x0003_0000)?;
+        processor.map_registers(0x4800_0000, 0x0001_0000)?;
+        processor.map_registers(0xE000_E000, 0x0000_1000)?;
+        processor.map_registers(0xE004_2000, 0x0000_1000)?;
+        processor.start();
+        Ok(processor)
+    }
+
+    /// Hooks blocks, exceptions and faults.
+    fn hook(&mut self) -> Result<(), uc_error> {
+        let state = Rc::clone(&self.state);
+        self.uc.add_block_hook(1, 0, move |uc, address, size| {
+            if state.borrow_mut().next(address as u32, size, uc) {
+                let _ = uc.emu_stop();
+            }
+        })?;
+        let state = Rc::clone(&self.state);
+        self.uc.add_intr_hook(move |uc, number| {
+            let halt = match number {
+                2 => Halt::Taking(SUPERVISOR_CALL),
+                8 => Halt::Returning,
+                _ => Halt::Taking(USAGE_FAULT),
+            };
+            state.borrow_mut().halt(uc, halt);
+        })?;
+        let state = Rc::clone(&self.state);
+        self.uc.add_insn_invalid_hook(move |uc| {
+            let halt = if is_wait(uc) { Halt::Sleeping } else { Halt::Taking(USAGE_FAULT) };
+            state.borrow_mut().halt(uc, halt);
+            halt == Halt::Sleeping
+        })?;
+        let state = Rc::clone(&self.state);
+        let faults = HookType::MEM_UNMAPPED | HookType::MEM_PROT;
+        self.uc.add_mem_hook(faults, 1, 0, move |uc, _: MemType, address, _, _| {
+            let mut state = state.borrow_mut();
+            // BFAR, and that the access was precise.
+            state.controller.system.faults[3] = address as u32;
+            state.controller.system.faults[0] |= 0x8200;
+            state.halt(uc, Halt::Taking(BUS_FAULT));
+            false
+        })?;
+        Ok(())
+    }
+
+    /// Maps the flash behind the image, which is read and written through the controller.
+    fn map_store(&mut self, code: usize) -> Result<(), uc_error> {
+        let (reads, writes) = (Rc::clone(&self.state), Rc::clone(&self.state));
+        let read = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize| {
+            let mut state = reads.borrow_mut();
+            let offset = code as u32 + offset as u32;
+            loop {
+                let now = state.now;
+                match state.controller.flash.load(offset, size as u32, now) {
+                    Ok(value) => {
+                        state.is_pending |= state.controller.flash.is_broken;
+                        return value.into();
+                    }
+                    // The bus stalls until the bank can be read.
+                    Err(until) => {
+                        state.now = until;
+                        state.controller.advance(&mut Ram(uc), until);
+                    }
+                }
+            }
+        };
+        let write = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize, value: u64| {
+            let mut state = writes.borrow_mut();
+            let offset = code as u32 + offset as u32;
+            while let Some(until) = { let now = state.now; state.controller.flash.store(offset, value as u32, size as u32, now) } {
+                state.now = until;
+                state.controller.advance(&mut Ram(uc), until);
+            }
+            state.look();
+        };
+        let rest = (FLASH_BYTES - code) as u64;
+        self.uc.mmio_map(u64::from(FLASH) + code as u64, rest, Some(read), Some(write))
+    }
+
+    /// Maps registers of the controller.
+    fn map_registers(&mut self, base: u32, size: u64) -> Result<(), uc_error> {
+        let (reads, writes) = (Rc::clone(&self.state), Rc::clone(&self.state));
+        let read = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize| {
+            let mut state = reads.borrow_mut();
+            let (address, at) = (base + offset as u32, (state.now, state.active));
+            let read = state.controller.read(&mut Ram(uc), address, size as u32, at);
+            state.look();
+            read.unwrap_or_else(|reason| {
+                state.halt(uc, Halt::Lost(address, reason, None));
+                0
+            }).into()
+        };
+        let write = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize, value: u64| {
+            let mut state = writes.borrow_mut();
+            let (address, now) = (base + offset as u32, state.now);
+            let written = state.controller.write(&mut Ram(uc), address, (value as u32, size as u32), now);
+            state.look();
+            if let Err(reason) = written {
+                state.halt(uc, Halt::Lost(address, reason, Some(value as u32)));
+            }
+        };
+        self.uc.mmio_map(base.into(), size, Some(read), Some(write))
+    }
+
+    /// Executes until a moment.
+    ///
+    /// # Errors
+    /// What the model does not know.
+    pub fn run(&mut self, until: Time) -> Result<(), Unknown> {
+        while self.now() < until {
+            self.restart();
+            self.take_exceptions();
+            self.execute(until)?;
+            let halt = self.state.borrow_mut().halt.take();
+            match halt {
+                Some(Halt::Sleeping) => self.sleep(until),
+                Some(Halt::Returning) => self.leave(),
+                Some(Halt::Taking(number)) => self.fault(number),
+                Some(Halt::Lost(address, reason, value)) => return Err(self.lost(address, reason, value)),
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Executes instructions until something is due.
+    fn execute(&mut self, until: Time) -> Result<(), Unknown> {
+        {
+            let mut state = self.state.borrow_mut();
+            state.look();
+            state.due = state.due.min(until);
+        }
+        let pc = self.get(RegisterARM::PC);
+        let ended = self.uc.emu_start(pc | 1, NOWHERE, 0, 0);
+        let mut state = self.state.borrow_mut();
+        state.account();
+        if ended.is_ok() && state.halt.is_none() && is_wait(&self.uc) {
+            state.halt = Some(Halt::Sleeping);
+        }
+        match ended {
+            Err(reason) if state.halt.is_none() => {
+                drop(state);
+                Err(Unknown::Stopped { place: self.place(), reason: format!("{reason:?}") })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Sleeps until an event, an exception or a moment.
+    fn sleep(&mut self, until: Time) {
+        let mut state = self.state.borrow_mut();
+        if std::mem::take(&mut state.event) {
+            return;
+        }
+        let start = state.now;
+        while state.now < until && state.controller.reset.is_none() {
+            let now = state.now;
+            // An interrupt that the mask holds back wakes too.
+            if state.controller.exceptions.waits() {
+                break;
+            }
+            let due = state.controller.due(now).min(until).max(now);
+            state.now = due;
+            state.controller.advance(&mut Ram(&mut self.uc), due);
+        }
+        let slept = state.now - start;
+        state.counts.asleep = state.counts.asleep + slept;
+        drop(state);
+        // A wait that has not ended is repeated.
+        if !self.state.borrow().controller.exceptions.waits() {
+            let pc = self.get(RegisterARM::PC);
+            self.set(RegisterARM::PC, pc.wrapping_sub(2) | 1);
+        }
+    }
+
+    /// Time until now.
+    pub fn now(&self) -> Time {
+        self.state.borrow().now
+    }
+
+    /// Counts the longest time with interrupts off anew.
+    pub fn forget_masked(&self) {
+        self.state.borrow_mut().counts.masked = (Time::ZERO, 0);
+    }
+
+    /// What was counted.
+    pub fn counts(&self) -> Counts {
+        self.state.borrow().counts
+    }
+
+    /// What is done with the blocks that were executed.
+    pub fn with_blocks<T>(&self, task: impl FnOnce(&Blocks) -> T) -> T {
+        task(&self.state.borrow().blocks)
+    }
+
+    /// What is done with the controller.
+    pub fn with_controller<T>(&self, task: impl FnOnce(&mut Controller) -> T) -> T {
+        task(&mut self.state.borrow_mut().controller)
+    }
+
+    /// Reads memory as a debugger does; whether there is memory.
+    pub fn peek(&self, address: u32, bytes: &mut [u8]) -> bool {
+        self.uc.mem_read(address.into(), bytes).is_ok()
+    }
+
+    /// Writes memory as a debugger does; whether there is RAM.
+    pub fn poke(&mut self, address: u32, bytes: &[u8]) -> bool {
+        Ram(&mut self.uc).write(address, bytes)
+    }
+
+    /// Function and line of the code that is executed.
+    pub fn place(&self) -> String {
+        self.image.place(self.get(RegisterARM::PC) as u32)
+    }
+
+    /// What was asked for, and where.
+    fn lost(&self, address: u32, reason: Refused, value: Option<u32>) -> Unknown {
+        let access = value.map_or("a read of".to_owned(), |value| format!("a write of {value:#x} to"));
+        Unknown::Register { access, address, place: self.place(), reason }
+    }
+
+    /// Starts again where a reset is due.
+    fn restart(&mut self) {
+        let reset = self.state.borrow().controller.reset;
+        if let Some(reason) = reset {
+            self.reset(reason);
+        }
+    }
+
+    /// Resets controller and core.
+    pub fn reset(&mut self, reason: ResetReason) {
+        {
+            let mut state = self.state.borrow_mut();
+            let now = state.now;
+            state.controller.restart(reason, now);
+            (state.halt, state.event, state.masked_since, state.active) = (None, false, None, 0);
+        }
+        self.start();
+    }
+}
+
+/// Whether the core has just executed a wait for an event or an interrupt.
+fn is_wait(uc: &Unicorn<'_, ()>) -> bool {
+    let mut half = [0; 2];
+    let before = uc.reg_read(RegisterARM::PC).unwrap_or(0).wrapping_sub(2);
+    uc.mem_read(before, &mut half).is_ok() && matches!(u16::from_le_bytes(half), 0xBF20 | 0xBF30)
+}

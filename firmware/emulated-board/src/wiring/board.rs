@@ -1,0 +1,297 @@
+//! The simulated chips of a carrier on the pins of the board B-L475E-IOT01A, as its image's first page lists them.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::slice;
+
+use embassy_time::Instant;
+use hal_mock::assembly::{Board as Assembly, Chips};
+use hal_mock::chip::{Rig, Select, Single};
+use hal_mock::ads1262::Ads1262;
+use hal_mock::board::StageChips;
+use hal_mock::converters::Converters;
+use hal_mock::gimbal::board::GimbalChips;
+use hal_mock::lsm6dsl::Lsm6dsl;
+use hal_mock::plant::base::Base;
+use hal_mock::tmc5160::{ChipFault, Tmc5160};
+use hal_mock::wires::{Clock, I2cWires, SpiWires};
+
+use super::{I2cBus, Pin, Wiring};
+use crate::time::Time;
+
+/// Port and number of a pin by its name.
+const fn pin(name: &[u8]) -> Pin {
+    let mut number = 0;
+    let mut place = 2;
+    while place < name.len() {
+        number = 10 * number + (name[place] - b'0') as u32;
+        place += 1;
+    }
+    Pin { port: (name[1] - b'A') as usize, number }
+}
+
+/// Select lines of a carrier: pin, serial bus and chip.
+pub type Selects = &'static [(Pin, usize, Select)];
+/// Data-ready lines of a carrier: pin and chip.
+pub type Lines = &'static [(Pin, Select)];
+
+/// Select lines of a stage or a turntable.
+pub const STAGE: Selects = &[
+    (pin(b"PA2"), 0, Select::Gyro),
+    (pin(b"PA15"), 0, Select::Accelerometer),
+    (pin(b"PD0"), 1, Select::Encoder),
+    (pin(b"PD5"), 1, Select::Actuator),
+];
+/// Select lines of two frames.
+pub const FRAMES: Selects = &[
+    STAGE[0],
+    STAGE[1],
+    STAGE[2],
+    STAGE[3],
+    (pin(b"PB2"), 1, Select::InnerEncoder),
+    (pin(b"PA4"), 1, Select::InnerActuator),
+];
+/// Select lines in a vehicle.
+pub const VEHICLE: Selects =
+    &[STAGE[0], STAGE[1], (pin(b"PB2"), 0, Select::GyroRight), (pin(b"PA4"), 0, Select::GyroDown)];
+/// Select lines on a spinning body.
+pub const SPIN: Selects = &[
+    STAGE[0],
+    (pin(b"PB2"), 0, Select::GyroRight),
+    (pin(b"PA4"), 0, Select::GyroUp),
+    (pin(b"PA3"), 0, Select::ForceUp),
+    (pin(b"PB4"), 0, Select::ForceRight),
+];
+/// The pin that enables the motor drivers, active low.
+const MOTORS: Pin = pin(b"PD2");
+/// The data-ready line of a single converter.
+pub const ONE_LINE: Lines = &[(pin(b"PD14"), Select::Gyro)];
+/// Data-ready lines in a vehicle.
+pub const VEHICLE_LINES: Lines =
+    &[ONE_LINE[0], (pin(b"PB0"), Select::GyroRight), (pin(b"PB1"), Select::GyroDown)];
+/// Data-ready lines on a spinning body.
+pub const SPIN_LINES: Lines = &[
+    ONE_LINE[0],
+    (pin(b"PB0"), Select::GyroRight),
+    (pin(b"PB1"), Select::GyroUp),
+    (pin(b"PC4"), Select::ForceUp),
+    (pin(b"PC3"), Select::ForceRight),
+];
+
+/// The chips and the world of a carrier.
+pub trait Carrier: Rig {
+    /// What was done to chips that their data sheets forbid, as sentences.
+    fn violations(&mut self) -> Vec<String>;
+
+    /// Conversions that a newer one replaced before they were read.
+    fn lost(&self) -> u64;
+
+    /// The motor drivers are enabled or not, where there are any.
+    fn enable_motors(&mut self, is_enabled: bool);
+}
+
+impl<P, C: Chips<P> + Parts> Carrier for Assembly<'_, P, C> {
+    fn violations(&mut self) -> Vec<String> {
+        self.recorded().map(|(chip, violation)| format!("{chip:?}: {violation}")).collect()
+    }
+
+    fn lost(&self) -> u64 {
+        self.chips.converters().iter().map(|converter| converter.overwritten).sum()
+    }
+
+    fn enable_motors(&mut self, is_enabled: bool) {
+        let fault = if is_enabled { ChipFault::None } else { ChipFault::Disabled };
+        self.chips.motors().iter_mut().for_each(|motor| motor.inject(fault));
+    }
+}
+
+/// Chips of a carrier by what they are.
+pub trait Parts {
+    /// The converters.
+    fn converters(&self) -> &[Ads1262];
+
+    /// The motor drivers.
+    fn motors(&mut self) -> &mut [Tmc5160];
+}
+
+impl<A, E> Parts for StageChips<Ads1262, A, E, Tmc5160> {
+    fn converters(&self) -> &[Ads1262] {
+        slice::from_ref(&self.gyro)
+    }
+
+    fn motors(&mut self) -> &mut [Tmc5160] {
+        slice::from_mut(&mut self.actuator)
+    }
+}
+
+impl Parts for GimbalChips {
+    fn converters(&self) -> &[Ads1262] {
+        slice::from_ref(&self.gyro)
+    }
+
+    fn motors(&mut self) -> &mut [Tmc5160] {
+        &mut self.actuators
+    }
+}
+
+impl<const N: usize> Parts for Converters<N> {
+    fn converters(&self) -> &[Ads1262] {
+        &self.converters
+    }
+
+    fn motors(&mut self) -> &mut [Tmc5160] {
+        &mut []
+    }
+}
+
+/// The IMU of the board on the base under a platform.
+pub type BaseImu = Single<Lsm6dsl, Base<'static>>;
+
+/// A data-ready line and when it next falls.
+struct Line {
+    pin: Pin,
+    select: Select,
+    next: Option<Instant>,
+    /// Since when a conversion waits to be read.
+    waits: Option<Time>,
+    /// How conversions were served.
+    served: Served,
+}
+
+/// How the conversions of a converter were served.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Served {
+    /// Conversions that were read.
+    pub read: u64,
+    /// The longest time for which one waited, and when it was read.
+    pub longest: (Time, Time),
+}
+
+/// A board with a carrier's chips on its pins.
+pub struct Board {
+    /// The chips and the world.
+    carrier: Rc<RefCell<dyn Carrier>>,
+    /// The wires of the serial buses.
+    buses: [SpiWires; 2],
+    selects: Selects,
+    lines: Vec<Line>,
+    /// The IMU on the base, and the bus to it.
+    base: (Option<BaseImu>, I2cWires),
+    /// Whether the motor drivers are enabled.
+    motors: bool,
+}
+
+impl Board {
+    /// A board with these chips on these pins.
+    pub fn new(
+        carrier: Rc<RefCell<dyn Carrier>>,
+        (selects, lines): (Selects, Lines),
+        base: Option<BaseImu>,
+    ) -> Self {
+        let line = |(pin, select): &(Pin, Select)| Line {
+            pin: *pin,
+            select: *select,
+            next: None,
+            waits: None,
+            served: Served::default(),
+        };
+        let buses = [SpiWires::new(), SpiWires::new()];
+        let lines = lines.iter().map(line).collect();
+        Self { carrier, buses, selects, lines, base: (base, I2cWires::new()), motors: true }
+    }
+
+    /// Looks at the data-ready lines: when they next fall, and whether conversions were read.
+    fn look(&mut self, now: Time) {
+        for line in &mut self.lines {
+            let seen = self.carrier.borrow_mut().ready_line(line.select, now.instant());
+            line.next = seen.next;
+            if !seen.active && let Some(since) = line.waits.take() {
+                line.served.read += 1;
+                line.served.longest = line.served.longest.max((now - since, now));
+            }
+        }
+    }
+}
+
+impl I2cBus for Board {
+    fn start(&mut self, address: u8, reads: bool, hertz: u32, now: Time) -> bool {
+        let (base, wires) = &mut self.base;
+        base.as_mut().is_some_and(|base| wires.start(base, address, reads, hertz, now.as_nanoseconds()))
+    }
+
+    fn write(&mut self, byte: u8, now: Time) -> bool {
+        let (base, wires) = &mut self.base;
+        base.as_mut().is_some_and(|base| wires.write(base, byte, now.as_nanoseconds()))
+    }
+
+    fn read(&mut self, is_acknowledged: bool, now: Time) -> u8 {
+        let (base, wires) = &mut self.base;
+        base.as_mut().map_or(0xFF, |base| wires.read(base, is_acknowledged, now.as_nanoseconds()))
+    }
+
+    fn stop(&mut self, now: Time) {
+        if let (Some(base), wires) = &mut self.base {
+            wires.stop(base, now.as_nanoseconds());
+        }
+    }
+}
+
+impl Wiring for Board {
+    fn served(&mut self) -> Served {
+        let all = self.lines.iter_mut().map(|line| std::mem::take(&mut line.served));
+        all.fold(Served::default(), |sum, served| Served {
+            read: sum.read + served.read,
+            longest: sum.longest.max(served.longest),
+        })
+    }
+
+    fn drive(&mut self, pin: Pin, level: Option<bool>, now: Time) {
+        if pin == MOTORS {
+            // A resistor pulls the pin up where nothing drives it.
+            let is_enabled = level == Some(false);
+            if std::mem::replace(&mut self.motors, is_enabled) != is_enabled {
+                self.carrier.borrow_mut().enable_motors(is_enabled);
+            }
+        }
+        let Some((_, bus, select)) = self.selects.iter().find(|(own, ..)| *own == pin) else { return };
+        // Resistors pull select lines up where nothing drives them.
+        let is_low = level == Some(false);
+        self.buses[*bus].set_select(&mut *self.carrier.borrow_mut(), *select, is_low, now.as_nanoseconds());
+        if !is_low {
+            self.look(now);
+        }
+    }
+
+    fn level(&mut self, pin: Pin, now: Time) -> bool {
+        let line = self.lines.iter().find(|line| line.pin == pin);
+        // What nothing drives is pulled up.
+        line.is_none_or(|line| !self.carrier.borrow_mut().ready_line(line.select, now.instant()).active)
+    }
+
+    fn begin(&mut self, bus: usize, byte: u8, clock: Clock, now: Time) {
+        self.buses[bus].begin(&mut *self.carrier.borrow_mut(), byte, clock, now.as_nanoseconds());
+    }
+
+    fn finish(&mut self, bus: usize) -> u8 {
+        self.buses[bus].finish(&mut *self.carrier.borrow_mut())
+    }
+
+    fn faults(&self) -> Vec<String> {
+        let spi = self.buses.iter().flat_map(|bus| bus.faults().first.iter().map(ToString::to_string));
+        spi.chain(self.base.1.faults().first.iter().map(ToString::to_string)).collect()
+    }
+
+    fn due(&self) -> Time {
+        self.lines.iter().filter_map(|line| line.next).min().map_or(Time::NEVER, Time::of)
+    }
+
+    fn edges(&mut self, now: Time) -> Vec<(Pin, bool)> {
+        let mut fallen = Vec::new();
+        for line in self.lines.iter_mut().filter(|line| line.next.is_some_and(|at| at <= now.instant())) {
+            line.waits.get_or_insert(now);
+            fallen.push((line.pin, false));
+        }
+        self.look(now);
+        fallen
+    }
+}

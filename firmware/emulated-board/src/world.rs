@@ -1,0 +1,136 @@
+//! The chips and the world of each carrier, with what its store holds beforehand.
+
+use std::cell::RefCell;
+use std::future::Future;
+use std::pin::pin;
+use std::rc::Rc;
+use std::task::{Context, Poll, Waker};
+
+use embassy_time::Instant;
+use firmware::platform::Platform;
+use firmware::settings::{CarrierSchedule, Settings, save};
+use firmware::storage::FlashStore;
+use hal_mock::flash::nor::PoweredFlash;
+use hal_mock::flash::{Cells, Flash};
+use sequential_storage::map::MapConfig;
+use simulated::executed;
+use simulated::fault::Injection;
+
+use crate::controller::flash::STORE;
+use crate::wiring::board::{
+    BaseImu, Board, Carrier, FRAMES, Lines, ONE_LINE, SPIN, SPIN_LINES, STAGE, Selects, VEHICLE, VEHICLE_LINES,
+};
+
+/// A carrier's chips and world.
+pub struct World {
+    /// The chips around the world.
+    pub carrier: Rc<RefCell<dyn Carrier>>,
+    /// Where they are connected.
+    wires: (Selects, Lines),
+    /// The IMU on the base under a platform.
+    base: Option<BaseImu>,
+    /// The pages of the store.
+    pub store: Vec<u8>,
+    /// The true azimuth at a moment, °, or the true roll of a spinning body.
+    pub truth_deg: Box<dyn Fn(Instant) -> f64>,
+}
+
+/// Keeps something for as long as the program runs: chips borrow what goes wrong with them.
+fn keep<T>(kept: T) -> &'static T {
+    Box::leak(Box::new(kept))
+}
+
+impl World {
+    /// The world of a carrier by its seed, in which nothing goes wrong.
+    ///
+    /// # Errors
+    /// Settings that the record does not take.
+    pub fn new(platform: Platform, seed: u64) -> Result<Self, String> {
+        let injection = keep(Injection::at(None, Instant::MIN));
+        match platform {
+            Platform::Stage => {
+                let scenario = executed::stage(seed);
+                let carrier = simulated::board(&scenario, None, injection);
+                let base = simulated::base::rig(&scenario, None);
+                let world = Self::of(carrier, (STAGE, ONE_LINE), scenario.settings());
+                world.map(|world| world.at_rest(base, scenario.azimuth_deg))
+            }
+            Platform::Turntable => {
+                let scenario = executed::turntable(seed);
+                let carrier = scenario.board(None, injection);
+                let base = simulated::base::rig(&scenario.base, None);
+                let world = Self::of(carrier, (STAGE, ONE_LINE), scenario.settings());
+                world.map(|world| world.at_rest(base, scenario.base.azimuth_deg))
+            }
+            Platform::TwoFrame => {
+                let scenario = executed::two_frames(seed);
+                let carrier = scenario.board(None, injection);
+                let base = simulated::base::rig(&scenario.base, None);
+                let world = Self::of(carrier, (FRAMES, ONE_LINE), scenario.settings());
+                world.map(|world| world.at_rest(base, scenario.base.azimuth_deg))
+            }
+            Platform::Vehicle => {
+                let scenario = executed::vehicle(seed);
+                let day = keep(scenario.day(None));
+                let board = || scenario.board(&day.legs, &day.events, injection);
+                let truth = board().plant;
+                let world = Self::of(board(), (VEHICLE, VEHICLE_LINES), scenario.settings());
+                world.map(|world| world.with(move |now| truth.truth_at(now).attitude.azimuth_rad))
+            }
+            Platform::Spin => {
+                let scenario = executed::spin(seed);
+                let course = keep(scenario.course(None));
+                let truth = scenario.board(course, injection).plant;
+                let carrier = scenario.board(course, injection);
+                let world = Self::of(carrier, (SPIN, SPIN_LINES), scenario.settings());
+                world.map(|world| world.with(move |now| truth.truth_at(now).roll_rad))
+            }
+        }
+    }
+
+    /// A world with the record of these settings in its store.
+    fn of<C: CarrierSchedule>(
+        carrier: impl Carrier + 'static,
+        wires: (Selects, Lines),
+        settings: Option<Settings<C>>,
+    ) -> Result<Self, String> {
+        let store = store(&settings.ok_or("the latitude is none")?)?;
+        let carrier = Rc::new(RefCell::new(carrier));
+        Ok(Self { carrier, wires, base: None, store, truth_deg: Box::new(|_| 0.0) })
+    }
+
+    /// The world with a base at rest, on which an IMU stands, facing this azimuth, °.
+    fn at_rest(self, base: BaseImu, azimuth_deg: f64) -> Self {
+        Self { base: Some(base), truth_deg: Box::new(move |_| azimuth_deg), ..self }
+    }
+
+    /// The world with a truth, rad.
+    fn with(self, truth_rad: impl Fn(Instant) -> f64 + 'static) -> Self {
+        let truth_deg = Box::new(move |now| truth_rad(now).to_degrees().rem_euclid(360.0));
+        Self { truth_deg, ..self }
+    }
+
+    /// The board with these chips on its pins.
+    pub fn board(&mut self) -> Board {
+        Board::new(Rc::clone(&self.carrier), self.wires, self.base.take())
+    }
+}
+
+/// The pages of a store that holds the record of these settings alone.
+fn store<C: CarrierSchedule>(settings: &Settings<C>) -> Result<Vec<u8>, String> {
+    let cells: Box<Cells> =
+        vec![0; size_of::<Cells>()].into_boxed_slice().try_into().map_err(|_| "no memory for the flash")?;
+    let flash = Flash::erased(cells, hal_mock::flash::Times::TYPICAL, 0);
+    let mut store = FlashStore::new(PoweredFlash::new(flash, 0), MapConfig::new(STORE));
+    let saved = at_once(save(&mut store, settings)).ok_or("the store waits")?;
+    saved.map_err(|error| format!("the record of settings: {error}"))?;
+    Ok(store.into_flash().flash.bytes()[STORE.start as usize..STORE.end as usize].to_vec())
+}
+
+/// The result of a future that never waits; none where it does.
+fn at_once<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(result) => Some(result),
+        Poll::Pending => None,
+    }
+}
