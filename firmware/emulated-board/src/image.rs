@@ -4,7 +4,7 @@ use std::path::Path;
 
 use addr2line::Loader;
 use object::read::elf::ElfFile32;
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol};
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
 
 /// An image for the microcontroller.
 pub struct Image {
@@ -78,6 +78,18 @@ impl Image {
             }
         }
         files
+    }
+
+    /// The address of a function whose name in the source contains this.
+    #[must_use]
+    pub fn address_of(&self, part: &str) -> Option<u32> {
+        let file: ElfFile32 = ElfFile32::parse(&*self.elf).ok()?;
+        let named = |symbol: &object::read::elf::ElfSymbol32| {
+            let name = symbol.name().unwrap_or_default();
+            addr2line::demangle_auto(name.into(), None).contains(part)
+        };
+        let found = file.symbols().find(|symbol| symbol.kind() == SymbolKind::Text && named(symbol));
+        found.map(|symbol| symbol.address() as u32 & !1)
     }
 
     /// The function at an address, by its name in the source.

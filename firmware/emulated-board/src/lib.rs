@@ -32,3 +32,16 @@ pub const RAM_BYTES: usize = 96 << 10;
 pub const RAM2: u32 = 0x1000_0000;
 /// Size of SRAM2, bytes.
 pub const RAM2_BYTES: usize = 32 << 10;
+
+/// The clock of the simulated world is the model's: nothing here waits for another.
+struct NoClock;
+
+impl embassy_time_driver::Driver for NoClock {
+    fn now(&self) -> u64 {
+        0
+    }
+
+    fn schedule_wake(&self, _: u64, _: &std::task::Waker) {}
+}
+
+embassy_time_driver::time_driver_impl!(static CLOCK: NoClock = NoClock);

@@ -13,6 +13,7 @@ use clap::Parser;
 use emulated_board::image::Image;
 use emulated_board::probe::Line;
 use emulated_board::run::{Order, Report, execute};
+use emulated_board::world::World;
 use firmware::platform::Platform;
 
 /// Executes an image of a board behind a model of its microcontroller, with simulated chips on its pins.
@@ -77,7 +78,8 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
     let on_line = |line: &Line| {
         eprintln!("{:>12} {:<5} {}", line.time, line.level.unwrap_or("-"), line.words);
     };
-    execute(&image, &order, on_line, |sent| exchange(client.as_mut(), sent))
+    let world = World::new(order.carrier, order.seed)?;
+    execute(&image, &order, world, on_line, |sent| exchange(client.as_mut(), sent))
 }
 
 /// The client of the link, who is waited for.
@@ -100,16 +102,3 @@ fn exchange(client: Option<&mut TcpStream>, sent: &[u8]) -> Vec<u8> {
     let count = client.read(&mut received).unwrap_or(0);
     received[..count].to_vec()
 }
-
-/// The clock of the simulated world is the model's: nothing here waits for another.
-struct NoClock;
-
-impl embassy_time_driver::Driver for NoClock {
-    fn now(&self) -> u64 {
-        0
-    }
-
-    fn schedule_wake(&self, _: u64, _: &std::task::Waker) {}
-}
-
-embassy_time_driver::time_driver_impl!(static CLOCK: NoClock = NoClock);

@@ -43,7 +43,7 @@ impl Order {
     #[must_use]
     pub fn usual(carrier: Platform, seed: u64) -> Self {
         // A spinning body has no result; its flight takes two seconds after the start of its converters.
-        let longest = if carrier == Platform::Spin { 3.0 } else { 240.0 };
+        let longest = if carrier == Platform::Spin { 5.0 } else { 240.0 };
         Self { carrier, seed, cycles: 1.4, afterwards: 10.0, longest, has_crystal: true }
     }
 }
@@ -59,20 +59,19 @@ pub struct Execution {
 }
 
 impl Execution {
-    /// A board whose supply comes up.
+    /// A board in a world whose supply comes up.
     ///
     /// # Errors
     /// An image without a log, or what Unicorn says.
-    pub fn new(image: Rc<Image>, order: &Order) -> Result<Self, String> {
+    pub fn new(image: &Rc<Image>, order: &Order, mut world: World) -> Result<Self, String> {
         let probe = Probe::new(&image.elf, image.log)?;
-        let mut world = World::new(order.carrier, order.seed)?;
         let oscillators = Oscillators { has_crystal: order.has_crystal, msi_error: 0.0 };
         let mut controller = Controller::new(oscillators, order.seed, Box::new(world.board()));
         controller.flash.array.burn(STORE.start, &world.store);
-        let processor = Processor::new(Rc::clone(&image), controller, order.cycles);
+        let processor = Processor::new(Rc::clone(image), controller, order.cycles);
         let mut processor = processor.map_err(|error| format!("Unicorn: {error:?}"))?;
         processor.poke(crate::RAM, &[PAINT; crate::RAM_BYTES]);
-        Ok(Self { processor, world, image, probe })
+        Ok(Self { processor, world, image: Rc::clone(image), probe })
     }
 
     /// Goes on for a millisecond; the log's lines of it.
@@ -123,7 +122,7 @@ pub struct Report {
     pub seconds: f64,
     /// Time from power-on to the first line of the log, s.
     pub start_seconds: f64,
-    /// Samples between the first and the last step of the measurement.
+    /// Samples, of all converters together, between the first and the last step of the measurement.
     pub samples: u64,
     /// Instructions for each of these samples, all in.
     pub instructions_per_sample: f64,
@@ -257,7 +256,7 @@ fn azimuth(words: &str) -> Option<[f64; 3]> {
     }
 }
 
-/// Executes an image to its result and some time beyond; lines of the log go to `on_line`, bytes of the link to
+/// Executes an image in a world to its result and some time beyond; lines of the log go to `on_line`, bytes of the link to
 /// `on_link`, which may return what the other side sends.
 ///
 /// # Errors
@@ -265,10 +264,11 @@ fn azimuth(words: &str) -> Option<[f64; 3]> {
 pub fn execute(
     image: &Rc<Image>,
     order: &Order,
+    world: World,
     mut on_line: impl FnMut(&Line),
     mut on_link: impl FnMut(&[u8]) -> Vec<u8>,
 ) -> Result<Report, String> {
-    let mut execution = Execution::new(Rc::clone(image), order)?;
+    let mut execution = Execution::new(image, order, world)?;
     let (mut gathered, mut link) = (Gathered::default(), Vec::new());
     let end = |gathered: &Gathered| {
         gathered.ended.map_or(Time::seconds(order.longest), |ended| ended + Time::seconds(order.afterwards))
@@ -332,7 +332,7 @@ fn window(image: &Image, execution: &Execution, gathered: &Gathered) -> (BTreeMa
         [first, .., last] => (first, last),
         _ => (&start, &now),
     };
-    let samples = last.1 - first.1;
+    let samples = (last.1 - first.1) / execution.world.converters();
     let mut origins = Origins::new(image);
     let sums = execution.processor.with_blocks(|blocks| last.0.since(&first.0, blocks, &mut origins));
     let each = sums.into_iter().map(|(origin, sum)| (origin, sum as f64 / samples.max(1) as f64));

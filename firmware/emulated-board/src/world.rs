@@ -110,6 +110,12 @@ impl World {
         Self { truth_deg, ..self }
     }
 
+    /// How many converters there are.
+    #[must_use]
+    pub const fn converters(&self) -> u64 {
+        self.wires.1.len() as u64
+    }
+
     /// The board with these chips on its pins.
     pub fn board(&mut self) -> Board {
         Board::new(Rc::clone(&self.carrier), self.wires, self.base.take())

@@ -443,6 +443,11 @@ impl Processor {
         Ram(&mut self.uc).write(address, bytes)
     }
 
+    /// Goes on at another address, as a debugger has it do.
+    pub fn jump(&mut self, address: u32) {
+        self.set(RegisterARM::PC, u64::from(address | 1));
+    }
+
     /// Function and line of the code that is executed.
     pub fn place(&self) -> String {
         self.image.place(self.get(RegisterARM::PC) as u32)
