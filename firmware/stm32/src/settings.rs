@@ -162,6 +162,7 @@ pub fn load<C: CarrierSchedule>(
     flash: &mut Peri<'static, FLASH>,
     of_image: fn() -> Settings<C>,
 ) -> Option<Settings<C>> {
+    // The flash blocks: its futures never wait, so no task needs room for them.
     let (settings, source) = match block_on(settings::load(&mut store(flash.reborrow()))) {
         Ok(Some(settings)) => (settings, "a record in flash"),
         Ok(None) => (of_image(), "the image"),
