@@ -1,8 +1,11 @@
-//! `meridian emulate`: the firmware on an emulated Cortex-M4F.
+//! `meridian emulate`: the firmware on an emulated Cortex-M4F, or a board's own image behind a model of its
+//! microcontroller.
 
 use clap::Args;
+use firmware::platform::Platform;
 use host::emulate::emulate;
-use host::output::{emulation, say};
+use host::emulate::executed::{Executed, Options, execute};
+use host::output::{emulation, executed, say};
 
 use super::Answer;
 
@@ -12,12 +15,56 @@ pub struct EmulateOptions {
     /// What fixes everything random in the simulated world.
     #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
+    /// Executes the image that `cargo board` flashes for a carrier (stage, two-frame, turntable, vehicle, spin),
+    /// or the images of all of them, in the place of the one that is made for the emulator.
+    #[arg(long, value_name = "CARRIER", value_parser = carriers)]
+    board: Option<Carriers>,
+    /// With --board: cycles of the core for an instruction, wait states of the flash included.
+    #[arg(long, default_value_t = 1.4, requires = "board")]
+    cycles: f64,
+    /// With --board: how long it goes on after its result, s; 10 unless stated.
+    #[arg(long, value_name = "SECONDS", requires = "board")]
+    afterwards: Option<f64>,
+    /// With --board and one carrier: the link as a byte stream for one client, which is waited for.
+    #[arg(long, value_name = "tcp:PORT", requires = "board")]
+    link: Option<String>,
+}
+
+/// Carriers whose images are executed.
+#[derive(Clone, Debug)]
+struct Carriers(Vec<Platform>);
+
+/// A carrier by its name, or all of them.
+fn carriers(name: &str) -> Result<Carriers, String> {
+    if name == "all" {
+        return Ok(Carriers(Platform::ALL.to_vec()));
+    }
+    let names = || Platform::ALL.map(Platform::name).join(", ");
+    let found = Platform::ALL.into_iter().find(|platform| platform.name() == name);
+    found.map(|platform| Carriers(vec![platform])).ok_or_else(|| format!("{} or all are meant", names()))
 }
 
 /// Runs the firmware's images; whether all is as it must be.
 pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
+    if let Some(Carriers(carriers)) = &options.board {
+        return run_boards(carriers, options, as_json);
+    }
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
     Answer::of(refusal, as_json, &object, || emulation::report(&found).text())
+}
+
+/// Executes the images of boards; whether no azimuth is wrong.
+fn run_boards(carriers: &[Platform], options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
+    if options.link.is_some() && carriers.len() > 1 {
+        return Err("--link: one carrier has one link, and --board names several".to_owned());
+    }
+    let link = options.link.clone();
+    let EmulateOptions { seed, cycles, afterwards, .. } = *options;
+    let options = Options { seed, cycles, afterwards, link };
+    let found = execute(carriers, &options)?;
+    let is_right = found.iter().flat_map(Executed::complaints).next().is_none();
+    let refusal = (!is_right).then(|| "not all is as it must be".to_owned());
+    Answer::of(refusal, as_json, &executed::object(&found), || executed::report(&found, &options).text())
 }

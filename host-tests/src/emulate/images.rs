@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 
 /// The Cortex-M4F with its floating-point unit.
-const TARGET: &str = "thumbv7em-none-eabihf";
+pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// The images, as files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,18 +31,26 @@ pub fn root() -> &'static Path {
 /// # Errors
 /// One line: what is missing, or that cargo said what is wrong.
 pub fn build() -> Result<Images, String> {
+    artifacts(&built(&["--package", "emulator", "--profile", "firmware", "--target", TARGET])?)
+}
+
+/// Has cargo build something; its messages, one JSON object in a line. Its progress goes to standard error.
+///
+/// # Errors
+/// One line: what is missing, or that cargo said what is wrong.
+pub fn built(arguments: &[&str]) -> Result<String, String> {
     if !root().join("memory.x").is_file() {
         return Err(format!("the firmware's sources are not at {}", root().display()));
     }
     require_target()?;
     let mut command = Command::new(cargo());
-    command.current_dir(root()).args(["build", "--package", "emulator", "--profile", "firmware"]);
-    command.args(["--target", TARGET, "--message-format", "json-render-diagnostics"]);
+    command.current_dir(root()).arg("build").args(arguments);
+    command.args(["--message-format", "json-render-diagnostics"]);
     let output = command.stderr(Stdio::inherit()).output().map_err(|e| format!("cargo: {e}"))?;
     if !output.status.success() {
         return Err("the firmware does not build: cargo says why".to_owned());
     }
-    artifacts(&String::from_utf8_lossy(&output.stdout))
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// The cargo that runs this program, or the one there is.
@@ -67,12 +75,16 @@ fn require_target() -> Result<(), String> {
 /// # Errors
 /// Which is not there.
 pub fn artifacts(messages: &str) -> Result<Images, String> {
-    let messages: Vec<Value> =
-        messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
-    let executable = |name: &str| {
-        let named = messages.iter().filter(|message| message["target"]["name"] == name);
-        let path = named.filter_map(|message| message["executable"].as_str()).next_back();
-        path.map(PathBuf::from).ok_or_else(|| format!("cargo built no image `{name}`"))
-    };
-    Ok(Images { emulator: executable("emulator")?, cost: executable("cost")? })
+    Ok(Images { emulator: executable(messages, "emulator")?, cost: executable(messages, "cost")? })
+}
+
+/// An executable in cargo's messages, one JSON object in a line.
+///
+/// # Errors
+/// It is not there.
+pub fn executable(messages: &str, name: &str) -> Result<PathBuf, String> {
+    let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let named = messages.filter(|message| message["target"]["name"] == name);
+    let paths = named.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
+    paths.last().ok_or_else(|| format!("cargo built no image `{name}`"))
 }

@@ -13,6 +13,7 @@ pub mod checks;
 pub mod collect;
 pub mod cost;
 pub mod decode;
+pub mod executed;
 pub mod images;
 pub mod jobs;
 pub mod outcome;

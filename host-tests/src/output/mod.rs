@@ -2,6 +2,7 @@
 
 pub mod allan;
 pub mod emulation;
+pub mod executed;
 pub mod plan;
 pub mod progress;
 

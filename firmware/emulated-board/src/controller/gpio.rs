@@ -7,8 +7,10 @@ use super::Refused;
 pub struct Port {
     /// `GPIOx_MODER`: two bits for each pin.
     mode: u32,
-    /// `GPIOx_OTYPER`, `OSPEEDR`, `PUPDR`, `LCKR`, `ASCR`: without effect here, but for the pull resistors.
-    others: [u32; 5],
+    /// `GPIOx_OTYPER`, `OSPEEDR` and `PUPDR`: without effect here, all wires have their levels.
+    others: [u32; 3],
+    /// `GPIOx_ASCR`: the analogue switch, without effect.
+    analogue: u32,
     /// `GPIOx_ODR`.
     output: u16,
     /// `GPIOx_AFRL` and `AFRH`.
@@ -19,7 +21,7 @@ impl Port {
     /// The port after a reset; A and B have the pins of the debugger (8.4.1).
     pub fn new(index: usize) -> Self {
         let mode = [0xABFF_FFFF, 0xFFFF_FEBF].get(index).copied().unwrap_or(0xFFFF_FFFF);
-        Self { mode, others: [0; 5], output: 0, functions: [0; 2] }
+        Self { mode, others: [0; 3], analogue: 0, output: 0, functions: [0; 2] }
     }
 
     /// Reads a register; `levels` are those of the wires.
@@ -31,6 +33,7 @@ impl Port {
             0x14 => self.output.into(),
             0x18 | 0x28 => 0,
             0x20 | 0x24 => self.functions[(offset / 4 - 8) as usize],
+            0x2C => self.analogue,
             _ => return Err(Refused::Unknown),
         })
     }
@@ -44,6 +47,7 @@ impl Port {
             0x18 => self.output = self.output & !(value >> 16) as u16 | value as u16,
             0x20 | 0x24 => self.functions[(offset / 4 - 8) as usize] = value,
             0x28 => self.output &= !(value as u16),
+            0x2C => self.analogue = value,
             _ => return Err(Refused::Unknown),
         }
         Ok(())
@@ -52,11 +56,5 @@ impl Port {
     /// The level that a pin drives; none where it is no output.
     pub fn driven(&self, pin: u32) -> Option<bool> {
         (self.mode >> (2 * pin) & 3 == 1).then_some(self.output >> pin & 1 != 0)
-    }
-
-    /// The other function that a pin has, by its number; none where it has none.
-    pub fn function(&self, pin: u32) -> Option<u32> {
-        let functions = self.functions[(pin / 8) as usize];
-        (self.mode >> (2 * pin) & 3 == 2).then_some(functions >> (4 * (pin % 8)) & 0xF)
     }
 }

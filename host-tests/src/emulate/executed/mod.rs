@@ -1,0 +1,141 @@
+//! `meridian emulate --board`: the very image that is flashed, executed behind a model of its microcontroller.
+//!
+//! ```text
+//!  board's image (cargo) ─▶ program `emulated-board` ─log─▶ standard error
+//!                                  └─one line of JSON─▶ report ◀─compare─ the host's run of the same world
+//! ```
+//!
+//! The program links Unicorn, whose licence is the GPL-2.0: it is built and started, and talked to by a pipe.
+
+mod host;
+mod report;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use firmware::platform::Platform;
+use rayon::prelude::*;
+
+use super::images::{TARGET, built, executable, root};
+pub use report::{Report, Service};
+
+/// Greatest distance of an azimuth from the truth, in its own σ.
+const FROM_TRUTH: f64 = 3.0;
+/// Greatest distance of an azimuth from that of the host's run, in its own σ, where no conversion was lost.
+const FROM_HOST: f64 = 0.3;
+/// What the program needs to be built.
+const NEEDED: &str = "it needs cmake and libclang (Debian: apt-get install cmake libclang-dev)";
+
+/// How images are executed.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Seed of the world.
+    pub seed: u64,
+    /// Cycles that an instruction takes.
+    pub cycles: f64,
+    /// How long an image goes on after its result, s; as the program has it where nothing is stated.
+    pub afterwards: Option<f64>,
+    /// Where the link is offered to a client, as in "tcp:5000".
+    pub link: Option<String>,
+}
+
+/// An image that was executed.
+#[derive(Clone, Debug)]
+pub struct Executed {
+    /// What the execution showed.
+    pub report: Report,
+    /// The azimuth that the host finds in the same world, °; none where it finds none.
+    pub host_deg: Option<f64>,
+}
+
+impl Executed {
+    /// Distances of the azimuth from the truth and from the host's, in its own σ.
+    #[must_use]
+    pub fn distances(&self) -> Option<[Option<f64>; 2]> {
+        let [azimuth, sigma, _] = self.report.azimuth_deg?;
+        let distance = |other: f64| ((azimuth - other + 540.0).rem_euclid(360.0) - 180.0) / sigma;
+        Some([Some(distance(self.report.truth_deg)), self.host_deg.map(distance)])
+    }
+
+    /// What is not as it must be, as sentences.
+    #[must_use]
+    pub fn complaints(&self) -> Vec<String> {
+        let Report { carrier, violations, .. } = &self.report;
+        let mut complaints: Vec<String> =
+            violations.iter().map(|violation| format!("{carrier}: {violation}")).collect();
+        let Some([from_truth, from_host]) = self.distances() else { return complaints };
+        let mut hold = |distance: Option<f64>, greatest: f64, of: &str| {
+            if distance.is_some_and(|distance| distance.abs() > greatest) {
+                let distance = distance.unwrap_or_default();
+                complaints.push(format!("{carrier}: the azimuth is {distance:.2} σ beside {of}, {greatest} allowed"));
+            }
+        };
+        hold(from_truth, FROM_TRUTH, "the truth");
+        if self.report.lost_before_result() == 0 {
+            hold(from_host, FROM_HOST, "that of the host");
+        }
+        complaints
+    }
+}
+
+/// Builds the images of carriers and the program, executes them side by side, and makes the same runs on the host. The
+/// log of a single image goes to standard error as it comes.
+///
+/// # Errors
+/// What is missing or does not build, or what the model does not know.
+pub fn execute(carriers: &[Platform], options: &Options) -> Result<Vec<Executed>, String> {
+    let images: Vec<PathBuf> = carriers.iter().map(|carrier| image(*carrier)).collect::<Result<_, _>>()?;
+    let program = program()?;
+    let is_alone = carriers.len() == 1;
+    let pairs: Vec<_> = carriers.iter().zip(&images).collect();
+    pairs
+        .par_iter()
+        .map(|(carrier, image)| {
+            let report = report(&program, image, **carrier, options, is_alone)?;
+            Ok(Executed { report, host_deg: host::azimuth_deg(**carrier, options.seed)? })
+        })
+        .collect()
+}
+
+/// The image of a carrier, as `cargo board` flashes it, as a file of its own.
+fn image(carrier: Platform) -> Result<PathBuf, String> {
+    let package = ["--package", "board-b-l475e-iot01a", "--features", carrier.name()];
+    let profile = ["--profile", "firmware", "--target", TARGET];
+    let elf = executable(&built(&[&package[..], &profile].concat())?, "board")?;
+    let own = elf.with_file_name(format!("board-{}.elf", carrier.name()));
+    std::fs::copy(&elf, &own).map_err(|error| format!("{}: {error}", own.display()))?;
+    Ok(own)
+}
+
+/// The program that executes images.
+fn program() -> Result<PathBuf, String> {
+    let messages = built(&["--package", "emulated-board", "--release"]);
+    executable(&messages.map_err(|error| format!("{error}; {NEEDED}"))?, "emulated-board")
+}
+
+/// Executes an image.
+fn report(
+    program: &Path,
+    image: &Path,
+    carrier: Platform,
+    options: &Options,
+    shows_log: bool,
+) -> Result<Report, String> {
+    let mut command = Command::new(program);
+    command.current_dir(root()).arg(image).args(["--carrier", carrier.name()]);
+    command.args(["--seed", &options.seed.to_string(), "--cycles", &options.cycles.to_string()]);
+    if let Some(seconds) = options.afterwards {
+        command.args(["--afterwards", &seconds.to_string()]);
+    }
+    if let Some(link) = &options.link {
+        command.args(["--link", link]);
+    }
+    command.stderr(if shows_log { Stdio::inherit() } else { Stdio::piped() });
+    let output = command.output().map_err(|error| format!("{}: {error}", program.display()))?;
+    if output.status.success() {
+        return Report::parse(&output.stdout);
+    }
+    let log = String::from_utf8_lossy(&output.stderr);
+    let last = log.lines().next_back().unwrap_or("its log says why");
+    Err(format!("the image of {} was not executed: {last}", carrier.name()))
+}
