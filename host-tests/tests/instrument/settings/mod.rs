@@ -23,7 +23,7 @@ mod stored;
 const CHECKSUM: usize = 4;
 
 /// Settings whose numbers all differ.
-fn settings<C>(schedule: C) -> Settings<C> {
+pub(crate) fn settings<C>(schedule: C) -> Settings<C> {
     let noise = GyroNoise {
         quantisation: Radians(0.25),
         angle_random_walk: RadiansPerRootSecond(0.5),
@@ -56,7 +56,7 @@ fn turntable() -> TurntableSchedule {
     TurntableSchedule { speeds, turns: 300, modulated_turns: 12 }
 }
 
-fn vehicle() -> VehicleSchedule {
+pub(crate) fn vehicle() -> VehicleSchedule {
     VehicleSchedule { stops: 3, stop: Seconds(16.0), realigns: true }
 }
 

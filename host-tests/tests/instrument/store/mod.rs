@@ -1,14 +1,17 @@
 //! The store in the flash of the STM32L475: the supply is lost at any moment, at random moments, and other programs
 //! have used the pages before.
 //!
-//! Tests that are expected to fail show known defects; each names its figure.
+//! Tests that are expected to fail show known defects; each names its figure, which depends on the sizes of the
+//! items.
 
 mod cuts;
 mod remains;
 mod sequences;
 
+use crate::settings::{settings, vehicle};
 use drivers::fault::Fault;
 use firmware::ports::Store as _;
+use firmware::settings::{self, Settings, VehicleSchedule};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::flash::nor::PoweredFlash;
 use hal_mock::flash::{Cells, Flash, PAGE, SIZE, Times};
@@ -85,6 +88,22 @@ impl Item<BYTES> for Misalignment {
     }
 }
 
+/// The settings of a vehicle.
+struct Record;
+
+impl Item<{ settings::BYTES }> for Record {
+    fn bytes(number: u64) -> [u8; settings::BYTES] {
+        // A stop of 10 s is the shortest.
+        let schedule = VehicleSchedule { stop: Seconds(10.0 + number as f64), ..vehicle() };
+        settings(schedule).to_record().expect("they are in range")
+    }
+
+    fn number(bytes: &[u8; settings::BYTES]) -> Option<u64> {
+        let settings = Settings::<VehicleSchedule>::from_record(bytes).ok()?;
+        Some(settings.schedule.stop.0 as u64 - 10)
+    }
+}
+
 /// A slot of the store, with its kind of item.
 #[derive(Clone, Copy)]
 struct Slot {
@@ -94,10 +113,11 @@ struct Slot {
 }
 
 /// The slots that the instrument uses.
-const SLOTS: [Slot; 3] = [
+const SLOTS: [Slot; 4] = [
     Slot::of::<Heading, { Remembered::BYTES }>(HEADING),
     Slot::of::<Misalignment, BYTES>(0),
     Slot::of::<Misalignment, BYTES>(1),
+    Slot::of::<Record, { settings::BYTES }>(settings::SLOT),
 ];
 
 impl Slot {

@@ -56,11 +56,11 @@ impl Sequence {
         }
     }
 
-    /// A save in which the supply is lost, unless it is over before. It has 11 operations or fewer, or 45 where
-    /// pages are changed.
+    /// A save in which the supply is lost, unless it is over before. It has up to 26 operations, or up to
+    /// 86 where pages are changed.
     fn cut(&mut self, slot: usize, number: u64) -> Result<(), Defect> {
         self.flash.restart();
-        let limit = [12, 48][self.below(2) as usize];
+        let limit = [28, 96][self.below(2) as usize];
         let operation = self.below(limit);
         let is_within = self.is_within && self.below(2) == 0;
         let loss = if is_within { Loss::Within(operation) } else { Loss::After(operation) };
@@ -114,12 +114,12 @@ fn expect_none(defects: [u32; 3]) {
 fn a_thousand_sequences_with_losses_of_supply_between_rows_have_no_defect() {
     let (defects, cuts) = played(false, |_| ());
     expect_none(defects);
-    assert!(cuts > 9 * SEQUENCES as u32, "only {cuts} losses of supply");
+    assert!(cuts > 5 * SEQUENCES as u32, "only {cuts} losses of supply");
 }
 
 /// As the firmware is today, without a handler for uncorrectable rows.
 #[test]
-#[should_panic(expected = "[0, 864, 92] of 1000 load a wrong item, cannot load, cannot save")]
+#[should_panic(expected = "[0, 742, 136] of 1000 load a wrong item, cannot load, cannot save")]
 fn a_thousand_sequences_with_losses_of_supply_within_rows_and_pages_have_no_defect() {
     let (defects, _) = played(true, |_| ());
     expect_none(defects);
@@ -127,7 +127,7 @@ fn a_thousand_sequences_with_losses_of_supply_within_rows_and_pages_have_no_defe
 
 /// Wrong items come from torn erasures; a torn row that reads as erased refuses every save.
 #[test]
-#[should_panic(expected = "[1, 0, 11] of 1000 load a wrong item, cannot load, cannot save")]
+#[should_panic(expected = "[1, 0, 10] of 1000 load a wrong item, cannot load, cannot save")]
 fn where_the_interrupt_returns_a_thousand_sequences_have_no_defect() {
     let (defects, _) = played(true, |flash| flash.interrupt = Interrupt::Returns);
     expect_none(defects);
@@ -137,7 +137,7 @@ fn where_the_interrupt_returns_a_thousand_sequences_have_no_defect() {
 /// of supply interrupted is begun anew, the mark at the page's start is read out of the cache, and not written
 /// again. On the board the program's own loads take lines of the cache, too: there it may be rarer.
 #[test]
-#[should_panic(expected = "[248, 0, 0] of 1000 load a wrong item, cannot load, cannot save")]
+#[should_panic(expected = "[308, 0, 5] of 1000 load a wrong item, cannot load, cannot save")]
 fn through_the_data_cache_a_thousand_sequences_have_no_defect() {
     let (defects, _) = played(false, |flash| flash.is_cached = true);
     expect_none(defects);
