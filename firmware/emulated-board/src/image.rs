@@ -34,16 +34,15 @@ impl Image {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let elf = std::fs::read(path).map_err(|error| named(&error))?;
         let sources = Loader::new(path).map_err(|error| named(&error))?;
-        let file: ElfFile32 = ElfFile32::parse(&*elf).map_err(|error| format!("no image: {error}"))?;
+        let file: ElfFile32 =
+            ElfFile32::parse(&*elf).map_err(|error| format!("no image: {error}"))?;
         let symbol = |name: &str| {
             let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
             found.map(|symbol| symbol.address() as u32).ok_or_else(|| format!("no symbol {name}"))
         };
         let (stack_start, stack_end) = (symbol("_stack_start")?, symbol("_stack_end")?);
         let in_ram = |section: &object::read::elf::ElfSection32| section.address() >= 0x2000_0000;
-        let takes = |section: &object::read::elf::ElfSection32| {
-            matches!(section.flags(), object::SectionFlags::Elf { sh_flags } if sh_flags & 2 != 0)
-        };
+        let takes = |section: &object::read::elf::ElfSection32| matches!(section.flags(), object::SectionFlags::Elf { sh_flags } if sh_flags & 2 != 0);
         let statics = file.sections().filter(|section| in_ram(section) && takes(section));
         Ok(Self {
             flash: flash(&file)?,
@@ -88,7 +87,8 @@ impl Image {
             let name = symbol.name().unwrap_or_default();
             addr2line::demangle_auto(name.into(), None).contains(part)
         };
-        let found = file.symbols().find(|symbol| symbol.kind() == SymbolKind::Text && named(symbol));
+        let found =
+            file.symbols().find(|symbol| symbol.kind() == SymbolKind::Text && named(symbol));
         found.map(|symbol| symbol.address() as u32 & !1)
     }
 
@@ -106,7 +106,9 @@ fn flash(file: &ElfFile32) -> Result<Vec<u8>, String> {
     for segment in file.segments() {
         let bytes = segment.data().map_err(|error| format!("a segment: {error}"))?;
         let load = segment.elf_program_header().p_paddr.get(file.endian());
-        let Some(start) = load.checked_sub(crate::FLASH).filter(|_| !bytes.is_empty()) else { continue };
+        let Some(start) = load.checked_sub(crate::FLASH).filter(|_| !bytes.is_empty()) else {
+            continue;
+        };
         let start = start as usize;
         let end = start + bytes.len();
         if end > crate::FLASH_BYTES {
@@ -115,5 +117,9 @@ fn flash(file: &ElfFile32) -> Result<Vec<u8>, String> {
         flash.resize(flash.len().max(end), 0xFF);
         flash[start..end].copy_from_slice(bytes);
     }
-    if flash.is_empty() { Err("no segment of the image lies in flash".to_owned()) } else { Ok(flash) }
+    if flash.is_empty() {
+        Err("no segment of the image lies in flash".to_owned())
+    } else {
+        Ok(flash)
+    }
 }

@@ -13,12 +13,12 @@
 pub mod controller;
 pub mod image;
 pub mod measure;
-pub mod run;
 pub mod probe;
 pub mod processor;
+pub mod run;
 pub mod time;
-pub mod world;
 pub mod wiring;
+pub mod world;
 
 /// Where the flash begins (RM0351, 2.2.2).
 pub const FLASH: u32 = 0x0800_0000;

@@ -49,7 +49,9 @@ fn platform(name: &str) -> Result<Platform, String> {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()).and_then(|report| serde_json::to_string(&report).map_err(|e| e.to_string())) {
+    match run(&Arguments::parse())
+        .and_then(|report| serde_json::to_string(&report).map_err(|e| e.to_string()))
+    {
         Ok(line) => {
             println!("{line}");
             ExitCode::SUCCESS
@@ -85,7 +87,8 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
 /// The client of the link, who is waited for.
 fn client(address: &str) -> Result<TcpStream, String> {
     let port = address.strip_prefix("tcp:").and_then(|port| port.parse().ok());
-    let port: u16 = port.ok_or_else(|| format!("--link {address}: tcp: and a port are meant, as in tcp:5000"))?;
+    let port: u16 =
+        port.ok_or_else(|| format!("--link {address}: tcp: and a port are meant, as in tcp:5000"))?;
     let failed = |error: std::io::Error| format!("--link {address}: {error}");
     let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
     eprintln!("waiting for a client at {}", listener.local_addr().map_err(failed)?);

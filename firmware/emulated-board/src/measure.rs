@@ -79,7 +79,12 @@ impl Snapshot {
     }
 
     /// Instructions of all blocks since an earlier moment, by where they go.
-    pub fn since(&self, earlier: &Self, blocks: &Blocks, origins: &mut Origins) -> HashMap<Origin, u64> {
+    pub fn since(
+        &self,
+        earlier: &Self,
+        blocks: &Blocks,
+        origins: &mut Origins,
+    ) -> HashMap<Origin, u64> {
         let mut sums = HashMap::new();
         for (place, (block, count)) in blocks.all.iter().zip(&self.0).enumerate() {
             let executed = count - earlier.0.get(place).copied().unwrap_or(0);
@@ -87,7 +92,8 @@ impl Snapshot {
                 continue;
             }
             for offset in &block.offsets {
-                *sums.entry(origins.of(block.address + u32::from(*offset))).or_insert(0) += executed;
+                *sums.entry(origins.of(block.address + u32::from(*offset))).or_insert(0) +=
+                    executed;
             }
         }
         sums

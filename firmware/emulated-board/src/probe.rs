@@ -69,7 +69,10 @@ impl Probe {
         loop {
             match self.decoder.decode() {
                 Ok(frame) => on_line(Line {
-                    time: frame.display_timestamp().map(|time| time.to_string()).unwrap_or_default(),
+                    time: frame
+                        .display_timestamp()
+                        .map(|time| time.to_string())
+                        .unwrap_or_default(),
                     level: frame.level().map(|level| level.as_str()),
                     words: frame.display_message().to_string(),
                 }),

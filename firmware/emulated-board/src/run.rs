@@ -172,8 +172,18 @@ impl Service {
 
 /// Words of lines that notice something wrong, of which nothing is.
 const NOTICES: [&str; 12] = [
-    "missing", "beside its time", "starting it again", "beside its target", "given up", "drove on", "overflow",
-    "without forces", "coasting", "bus error", "no motion is measured", "cannot be",
+    "missing",
+    "beside its time",
+    "starting it again",
+    "beside its target",
+    "given up",
+    "drove on",
+    "overflow",
+    "without forces",
+    "coasting",
+    "bus error",
+    "no motion is measured",
+    "cannot be",
 ];
 
 /// Words with which the steps of a measurement begin or contain.
@@ -224,7 +234,9 @@ impl Gathered {
         if let Some(words) = NOTICES.iter().find(|words| line.words.contains(**words)) {
             *self.notices.entry((*words).to_owned()).or_insert(0) += 1;
         }
-        if self.ended.is_none() && (line.words.starts_with("azimuth ") || line.words.starts_with("no azimuth")) {
+        if self.ended.is_none()
+            && (line.words.starts_with("azimuth ") || line.words.starts_with("no azimuth"))
+        {
             self.azimuth = azimuth(&line.words).map(|azimuth| (azimuth, now));
             self.ended = Some(now);
         }
@@ -271,7 +283,9 @@ pub fn execute(
     let mut execution = Execution::new(image, order, world)?;
     let (mut gathered, mut link) = (Gathered::default(), Vec::new());
     let end = |gathered: &Gathered| {
-        gathered.ended.map_or(Time::seconds(order.longest), |ended| ended + Time::seconds(order.afterwards))
+        gathered
+            .ended
+            .map_or(Time::seconds(order.longest), |ended| ended + Time::seconds(order.afterwards))
     };
     while execution.processor.now() < end(&gathered) {
         let lines = execution.step().map_err(|error| error.to_string())?;
@@ -280,7 +294,9 @@ pub fn execute(
             on_line(line);
             gathered.take(line, &execution);
         }
-        let sent = execution.processor.with_controller(|controller| std::mem::take(&mut controller.usart.sent));
+        let sent = execution
+            .processor
+            .with_controller(|controller| std::mem::take(&mut controller.usart.sent));
         let received = on_link(&sent);
         execution.processor.with_controller(|controller| controller.usart.offer(&received));
         link.extend(sent);
@@ -289,14 +305,23 @@ pub fn execute(
 }
 
 /// The report of an execution that has ended.
-fn report(image: &Image, order: &Order, execution: &Execution, gathered: Gathered, link: &str) -> Report {
+fn report(
+    image: &Image,
+    order: &Order,
+    execution: &Execution,
+    gathered: Gathered,
+    link: &str,
+) -> Report {
     let now = execution.processor.now();
     let (by_origin, idle, samples) = window(image, execution, &gathered);
     let ended = gathered.ended.unwrap_or(now);
     let used = execution.processor.with_controller(|controller| controller.flash.used);
     let mut violations = execution.world.carrier.borrow_mut().violations();
     violations.extend(execution.processor.with_controller(|controller| controller.wiring.faults()));
-    let faults = link.lines().filter_map(|line| line.rsplit("faults ").next()?.trim().parse().ok()).next_back();
+    let faults = link
+        .lines()
+        .filter_map(|line| line.rsplit("faults ").next()?.trim().parse().ok())
+        .next_back();
     Report {
         carrier: order.carrier.name(),
         seed: order.seed,
@@ -316,7 +341,8 @@ fn report(image: &Image, order: &Order, execution: &Execution, gathered: Gathere
         stack_bytes: execution.stack_bytes(),
         flash_bytes: image.flash.len(),
         static_bytes: image.static_bytes,
-        masked_seconds: [gathered.masked_at_start, execution.processor.counts().masked.0].map(Time::as_seconds),
+        masked_seconds: [gathered.masked_at_start, execution.processor.counts().masked.0]
+            .map(Time::as_seconds),
         violations,
         flash_use: [used.rows, used.pages],
     }
@@ -324,9 +350,18 @@ fn report(image: &Image, order: &Order, execution: &Execution, gathered: Gathere
 
 /// Instructions for a sample by their origin, and the idle part of the time, between the first and the last step of
 /// the measurement, or from the start on where there are no two; and the samples of that time.
-fn window(image: &Image, execution: &Execution, gathered: &Gathered) -> (BTreeMap<Origin, f64>, f64, u64) {
+fn window(
+    image: &Image,
+    execution: &Execution,
+    gathered: &Gathered,
+) -> (BTreeMap<Origin, f64>, f64, u64) {
     let asleep = execution.processor.counts().asleep;
-    let now = (execution.processor.with_blocks(Snapshot::of), gathered.samples, execution.processor.now(), asleep);
+    let now = (
+        execution.processor.with_blocks(Snapshot::of),
+        gathered.samples,
+        execution.processor.now(),
+        asleep,
+    );
     let start = (Snapshot::default(), 0, Time::ZERO, Time::ZERO);
     let (first, last) = match &gathered.steps[..] {
         [first, .., last] => (first, last),
@@ -334,7 +369,8 @@ fn window(image: &Image, execution: &Execution, gathered: &Gathered) -> (BTreeMa
     };
     let samples = (last.1 - first.1) / execution.world.converters();
     let mut origins = Origins::new(image);
-    let sums = execution.processor.with_blocks(|blocks| last.0.since(&first.0, blocks, &mut origins));
+    let sums =
+        execution.processor.with_blocks(|blocks| last.0.since(&first.0, blocks, &mut origins));
     let each = sums.into_iter().map(|(origin, sum)| (origin, sum as f64 / samples.max(1) as f64));
     let idle = (last.3 - first.3).as_seconds() / (last.2 - first.2).as_seconds().max(1e-9);
     (each.collect(), idle, samples)

@@ -18,7 +18,8 @@ use simulated::fault::Injection;
 
 use crate::controller::flash::STORE;
 use crate::wiring::board::{
-    BaseImu, Board, Carrier, FRAMES, Lines, ONE_LINE, SPIN, SPIN_LINES, STAGE, Selects, VEHICLE, VEHICLE_LINES,
+    BaseImu, Board, Carrier, FRAMES, Lines, ONE_LINE, SPIN, SPIN_LINES, STAGE, Selects, VEHICLE,
+    VEHICLE_LINES,
 };
 
 /// A carrier's chips and world.
@@ -124,8 +125,10 @@ impl World {
 
 /// The pages of a store that holds the record of these settings alone.
 fn store<C: CarrierSchedule>(settings: &Settings<C>) -> Result<Vec<u8>, String> {
-    let cells: Box<Cells> =
-        vec![0; size_of::<Cells>()].into_boxed_slice().try_into().map_err(|_| "no memory for the flash")?;
+    let cells: Box<Cells> = vec![0; size_of::<Cells>()]
+        .into_boxed_slice()
+        .try_into()
+        .map_err(|_| "no memory for the flash")?;
     let flash = Flash::erased(cells, hal_mock::flash::Times::TYPICAL, 0);
     let mut store = FlashStore::new(PoweredFlash::new(flash, 0), MapConfig::new(STORE));
     let saved = at_once(save(&mut store, settings)).ok_or("the store waits")?;

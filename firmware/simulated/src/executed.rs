@@ -4,7 +4,8 @@
 //! was not edited.
 
 use firmware::settings::{
-    Gyro, Settings, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule, VehicleSchedule,
+    Gyro, Settings, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
+    VehicleSchedule,
 };
 use orientation::earth::Latitude;
 use orientation::units::{Radians, RadiansPerSecond, Seconds, TURN};
@@ -43,7 +44,13 @@ pub fn two_frames(seed: u64) -> FramesScenario {
 /// A turntable with four rate-modulated turns and four each way, at 0.2 Hz.
 pub fn turntable(seed: u64) -> TurntableScenario {
     let usual = TurntableScenario::usual(seed);
-    TurntableScenario { base: base(seed), speeds_hz: [0.2, 0.0], modulated_turns: 4, turns: 4, ..usual }
+    TurntableScenario {
+        base: base(seed),
+        speeds_hz: [0.2, 0.0],
+        modulated_turns: 4,
+        turns: 4,
+        ..usual
+    }
 }
 
 /// A vehicle with two stops of a quarter of a minute and a short drive, which nobody tells where it is.
@@ -123,6 +130,7 @@ impl SpinScenario {
     /// The settings of a spinning body, which uses the start of its flight alone: level, northwards.
     #[must_use]
     pub fn settings(&self) -> Option<Settings<SpinSchedule>> {
-        Scenario::usual(self.seed).settings_with(SpinSchedule { course: Radians(0.0), pitch: Radians(0.0) })
+        Scenario::usual(self.seed)
+            .settings_with(SpinSchedule { course: Radians(0.0), pitch: Radians(0.0) })
     }
 }

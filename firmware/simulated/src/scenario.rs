@@ -359,7 +359,10 @@ impl Scenario {
     /// What the board is given about its devices.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
-        Configuration { encoder: calibration(self.harmonics()), ..Configuration::at(self.sample_rate_hz) }
+        Configuration {
+            encoder: calibration(self.harmonics()),
+            ..Configuration::at(self.sample_rate_hz)
+        }
     }
 
     /// What is true of the instruments.

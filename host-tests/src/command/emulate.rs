@@ -41,7 +41,9 @@ fn carriers(name: &str) -> Result<Carriers, String> {
     }
     let names = || Platform::ALL.map(Platform::name).join(", ");
     let found = Platform::ALL.into_iter().find(|platform| platform.name() == name);
-    found.map(|platform| Carriers(vec![platform])).ok_or_else(|| format!("{} or all are meant", names()))
+    found
+        .map(|platform| Carriers(vec![platform]))
+        .ok_or_else(|| format!("{} or all are meant", names()))
 }
 
 /// Runs the firmware's images; whether all is as it must be.
@@ -56,7 +58,11 @@ pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
 }
 
 /// Executes the images of boards; whether no azimuth is wrong.
-fn run_boards(carriers: &[Platform], options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
+fn run_boards(
+    carriers: &[Platform],
+    options: &EmulateOptions,
+    as_json: bool,
+) -> Result<Answer, String> {
     if options.link.is_some() && carriers.len() > 1 {
         return Err("--link: one carrier has one link, and --board names several".to_owned());
     }
@@ -66,5 +72,7 @@ fn run_boards(carriers: &[Platform], options: &EmulateOptions, as_json: bool) ->
     let found = execute(carriers, &options)?;
     let is_right = found.iter().flat_map(Executed::complaints).next().is_none();
     let refusal = (!is_right).then(|| "not all is as it must be".to_owned());
-    Answer::of(refusal, as_json, &executed::object(&found), || executed::report(&found, &options).text())
+    Answer::of(refusal, as_json, &executed::object(&found), || {
+        executed::report(&found, &options).text()
+    })
 }

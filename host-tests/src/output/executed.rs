@@ -9,10 +9,12 @@ use crate::report::{Columns, Lines, Part, Report};
 pub fn report(all: &[Executed], options: &Options) -> Report {
     let complaints: Vec<String> = all.iter().flat_map(Executed::complaints).collect();
     let verdict = if complaints.is_empty() { "Executed" } else { "FAILED" };
-    let title = format!("{verdict}: the images that are flashed, behind a model of the microcontroller");
-    let mut lines = Lines::default()
-        .with("seed", options.seed.to_string())
-        .with("time", format!("instructions × {} cycles at the clock that the image sets", options.cycles));
+    let title =
+        format!("{verdict}: the images that are flashed, behind a model of the microcontroller");
+    let mut lines = Lines::default().with("seed", options.seed.to_string()).with(
+        "time",
+        format!("instructions × {} cycles at the clock that the image sets", options.cycles),
+    );
     for complaint in complaints {
         lines = lines.with("not right", complaint);
     }
@@ -50,8 +52,14 @@ fn of_time(all: &[Executed]) -> Part {
     let of = |figure: fn(&Execution) -> String| move |executed: &Executed| figure(&executed.report);
     Columns::of("Time: conversions lost while measuring, until the result, and after it", all)
         .column("carrier", |executed| &executed.report.carrier)
-        .column("read", of(|report| report.service.iter().map(|service| service.read).sum::<u64>().to_string()))
-        .column("lost", of(|report| report.service.map(|service| service.lost.to_string()).join(" + ")))
+        .column(
+            "read",
+            of(|report| report.service.iter().map(|service| service.read).sum::<u64>().to_string()),
+        )
+        .column(
+            "lost",
+            of(|report| report.service.map(|service| service.lost.to_string()).join(" + ")),
+        )
         .column("longest wait", of(|report| milliseconds(report.longest_wait_seconds())))
         .column("false notices", of(|report| report.false_notices().to_string()))
         .column("faults on the link", of(|report| report.faults.to_string()))
@@ -69,14 +77,26 @@ fn milliseconds(seconds: f64) -> String {
 /// Instructions of a sample, by where they go.
 fn of_instructions(all: &[Executed]) -> Part {
     const ORIGINS: [&str; 11] = [
-        "peripherals", "channels", "time", "instrument", "arithmetic", "methods", "drivers", "memory", "store", "log",
+        "peripherals",
+        "channels",
+        "time",
+        "instrument",
+        "arithmetic",
+        "methods",
+        "drivers",
+        "memory",
+        "store",
+        "log",
         "other",
     ];
-    let columns = Columns::of("INSTRUCTIONS (not cycles) a sample while measuring, all in, by where they go", all)
-        .column("carrier", |executed| &executed.report.carrier)
-        .column("samples", |executed| executed.report.samples)
-        .column("idle", |executed| format!("{:.0} %", 100.0 * executed.report.idle))
-        .column("all in", |executed| format!("{:.0}", executed.report.instructions_per_sample));
+    let columns = Columns::of(
+        "INSTRUCTIONS (not cycles) a sample while measuring, all in, by where they go",
+        all,
+    )
+    .column("carrier", |executed| &executed.report.carrier)
+    .column("samples", |executed| executed.report.samples)
+    .column("idle", |executed| format!("{:.0} %", 100.0 * executed.report.idle))
+    .column("all in", |executed| format!("{:.0}", executed.report.instructions_per_sample));
     let columns = ORIGINS.into_iter().fold(columns, |columns, origin| {
         columns.column(origin, move |executed| {
             format!("{:.0}", executed.report.instructions_by_origin.get(origin).unwrap_or(&0.0))

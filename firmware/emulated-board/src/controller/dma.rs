@@ -121,7 +121,8 @@ impl Dma {
 
     /// The status, with the global flag of each channel that has another one.
     fn status(&self) -> u32 {
-        let global = (0..CHANNELS).map(|channel| u32::from(self.flags >> (4 * channel) & 0xE != 0) << (4 * channel));
+        let global = (0..CHANNELS)
+            .map(|channel| u32::from(self.flags >> (4 * channel) & 0xE != 0) << (4 * channel));
         self.flags | global.sum::<u32>()
     }
 
@@ -130,7 +131,9 @@ impl Dma {
         match offset {
             0x04 => {
                 // The global flag of a channel clears all of it.
-                let all = (0..CHANNELS).filter(|channel| value >> (4 * channel) & 1 != 0).map(|channel| 0xF << (4 * channel));
+                let all = (0..CHANNELS)
+                    .filter(|channel| value >> (4 * channel) & 1 != 0)
+                    .map(|channel| 0xF << (4 * channel));
                 self.flags &= !(value | all.sum::<u32>());
             }
             0xA8 => self.selections = value,
@@ -138,7 +141,9 @@ impl Dma {
                 let (channel, register) = place(offset)?;
                 let channel = &mut self.channels[channel];
                 match register {
-                    0 if value & 0x4000 != 0 => return Err(Refused::NotModelled("transfers from memory to memory")),
+                    0 if value & 0x4000 != 0 => {
+                        return Err(Refused::NotModelled("transfers from memory to memory"));
+                    }
                     0 => {
                         if value & 1 != 0 && channel.control & 1 == 0 {
                             channel.items = channel.left;
@@ -147,7 +152,9 @@ impl Dma {
                     }
                     // A channel that is enabled keeps its settings (11.6.4 to 11.6.6).
                     _ if channel.control & 1 != 0 => {
-                        return Err(Refused::NotModelled("a channel that is changed while it is enabled"));
+                        return Err(Refused::NotModelled(
+                            "a channel that is changed while it is enabled",
+                        ));
                     }
                     1 => channel.left = value & 0xFFFF,
                     2 => channel.peripheral = value,

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use hal_mock::flash::{Bank, Cells, Ecc, Flash as Array, PAGE, ROW, Refused as NotProgrammed, SIZE, Times};
+use hal_mock::flash::{
+    Bank, Cells, Ecc, Flash as Array, PAGE, ROW, Refused as NotProgrammed, SIZE, Times,
+};
 
 use super::Refused;
 use crate::time::Time;
@@ -33,6 +35,8 @@ const ERRORS: u32 = 0x3FA;
 const BUSY: u32 = 1 << 16;
 /// `FLASH_CR`: the end of an operation interrupts.
 const TELLS_END: u32 = 1 << 24;
+/// `FLASH_ECCR`: a row that was corrected interrupts.
+const TELLS_FINDING: u32 = 1 << 24;
 /// `FLASH_CR`: an error interrupts.
 const TELLS_ERROR: u32 = 1 << 25;
 /// The keys that open the control register, in their order.
@@ -84,8 +88,10 @@ impl Flash {
     /// An erased flash with typical times. The seed decides what a lost supply leaves.
     pub fn new(seed: u64) -> Self {
         // Vectors become boxes without a copy on the stack.
-        let cells: Box<Cells> =
-            vec![0; size_of::<Cells>()].into_boxed_slice().try_into().unwrap_or_else(|_| unreachable!());
+        let cells: Box<Cells> = vec![0; size_of::<Cells>()]
+            .into_boxed_slice()
+            .try_into()
+            .unwrap_or_else(|_| unreachable!());
         Self {
             array: Array::erased(cells, Times::TYPICAL, seed),
             access: 0x600,
@@ -105,7 +111,8 @@ impl Flash {
     pub fn reset(&mut self, now: Time) {
         self.array.lose_supply(since_start(now));
         (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK, 0);
-        (self.is_half_open, self.half, self.is_running, self.is_broken) = (false, None, false, false);
+        (self.is_half_open, self.half, self.is_running, self.is_broken) =
+            (false, None, false, false);
     }
 
     /// Wait states of a fetch.
@@ -124,7 +131,9 @@ impl Flash {
 
     /// When the operation that is under way ends.
     pub fn due(&mut self, now: Time) -> Time {
-        if !self.is_running { return Time::NEVER }
+        if !self.is_running {
+            return Time::NEVER;
+        }
         let busy = self.array.busy(since_start(now));
         busy.map_or(now, |busy| Time::nanoseconds(busy.until.as_nanos() as u64))
     }
@@ -167,7 +176,11 @@ impl Flash {
             0x08 if value == KEYS[1] && self.is_half_open => {
                 (self.control, self.is_half_open) = (self.control & !LOCK, false);
             }
-            0x08 => return Err(Refused::NotModelled("a wrong key, which locks the flash until the next reset")),
+            0x08 => {
+                return Err(Refused::NotModelled(
+                    "a wrong key, which locks the flash until the next reset",
+                ));
+            }
             0x10 => self.status &= !value,
             0x14 if self.control & LOCK != 0 => {}
             0x14 => {
@@ -176,7 +189,7 @@ impl Flash {
                     self.erase(now);
                 }
             }
-            0x18 => self.ecc = self.ecc & !(value & 0xC000_0000) & !(1 << 24) | value & 1 << 24,
+            0x18 => self.ecc = self.ecc & !(value & 0xC000_0000) & !TELLS_FINDING | value & TELLS_FINDING,
             _ => return Err(Refused::Unknown),
         }
         Ok(())
@@ -235,7 +248,10 @@ impl Flash {
 
     /// A load from the flash by the core, of up to eight bytes that do not leave a row, or until when it waits.
     pub fn load(&mut self, offset: u32, size: u32, now: Time) -> Result<u32, Time> {
-        let read = self.array.load(offset, since_start(now)).map_err(|busy| Time::nanoseconds(busy.until.as_nanos() as u64))?;
+        let read = self
+            .array
+            .load(offset, since_start(now))
+            .map_err(|busy| Time::nanoseconds(busy.until.as_nanos() as u64))?;
         match read.ecc {
             Ecc::Sound => {}
             Ecc::Corrected => self.report(offset, 1 << 30),
@@ -253,7 +269,7 @@ impl Flash {
     fn report(&mut self, offset: u32, flag: u32) {
         if self.ecc & 0xC000_0000 == 0 {
             let bank = if offset as usize >= SIZE / 2 { 1 << 19 } else { 0 };
-            self.ecc = self.ecc & 1 << 24 | bank | (offset % (SIZE as u32 / 2)) >> 3;
+            self.ecc = self.ecc & TELLS_FINDING | bank | (offset % (SIZE as u32 / 2)) >> 3;
         }
         self.ecc |= flag;
     }

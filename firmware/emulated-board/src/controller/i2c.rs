@@ -171,8 +171,10 @@ impl I2c {
 
     /// Whether a byte is wanted to be sent.
     fn is_empty(&self) -> bool {
-        let addressed = self.is_owner && !matches!(self.wire, Some((Wire::Address | Wire::Stop, _)));
-        let pending = self.left - u32::from(matches!(self.wire, Some((Wire::Sending(_), _)))).min(self.left);
+        let addressed =
+            self.is_owner && !matches!(self.wire, Some((Wire::Address | Wire::Stop, _)));
+        let pending =
+            self.left - u32::from(matches!(self.wire, Some((Wire::Sending(_), _)))).min(self.left);
         addressed
             && self.control[1] & (READS | START) == 0
             && self.waiting.is_none()
@@ -204,7 +206,8 @@ impl I2c {
     pub fn interrupts(&self) -> [bool; 2] {
         let (status, control) = (self.status(), self.control[0]);
         let by = |bit: u32, flags: u32| control & bit != 0 && status & flags != 0;
-        let event = by(2, TXIS) || by(4, RXNE) || by(16, NACKF) || by(32, STOPF) || by(64, TC | TCR);
+        let event =
+            by(2, TXIS) || by(4, RXNE) || by(16, NACKF) || by(32, STOPF) || by(64, TC | TCR);
         [event, by(128, 0x3F00)]
     }
 
@@ -231,7 +234,8 @@ impl I2c {
                     // Its software reset releases the bus (39.4.6).
                     self.flags = 0;
                     self.control[1] &= !(START | STOP);
-                    (self.wire, self.waiting, self.received, self.is_owner) = (None, None, None, false);
+                    (self.wire, self.waiting, self.received, self.is_owner) =
+                        (None, None, None, false);
                 }
             }
             0x04 => {

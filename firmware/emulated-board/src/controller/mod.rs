@@ -144,7 +144,8 @@ enum Request {
 }
 
 /// Interrupts of the channels of both DMA controllers.
-const DMA_INTERRUPTS: [[u32; CHANNELS]; 2] = [[11, 12, 13, 14, 15, 16, 17], [56, 57, 58, 59, 60, 68, 69]];
+const DMA_INTERRUPTS: [[u32; CHANNELS]; 2] =
+    [[11, 12, 13, 14, 15, 16, 17], [56, 57, 58, 59, 60, 68, 69]];
 
 /// The microcontroller without its core.
 pub struct Controller {
@@ -235,7 +236,12 @@ impl Controller {
     pub fn due(&mut self, now: Time) -> Time {
         let spi = self.spi.iter().map(|spi| spi.due(self.hertz)).min().unwrap_or(Time::NEVER);
         let rest = [
-            self.timer.due(), self.usart.due(), self.i2c.due(), self.watchdog.due(), self.wiring.due(), self.crystal,
+            self.timer.due(),
+            self.usart.due(),
+            self.i2c.due(),
+            self.watchdog.due(),
+            self.wiring.due(),
+            self.crystal,
             self.flash.due(now),
         ];
         rest.into_iter().fold(spi, Time::min)
@@ -350,13 +356,17 @@ impl Controller {
             Peripheral::Usart => self.usart.read(offset),
             _ => Err(Refused::Unknown),
         };
-        value.is_ok_and(|value| memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize]))
+        value.is_ok_and(|value| {
+            memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize])
+        })
     }
 
     /// Sets the lines of the interrupts.
     fn raise(&mut self) {
         let lines = &mut self.exceptions.lines;
-        let mut set = |interrupt: u32, is_active: bool| lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active;
+        let mut set = |interrupt: u32, is_active: bool| {
+            lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active
+        };
         set(4, self.flash.interrupts());
         let edges = self.exti.active();
         (0..5).for_each(|line| set(6 + line, edges >> line & 1 != 0));
@@ -462,7 +472,9 @@ impl Controller {
             Peripheral::I2c => self.i2c.write(offset, value),
             Peripheral::Power => self.power.write(offset, value),
             Peripheral::Watchdog => self.watchdog.write(offset, value, now),
-            Peripheral::System => self.system.write(address & 0xFFF, value, size, &mut self.exceptions),
+            Peripheral::System => {
+                self.system.write(address & 0xFFF, value, size, &mut self.exceptions)
+            }
             Peripheral::Configuration => self.exti.ports(offset).map(|ports| *ports = value),
             Peripheral::Exti => self.exti.write(offset, value),
             Peripheral::Usart => self.usart.write(offset, value),
@@ -505,15 +517,27 @@ impl Controller {
     fn reset_peripherals(&mut self, offset: u32, bits: u32) {
         let is_set = |bit: u32| bits >> bit & 1 != 0;
         match offset {
-            0x28 => (0..2).filter(|dma| is_set(*dma)).for_each(|dma| self.dma[dma as usize] = Dma::default()),
+            0x28 => (0..2)
+                .filter(|dma| is_set(*dma))
+                .for_each(|dma| self.dma[dma as usize] = Dma::default()),
             0x38 => {
-                if is_set(14) { self.spi[1] = Spi::new() }
-                if is_set(22) { self.i2c = I2c::new() }
+                if is_set(14) {
+                    self.spi[1] = Spi::new()
+                }
+                if is_set(22) {
+                    self.i2c = I2c::new()
+                }
             }
             0x40 => {
-                if is_set(12) { self.spi[0] = Spi::new() }
-                if is_set(14) { self.usart.reset() }
-                if is_set(16) { self.timer = Timer::default() }
+                if is_set(12) {
+                    self.spi[0] = Spi::new()
+                }
+                if is_set(14) {
+                    self.usart.reset()
+                }
+                if is_set(16) {
+                    self.timer = Timer::default()
+                }
             }
             _ => {}
         }

@@ -11,8 +11,8 @@ pub const LSE_HERTZ: u64 = 32_768;
 const HSI_HERTZ: u64 = 16_000_000;
 /// Ranges of the oscillator MSI, Hz (`RCC_CR`, MSIRANGE).
 const MSI_HERTZ: [u64; 12] = [
-    100_000, 200_000, 400_000, 800_000, 1_000_000, 2_000_000, 4_000_000, 8_000_000, 16_000_000, 24_000_000,
-    32_000_000, 48_000_000,
+    100_000, 200_000, 400_000, 800_000, 1_000_000, 2_000_000, 4_000_000, 8_000_000, 16_000_000,
+    24_000_000, 32_000_000, 48_000_000,
 ];
 /// Start of the crystal (DS10198, table 59, typical with any drive).
 const LSE_START: Time = Time::microseconds(2_000_000);
@@ -127,7 +127,8 @@ impl Rcc {
 
     /// Whether the crystal oscillates.
     fn crystal_runs(&self, now: Time) -> bool {
-        self.oscillators.has_crystal && self.crystal_since.is_some_and(|since| now >= since + LSE_START)
+        self.oscillators.has_crystal
+            && self.crystal_since.is_some_and(|since| now >= since + LSE_START)
     }
 
     /// When the crystal oscillates, where it is to.
@@ -182,6 +183,4 @@ impl Rcc {
         let output = 2 * (u64::from(configuration >> 25 & 3) + 1);
         Ok(source * multiplier / divider / output)
     }
-
 }
-

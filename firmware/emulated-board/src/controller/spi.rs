@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 
 use super::Refused;
 use crate::time::Time;
-use hal_mock::wires::Clock;
 use embedded_hal::spi::{Mode, Phase, Polarity};
+use hal_mock::wires::Clock;
 
 /// Bytes that each buffer holds.
 const DEPTH: usize = 4;
@@ -50,8 +50,11 @@ impl Spi {
     pub fn clock(&self, hertz: u64) -> Clock {
         let [control, _] = self.control;
         let polarity = if control & 2 != 0 { Polarity::IdleHigh } else { Polarity::IdleLow };
-        let phase =
-            if control & 1 != 0 { Phase::CaptureOnSecondTransition } else { Phase::CaptureOnFirstTransition };
+        let phase = if control & 1 != 0 {
+            Phase::CaptureOnSecondTransition
+        } else {
+            Phase::CaptureOnFirstTransition
+        };
         Clock { mode: Mode { polarity, phase }, hertz: (hertz >> (1 + (control >> 3 & 7))) as u32 }
     }
 
@@ -84,7 +87,9 @@ impl Spi {
 
     /// Whether it asks for a byte to send by direct memory access.
     pub fn wants_byte(&self) -> bool {
-        self.control[1] & 2 != 0 && self.control[0] & ENABLED != 0 && self.sending.len() <= DEPTH / 2
+        self.control[1] & 2 != 0
+            && self.control[0] & ENABLED != 0
+            && self.sending.len() <= DEPTH / 2
     }
 
     /// Whether it has a byte for the direct memory access.
@@ -111,7 +116,8 @@ impl Spi {
             0x00 | 0x04 => Ok(self.control[(offset / 4) as usize]),
             0x08 => Ok(self.status()),
             0x0C => {
-                let bytes = (0..size.min(2)).map(|place| u32::from(self.received.pop_front().unwrap_or(0)) << (8 * place));
+                let bytes = (0..size.min(2))
+                    .map(|place| u32::from(self.received.pop_front().unwrap_or(0)) << (8 * place));
                 Ok(bytes.sum())
             }
             _ => Err(Refused::Unknown),
@@ -123,7 +129,9 @@ impl Spi {
         match offset {
             0x00 => {
                 if value & 0x2000 != 0 || value & 0x8480 != 0 {
-                    return Err(Refused::NotModelled("checksums, half duplex, receive only or bits in reverse order"));
+                    return Err(Refused::NotModelled(
+                        "checksums, half duplex, receive only or bits in reverse order",
+                    ));
                 }
                 // A byte that is on the wires when it is disabled is lost; the buffers stay (42.4.9).
                 if value & ENABLED == 0 {

@@ -36,7 +36,9 @@ pub struct Timer {
 impl Timer {
     /// Counts since it was set, without the wrap.
     fn total(&self, now: Time) -> u64 {
-        if self.control & 1 == 0 { return self.base }
+        if self.control & 1 == 0 {
+            return self.base;
+        }
         self.base + (now - self.since).count(self.hertz)
     }
 
@@ -71,13 +73,18 @@ impl Timer {
 
     /// When a flag that interrupts is next set.
     pub fn due(&self) -> Time {
-        if self.control & 1 == 0 || self.hertz == 0 { return Time::NEVER }
+        if self.control & 1 == 0 || self.hertz == 0 {
+            return Time::NEVER;
+        }
         let (seen, round) = (self.seen, self.round());
         let next = |at: u64| {
             let distance = (at + round - seen % round) % round;
             seen + if distance == 0 { round } else { distance }
         };
-        let wanted = self.marks().into_iter().filter(|(bit, _)| self.enabled & bit != 0 && self.status & bit == 0);
+        let wanted = self
+            .marks()
+            .into_iter()
+            .filter(|(bit, _)| self.enabled & bit != 0 && self.status & bit == 0);
         let next = wanted.map(|(_, at)| next(at)).min();
         next.map_or(Time::NEVER, |count| self.since + Time::periods(count - self.base, self.hertz))
     }

@@ -72,7 +72,10 @@ impl Usart {
         let is_on = |bit| self.control[0] & (ENABLED | bit) == ENABLED | bit;
         let (sends, receives) = (is_on(SENDS), is_on(RECEIVES));
         let end = now + self.frame(hertz);
-        if sends && self.shifting.is_none() && let Some(byte) = self.waiting.take() {
+        if sends
+            && self.shifting.is_none()
+            && let Some(byte) = self.waiting.take()
+        {
             self.shifting = Some((byte, end));
         }
         let (bytes, next) = &mut self.incoming;
@@ -95,7 +98,9 @@ impl Usart {
                 self.flags |= COMPLETE;
             }
         }
-        if self.incoming.1.take_if(|end| *end <= now).is_some() && let Some(byte) = self.incoming.0.pop_front() {
+        if self.incoming.1.take_if(|end| *end <= now).is_some()
+            && let Some(byte) = self.incoming.0.pop_front()
+        {
             if self.received.is_some() {
                 self.flags |= OVERRUN;
                 self.overruns += 1;
@@ -107,7 +112,9 @@ impl Usart {
 
     /// Whether it asks for a byte to send by direct memory access.
     pub fn wants_byte(&self) -> bool {
-        self.control[2] & 0x80 != 0 && self.control[0] & (ENABLED | SENDS) == ENABLED | SENDS && self.waiting.is_none()
+        self.control[2] & 0x80 != 0
+            && self.control[0] & (ENABLED | SENDS) == ENABLED | SENDS
+            && self.waiting.is_none()
     }
 
     /// Whether it has a byte for the direct memory access.
@@ -132,7 +139,8 @@ impl Usart {
     pub fn interrupts(&self) -> bool {
         let status = self.status();
         status & self.control[0] & (RECEIVED | COMPLETE | EMPTY | 0x10) != 0
-            || (status & OVERRUN != 0 && (self.control[0] & RECEIVED != 0 || self.control[2] & 1 != 0))
+            || (status & OVERRUN != 0
+                && (self.control[0] & RECEIVED != 0 || self.control[2] & 1 != 0))
     }
 
     /// Reads a register.
@@ -151,7 +159,9 @@ impl Usart {
     pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
         match offset {
             0x00 if value & 0x1000_9400 != 0 => {
-                return Err(Refused::NotModelled("frames of other lengths, parity or oversampling by eight"));
+                return Err(Refused::NotModelled(
+                    "frames of other lengths, parity or oversampling by eight",
+                ));
             }
             0x00 | 0x04 | 0x08 => self.control[(offset / 4) as usize] = value,
             0x0C => self.divider = value,

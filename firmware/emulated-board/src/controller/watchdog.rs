@@ -23,7 +23,14 @@ pub struct Watchdog {
 
 impl Default for Watchdog {
     fn default() -> Self {
-        Self { fed: None, is_open: false, prescaler: 0, reload: 0xFFF, feedings: 0, longest: Time::ZERO }
+        Self {
+            fed: None,
+            is_open: false,
+            prescaler: 0,
+            reload: 0xFFF,
+            feedings: 0,
+            longest: Time::ZERO,
+        }
     }
 }
 

@@ -5,10 +5,10 @@ use std::rc::Rc;
 use std::slice;
 
 use embassy_time::Instant;
-use hal_mock::assembly::{Board as Assembly, Chips};
-use hal_mock::chip::{Rig, Select, Single};
 use hal_mock::ads1262::Ads1262;
+use hal_mock::assembly::{Board as Assembly, Chips};
 use hal_mock::board::StageChips;
+use hal_mock::chip::{Rig, Select, Single};
 use hal_mock::converters::Converters;
 use hal_mock::gimbal::board::GimbalChips;
 use hal_mock::lsm6dsl::Lsm6dsl;
@@ -205,7 +205,9 @@ impl Board {
         for line in &mut self.lines {
             let seen = self.carrier.borrow_mut().ready_line(line.select, now.instant());
             line.next = seen.next;
-            if !seen.active && let Some(since) = line.waits.take() {
+            if !seen.active
+                && let Some(since) = line.waits.take()
+            {
                 line.served.read += 1;
                 line.served.longest = line.served.longest.max((now - since, now));
             }
@@ -216,7 +218,8 @@ impl Board {
 impl I2cBus for Board {
     fn start(&mut self, address: u8, reads: bool, hertz: u32, now: Time) -> bool {
         let (base, wires) = &mut self.base;
-        base.as_mut().is_some_and(|base| wires.start(base, address, reads, hertz, now.as_nanoseconds()))
+        base.as_mut()
+            .is_some_and(|base| wires.start(base, address, reads, hertz, now.as_nanoseconds()))
     }
 
     fn write(&mut self, byte: u8, now: Time) -> bool {
@@ -253,10 +256,17 @@ impl Wiring for Board {
                 self.carrier.borrow_mut().enable_motors(is_enabled);
             }
         }
-        let Some((_, bus, select)) = self.selects.iter().find(|(own, ..)| *own == pin) else { return };
+        let Some((_, bus, select)) = self.selects.iter().find(|(own, ..)| *own == pin) else {
+            return;
+        };
         // Resistors pull select lines up where nothing drives them.
         let is_low = level == Some(false);
-        self.buses[*bus].set_select(&mut *self.carrier.borrow_mut(), *select, is_low, now.as_nanoseconds());
+        self.buses[*bus].set_select(
+            &mut *self.carrier.borrow_mut(),
+            *select,
+            is_low,
+            now.as_nanoseconds(),
+        );
         if !is_low {
             self.look(now);
         }
@@ -265,7 +275,9 @@ impl Wiring for Board {
     fn level(&mut self, pin: Pin, now: Time) -> bool {
         let line = self.lines.iter().find(|line| line.pin == pin);
         // What nothing drives is pulled up.
-        line.is_none_or(|line| !self.carrier.borrow_mut().ready_line(line.select, now.instant()).active)
+        line.is_none_or(|line| {
+            !self.carrier.borrow_mut().ready_line(line.select, now.instant()).active
+        })
     }
 
     fn begin(&mut self, bus: usize, byte: u8, clock: Clock, now: Time) {
@@ -277,7 +289,8 @@ impl Wiring for Board {
     }
 
     fn faults(&self) -> Vec<String> {
-        let spi = self.buses.iter().flat_map(|bus| bus.faults().first.iter().map(ToString::to_string));
+        let spi =
+            self.buses.iter().flat_map(|bus| bus.faults().first.iter().map(ToString::to_string));
         spi.chain(self.base.1.faults().first.iter().map(ToString::to_string)).collect()
     }
 
@@ -287,7 +300,9 @@ impl Wiring for Board {
 
     fn edges(&mut self, now: Time) -> Vec<(Pin, bool)> {
         let mut fallen = Vec::new();
-        for line in self.lines.iter_mut().filter(|line| line.next.is_some_and(|at| at <= now.instant())) {
+        for line in
+            self.lines.iter_mut().filter(|line| line.next.is_some_and(|at| at <= now.instant()))
+        {
             line.waits.get_or_insert(now);
             fallen.push((line.pin, false));
         }

@@ -67,7 +67,9 @@ impl Executed {
         let mut hold = |distance: Option<f64>, greatest: f64, of: &str| {
             if distance.is_some_and(|distance| distance.abs() > greatest) {
                 let distance = distance.unwrap_or_default();
-                complaints.push(format!("{carrier}: the azimuth is {distance:.2} σ beside {of}, {greatest} allowed"));
+                complaints.push(format!(
+                    "{carrier}: the azimuth is {distance:.2} σ beside {of}, {greatest} allowed"
+                ));
             }
         };
         hold(from_truth, FROM_TRUTH, "the truth");
@@ -84,7 +86,8 @@ impl Executed {
 /// # Errors
 /// What is missing or does not build, or what the model does not know.
 pub fn execute(carriers: &[Platform], options: &Options) -> Result<Vec<Executed>, String> {
-    let images: Vec<PathBuf> = carriers.iter().map(|carrier| image(*carrier)).collect::<Result<_, _>>()?;
+    let images: Vec<PathBuf> =
+        carriers.iter().map(|carrier| image(*carrier)).collect::<Result<_, _>>()?;
     let program = program()?;
     let is_alone = carriers.len() == 1;
     let pairs: Vec<_> = carriers.iter().zip(&images).collect();

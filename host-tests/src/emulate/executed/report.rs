@@ -68,7 +68,8 @@ impl Report {
     /// # Errors
     /// Where it is none.
     pub fn parse(line: &[u8]) -> Result<Self, String> {
-        serde_json::from_slice(line).map_err(|error| format!("the report of an executed image: {error}"))
+        serde_json::from_slice(line)
+            .map_err(|error| format!("the report of an executed image: {error}"))
     }
 
     /// Conversions that were lost until the result.
