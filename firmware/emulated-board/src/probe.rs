@@ -40,6 +40,10 @@ impl Probe {
         Ok(Self { control, decoder })
     }
 
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the method's type has no name here"
+    )]
     /// Takes what the buffer holds, and hands over the lines that it completes.
     pub fn poll(&mut self, processor: &mut Processor, mut on_line: impl FnMut(Line)) {
         let word = |processor: &Processor, place: u32| {

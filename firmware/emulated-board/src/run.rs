@@ -70,7 +70,7 @@ impl Execution {
         controller.flash.array.burn(STORE.start, &world.store);
         let processor = Processor::new(Rc::clone(image), controller, order.cycles);
         let mut processor = processor.map_err(|error| format!("Unicorn: {error:?}"))?;
-        processor.poke(crate::RAM, &[PAINT; crate::RAM_BYTES]);
+        processor.poke(crate::RAM, &vec![PAINT; crate::RAM_BYTES]);
         Ok(Self { processor, world, image: Rc::clone(image), probe })
     }
 
@@ -98,7 +98,7 @@ impl Execution {
 
     /// Takes the supply away for a moment: RAM is lost, the chips of the board start again with it.
     pub fn lose_supply(&mut self) {
-        self.processor.poke(crate::RAM, &[PAINT; crate::RAM_BYTES]);
+        self.processor.poke(crate::RAM, &vec![PAINT; crate::RAM_BYTES]);
         self.processor.reset(ResetReason::Supply);
     }
 }
@@ -223,7 +223,7 @@ impl Gathered {
             execution.processor.forget_masked();
         }
         if self.ended.is_none() {
-            self.outcome = line.words.clone();
+            self.outcome.clone_from(&line.words);
         }
         if Self::is_step(&line.words) && self.ended.is_none() {
             let snapshot = execution.processor.with_blocks(Snapshot::of);

@@ -64,6 +64,7 @@ impl Time {
     }
 
     /// So often this span.
+    #[must_use]
     pub const fn times(self, count: u64) -> Self {
         Self(self.0 * count)
     }

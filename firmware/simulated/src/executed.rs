@@ -7,6 +7,7 @@ use firmware::settings::{
     Gyro, Settings, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
     VehicleSchedule,
 };
+use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::earth::Latitude;
 use orientation::units::{Radians, RadiansPerSecond, Seconds, TURN};
 
@@ -35,7 +36,7 @@ pub fn two_frames(seed: u64) -> FramesScenario {
     FramesScenario {
         base: Scenario { dwell_s: 4.0, ..base(seed) },
         passes: 2,
-        calibrated: Default::default(),
+        calibrated: TwoFrame::default(),
         orthogonality_sigma: ORTHOGONALITY_SIGMA,
         ..FramesScenario::default()
     }

@@ -37,6 +37,10 @@ const BUSY: u32 = 1 << 16;
 const TELLS_END: u32 = 1 << 24;
 /// `FLASH_ECCR`: a row that was corrected interrupts.
 const TELLS_FINDING: u32 = 1 << 24;
+/// `FLASH_ECCR`: a row was corrected.
+const CORRECTED: u32 = 1 << 30;
+/// `FLASH_ECCR`: a row cannot be corrected.
+const BROKEN: u32 = 1 << 31;
 /// `FLASH_CR`: an error interrupts.
 const TELLS_ERROR: u32 = 1 << 25;
 /// The keys that open the control register, in their order.
@@ -147,6 +151,7 @@ impl Flash {
     pub fn interrupts(&self) -> bool {
         self.control & TELLS_END != 0 && self.status & DONE != 0
             || self.control & TELLS_ERROR != 0 && self.status & ERRORS != 0
+            || self.ecc & TELLS_FINDING != 0 && self.ecc & CORRECTED != 0
     }
 
     /// Reads a register.
@@ -189,7 +194,10 @@ impl Flash {
                     self.erase(now);
                 }
             }
-            0x18 => self.ecc = self.ecc & !(value & 0xC000_0000) & !TELLS_FINDING | value & TELLS_FINDING,
+            0x18 => {
+                let kept = self.ecc & !(value & (CORRECTED | BROKEN)) & !TELLS_FINDING;
+                self.ecc = kept | (value & TELLS_FINDING);
+            }
             _ => return Err(Refused::Unknown),
         }
         Ok(())
@@ -254,9 +262,9 @@ impl Flash {
             .map_err(|busy| Time::nanoseconds(busy.until.as_nanos() as u64))?;
         match read.ecc {
             Ecc::Sound => {}
-            Ecc::Corrected => self.report(offset, 1 << 30),
-            _ => {
-                self.report(offset, 1 << 31);
+            Ecc::Corrected => self.report(offset, CORRECTED),
+            Ecc::Uncorrectable => {
+                self.report(offset, BROKEN);
                 self.is_broken = true;
             }
         }
@@ -267,9 +275,10 @@ impl Flash {
 
     /// Notes what the check of a row found; the address of the first finding stays.
     fn report(&mut self, offset: u32, flag: u32) {
-        if self.ecc & 0xC000_0000 == 0 {
+        if self.ecc & (CORRECTED | BROKEN) == 0 {
             let bank = if offset as usize >= SIZE / 2 { 1 << 19 } else { 0 };
-            self.ecc = self.ecc & TELLS_FINDING | bank | (offset % (SIZE as u32 / 2)) >> 3;
+            let row = offset % (SIZE as u32 / 2) / ROW as u32;
+            self.ecc = (self.ecc & TELLS_FINDING) | bank | row;
         }
         self.ecc |= flag;
     }

@@ -365,7 +365,7 @@ impl Controller {
     fn raise(&mut self) {
         let lines = &mut self.exceptions.lines;
         let mut set = |interrupt: u32, is_active: bool| {
-            lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active
+            lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active;
         };
         set(4, self.flash.interrupts());
         let edges = self.exti.active();
@@ -522,21 +522,21 @@ impl Controller {
                 .for_each(|dma| self.dma[dma as usize] = Dma::default()),
             0x38 => {
                 if is_set(14) {
-                    self.spi[1] = Spi::new()
+                    self.spi[1] = Spi::new();
                 }
                 if is_set(22) {
-                    self.i2c = I2c::new()
+                    self.i2c = I2c::new();
                 }
             }
             0x40 => {
                 if is_set(12) {
-                    self.spi[0] = Spi::new()
+                    self.spi[0] = Spi::new();
                 }
                 if is_set(14) {
-                    self.usart.reset()
+                    self.usart.reset();
                 }
                 if is_set(16) {
-                    self.timer = Timer::default()
+                    self.timer = Timer::default();
                 }
             }
             _ => {}

@@ -50,7 +50,11 @@ pub struct Rcc {
 }
 
 /// Word of `RCC_CR`.
-const CR: usize = 0x00 / 4;
+const CR: usize = 0;
+/// Bits of `RCC_CR` that say which oscillators are ready, which is at once.
+const READY: u32 = 1 << 1 | 1 << 10 | 1 << 17 | 1 << 25;
+/// Bits of `RCC_CFGR` that divide the clocks of the buses.
+const DIVIDERS: u32 = 0x3FF0;
 /// Word of `RCC_CFGR`.
 const CFGR: usize = 0x08 / 4;
 /// Word of `RCC_PLLCFGR`.
@@ -61,6 +65,25 @@ const ENABLES: [usize; 2] = [0x48 / 4, 0x60 / 4];
 const BDCR: usize = 0x90 / 4;
 /// Word of `RCC_CSR`.
 const CSR: usize = 0x94 / 4;
+
+/// Offsets of the registers from the first to the last of those that follow each other (6.4).
+const REGISTERS: [[u32; 2]; 9] = [
+    [0x00, 0x20],
+    [0x28, 0x30],
+    [0x38, 0x40],
+    [0x48, 0x50],
+    [0x58, 0x60],
+    [0x68, 0x70],
+    [0x78, 0x80],
+    [0x88, 0x88],
+    [0x90, 0x94],
+];
+
+/// The word of the register at an offset.
+fn word(offset: u32) -> Result<usize, Refused> {
+    let is_there = REGISTERS.iter().any(|[first, last]| (*first..=*last).contains(&offset));
+    if is_there { Ok((offset / 4) as usize) } else { Err(Refused::Unknown) }
+}
 
 impl Rcc {
     /// The registers after the supply came up.
@@ -90,10 +113,10 @@ impl Rcc {
 
     /// Reads a register.
     pub fn read(&self, offset: u32, now: Time) -> Result<u32, Refused> {
-        let word = (offset / 4) as usize;
-        let value = *self.words.get(word).ok_or(Refused::Unknown)?;
+        let word = word(offset)?;
+        let value = self.words[word];
         Ok(match word {
-            CR => value | (value & 0x0101_0101) << 1 | (value & 1 << 8) << 2,
+            CR => value | (value & 0x0101_0001) << 1 | (value & 1 << 8) << 2,
             CFGR => value & !0xC | (value & 3) << 2,
             BDCR if self.crystal_runs(now) => value | 2,
             CSR => value | (value & 1) << 1,
@@ -103,8 +126,8 @@ impl Rcc {
 
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
-        let word = (offset / 4) as usize;
-        let held = self.words.get_mut(word).ok_or(Refused::Unknown)?;
+        let word = word(offset)?;
+        let held = &mut self.words[word];
         match word {
             CSR if value & 1 << 23 != 0 => *held = value & 0xFFF,
             CSR => *held = *held & 0xFF00_0000 | value & 0xFFF,
@@ -120,6 +143,7 @@ impl Rcc {
                     _ => {}
                 }
             }
+            CR => *held = value & !READY,
             _ => *held = value,
         }
         Ok(())
@@ -147,7 +171,7 @@ impl Rcc {
     /// A divider or a source that is not modelled.
     pub fn hertz(&self, now: Time) -> Result<u64, Refused> {
         let configuration = self.words[CFGR];
-        if configuration & 0x3FF0 != 0 {
+        if configuration & DIVIDERS != 0 {
             return Err(Refused::NotModelled("a divider of the buses' clocks"));
         }
         match configuration & 3 {

@@ -12,6 +12,10 @@ use hal_mock::wires::Clock;
 const DEPTH: usize = 4;
 /// Bit of `SPIx_CR1` that enables it.
 const ENABLED: u32 = 1 << 6;
+/// Bits of `SPIx_CR2` that say how long a word is.
+const WORD: u32 = 0xF00;
+/// Words of eight bits.
+const BYTE: u32 = 0x700;
 /// Data that came while the buffer was full was lost.
 const OVERRUN: u32 = 1 << 6;
 
@@ -37,7 +41,7 @@ pub struct Spi {
 impl Spi {
     /// The registers after a reset.
     pub fn new() -> Self {
-        Self { control: [0, 0x700], ..Self::default() }
+        Self { control: [0, BYTE], ..Self::default() }
     }
 
     /// Whether it is enabled, and masters its bus.
@@ -140,10 +144,11 @@ impl Spi {
                 }
                 self.control[0] = value;
             }
-            0x04 if value >> 8 & 0xF != 7 && value >> 8 & 0xF != 0 => {
+            0x04 if value & WORD != BYTE && value & WORD != 0 => {
                 return Err(Refused::NotModelled("words that are no bytes"));
             }
-            0x04 => self.control[1] = if value >> 8 & 0xF == 0 { value | 0x700 } else { value },
+            // Words of fewer than four bits become those of a byte.
+            0x04 => self.control[1] = if value & WORD == 0 { value | BYTE } else { value },
             0x08 => {}
             0x0C => {
                 let bytes = value.to_le_bytes();

@@ -6,6 +6,14 @@ use crate::time::Time;
 /// Update interrupt flag, as in DIER and SR.
 const UPDATE: u32 = 1;
 
+/// Offsets of the registers without effect: `TIMx_CR2`, `SMCR`, `CCMR1`, `CCER`, `RCR`, `BDTR`.
+const OTHERS: [u32; 6] = [0x04, 0x08, 0x18, 0x20, 0x30, 0x44];
+
+/// The place of a register without effect.
+fn other(offset: u32) -> Result<usize, Refused> {
+    OTHERS.iter().position(|other| *other == offset).ok_or(Refused::Unknown)
+}
+
 /// A timer of 16 bits that counts up, with two compare channels.
 #[derive(Clone, Debug, Default)]
 pub struct Timer {
@@ -29,8 +37,8 @@ pub struct Timer {
     base: u64,
     /// Counts up to which flags are set.
     seen: u64,
-    /// Other registers that have no effect here: CR2, SMCR, CCMR1, CCER, RCR, BDTR.
-    others: [u32; 24],
+    /// The registers that have no effect here ([`OTHERS`]).
+    others: [u32; OTHERS.len()],
 }
 
 impl Timer {
@@ -106,7 +114,7 @@ impl Timer {
             0x28 => self.prescaler,
             0x2C => self.reload,
             0x34 | 0x38 => self.compare[(offset / 4 - 13) as usize],
-            _ => *self.others.get((offset / 4) as usize).ok_or(Refused::Unknown)?,
+            _ => self.others[other(offset)?],
         })
     }
 
@@ -131,7 +139,7 @@ impl Timer {
             0x28 => self.prescaler = value & 0xFFFF,
             0x2C => self.reload = value & 0xFFFF,
             0x34 | 0x38 => self.compare[(offset / 4 - 13) as usize] = value & 0xFFFF,
-            _ => *self.others.get_mut((offset / 4) as usize).ok_or(Refused::Unknown)? = value,
+            _ => self.others[other(offset)?] = value,
         }
         Ok(())
     }

@@ -165,9 +165,8 @@ impl Usart {
             }
             0x00 | 0x04 | 0x08 => self.control[(offset / 4) as usize] = value,
             0x0C => self.divider = value,
-            0x10 | 0x14 => {}
             0x18 if value & 8 != 0 => self.received = None,
-            0x18 => {}
+            0x10 | 0x14 | 0x18 => {}
             0x20 => self.flags &= !value,
             0x28 => {
                 self.waiting = Some(value as u8);
