@@ -80,8 +80,8 @@ pub struct Ads1262 {
     is_ready: bool,
     /// The transaction under way.
     course: Course,
-    /// Voltage of a conversion that has ended in its course, V.
-    waiting: Option<f64>,
+    /// When a conversion has ended in its course, and its voltage, V.
+    waiting: Option<(Instant, f64)>,
     /// Conversions that a newer one replaced before they were read.
     pub overwritten: u64,
     /// Whether a clock is found at the pins, which the status byte shows.
@@ -195,22 +195,25 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
 
     fn event(&mut self, environment: &mut E) {
         let Some(mut running) = self.running else { return };
+        let now = running.next();
         let volts = match analogue::selected(&self.registers, self.voltages) {
-            Selected::Gyro(sign) => sign * environment.volts(running.next()),
+            Selected::Gyro(sign) => sign * environment.volts(now),
             Selected::Own(volts) => volts,
         };
         running.count += 1;
         self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);
-        if self.course.is_clocked {
+        if self.waiting.is_some() {
             self.release();
-            self.waiting = Some(volts);
+        }
+        if self.course.is_selected {
+            self.waiting = Some((now, volts));
         } else {
             self.hold(volts);
         }
     }
 
     fn select(&mut self, _: &mut E, _: Instant) {
-        self.course = Course::default();
+        self.course = Course::begun();
     }
 
     fn exchange(&mut self, _: &mut E, exchange: &Exchange) -> u8 {

@@ -49,14 +49,23 @@ impl Direct {
 /// What has passed since the select line fell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Course {
+    /// Whether conversions that end have to wait.
+    pub(super) is_selected: bool,
     /// Whether a byte has passed.
-    pub(super) is_clocked: bool,
+    is_clocked: bool,
     /// What the next byte is.
     phase: Phase,
     /// What goes out without a command.
     direct: Direct,
     /// The answer to the latest read command.
     commanded: Frame,
+}
+
+impl Course {
+    /// Nothing has passed yet.
+    pub(super) fn begun() -> Self {
+        Self { is_selected: true, ..Self::default() }
+    }
 }
 
 impl Ads1262 {
@@ -75,7 +84,11 @@ impl Ads1262 {
         if exchange.hertz > timing::GREATEST_BUS_HERTZ {
             self.violations.record(Misuse::ClockTooFast, exchange.sent, exchange.since);
         }
+        if self.waiting.is_some_and(|(ended, _)| ended <= exchange.begin) {
+            self.release();
+        }
         self.course.direct.frame = self.shift_register();
+        self.course.is_selected = true;
         self.course.is_clocked = true;
         self.is_ready = false;
     }
@@ -198,7 +211,7 @@ impl Ads1262 {
         if core::mem::take(&mut self.course.direct).is_read {
             self.holding.is_new = false;
         }
-        if let Some(volts) = self.waiting.take() {
+        if let Some((_, volts)) = self.waiting.take() {
             self.hold(volts);
         }
     }

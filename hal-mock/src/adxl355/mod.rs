@@ -66,6 +66,8 @@ const NVM_BUSY: u8 = 0x10;
 /// What is felt at one time.
 #[derive(Clone, Copy, Debug)]
 struct Felt {
+    /// When it is felt.
+    landed: Instant,
     /// Specific force on the chip's axes, g.
     force_g: [f64; 3],
     /// Temperature, °C.
@@ -75,6 +77,8 @@ struct Felt {
 /// What has passed since the select line fell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Course {
+    /// Whether samples that land have to wait.
+    is_selected: bool,
     /// Bytes that have passed.
     bytes: usize,
     /// Bytes that the chip follows, the command included.
@@ -173,16 +177,16 @@ impl Adxl355 {
     fn convert(&mut self, environment: &mut (impl ForceInput + ?Sized), mut measuring: Cadence) {
         let now = measuring.next();
         let force_g = environment.force_g(now);
-        let felt = Felt { force_g, temperature_c: environment.temperature_c(now) };
+        let felt = Felt { landed: now, force_g, temperature_c: environment.temperature_c(now) };
         measuring.count += 1;
         self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
         self.measuring = Some(measuring);
-        if self.course.bytes == 0 {
-            self.store(&felt);
-        } else {
+        self.release();
+        if self.course.is_selected {
             self.course.landed.get_or_insert(now);
-            self.release();
             self.waiting = Some(felt);
+        } else {
+            self.store(&felt);
         }
     }
 
@@ -251,12 +255,16 @@ impl Adxl355 {
 
     /// Takes the first byte of a transaction.
     fn begin(&mut self, exchange: &Exchange) {
-        let Exchange { sent: command, since, .. } = *exchange;
+        let Exchange { sent: command, since, begin, .. } = *exchange;
+        if self.waiting.is_some_and(|felt| felt.landed <= begin) {
+            self.release();
+        }
+        let landed = self.waiting.map(|felt| felt.landed);
         let address = command >> 1;
         self.judge_clock(exchange, address);
         let looks = command == STATUS << 1 | 1 && !self.is_powering_up;
         let follows = if since >= self.ready_at { usize::MAX } else { 1 + usize::from(looks) };
-        self.course = Course { bytes: 1, follows, command, address, landed: None };
+        self.course = Course { is_selected: true, bytes: 1, follows, command, address, landed };
     }
 
     /// Reads or writes the next register, or records that the chip does not listen; while it loads its settings
@@ -367,7 +375,7 @@ impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
     }
 
     fn select(&mut self, _: &mut E, _: Instant) {
-        self.course = Course::default();
+        self.course = Course { is_selected: true, ..Course::default() };
     }
 
     fn exchange(&mut self, _: &mut E, exchange: &Exchange) -> u8 {

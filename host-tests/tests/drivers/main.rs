@@ -10,3 +10,4 @@ mod faults_of_the_bus;
 mod lsm6dsl;
 mod mt6835;
 mod tmc5160;
+mod wires;
