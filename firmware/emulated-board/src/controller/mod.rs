@@ -8,6 +8,7 @@ mod exti;
 pub mod flash;
 mod gpio;
 mod i2c;
+mod map;
 mod power;
 pub mod rcc;
 mod spi;
@@ -18,11 +19,12 @@ mod watchdog;
 
 use thiserror::Error;
 
-use self::dma::{CHANNELS, Dma, Item};
+use self::dma::{Dma, Item};
 use self::exti::Exti;
 use self::flash::Flash;
 use self::gpio::Port;
 use self::i2c::I2c;
+use self::map::{DMA_INTERRUPTS, Peripheral, REQUESTS, Request, peripheral};
 use self::power::Power;
 use self::rcc::{Oscillators, Rcc};
 use self::spi::Spi;
@@ -72,80 +74,6 @@ pub trait Memory {
     /// Writes bytes; whether there is memory.
     fn write(&mut self, address: u32, bytes: &[u8]) -> bool;
 }
-
-/// The peripherals, by where their registers begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Peripheral {
-    Spi(usize),
-    I2c,
-    Power,
-    Watchdog,
-    System,
-    Configuration,
-    Exti,
-    Usart,
-    Timer,
-    Dma(usize),
-    Rcc,
-    Flash,
-    Gpio(usize),
-    Debug,
-}
-
-/// The peripheral at an address, and what gives it its clock: offset of a register of [`Rcc`] and bit.
-const fn peripheral(address: u32) -> Option<(Peripheral, Option<(u32, u32)>)> {
-    Some(match address & !0x3FF {
-        0x4000_3000 => (Peripheral::Watchdog, None),
-        0x4000_3800 => (Peripheral::Spi(1), Some((0x58, 14))),
-        0x4000_5800 => (Peripheral::I2c, Some((0x58, 22))),
-        0x4000_7000 => (Peripheral::Power, Some((0x58, 28))),
-        0x4001_0000 => (Peripheral::Configuration, Some((0x60, 0))),
-        0x4001_0400 => (Peripheral::Exti, None),
-        0x4001_3000 => (Peripheral::Spi(0), Some((0x60, 12))),
-        0x4001_3800 => (Peripheral::Usart, Some((0x60, 14))),
-        0x4001_4000 => (Peripheral::Timer, Some((0x60, 16))),
-        0x4002_0000 => (Peripheral::Dma(0), Some((0x48, 0))),
-        0x4002_0400 => (Peripheral::Dma(1), Some((0x48, 1))),
-        0x4002_1000 => (Peripheral::Rcc, None),
-        0x4002_2000 => (Peripheral::Flash, None),
-        base @ 0x4800_0000..0x4800_2000 => {
-            let port = (base - 0x4800_0000) / 0x400;
-            (Peripheral::Gpio(port as usize), Some((0x4C, port)))
-        }
-        0xE000_E000..0xE000_F000 => (Peripheral::System, None),
-        0xE004_2000 => (Peripheral::Debug, None),
-        _ => return None,
-    })
-}
-
-/// Requests of peripherals for direct memory access: controller, channel from zero, selection (tables 44, 45).
-const REQUESTS: [(usize, usize, u32, Request); 10] = [
-    (0, 1, 1, Request::FromSpi(0)),
-    (0, 2, 1, Request::ToSpi(0)),
-    (0, 3, 1, Request::FromSpi(1)),
-    (0, 4, 1, Request::ToSpi(1)),
-    (0, 3, 3, Request::ToI2c),
-    (0, 4, 3, Request::FromI2c),
-    (0, 3, 2, Request::ToUsart),
-    (0, 4, 2, Request::FromUsart),
-    (1, 5, 2, Request::ToUsart),
-    (1, 6, 2, Request::FromUsart),
-];
-
-/// Who asks for direct memory access.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Request {
-    FromSpi(usize),
-    ToSpi(usize),
-    FromI2c,
-    ToI2c,
-    FromUsart,
-    ToUsart,
-}
-
-/// Interrupts of the channels of both DMA controllers.
-const DMA_INTERRUPTS: [[u32; CHANNELS]; 2] =
-    [[11, 12, 13, 14, 15, 16, 17], [56, 57, 58, 59, 60, 68, 69]];
 
 /// The microcontroller without its core.
 pub struct Controller {
