@@ -45,6 +45,8 @@
 //! [`assembly::Board`].
 //!
 //! What the microcontroller itself brings with it is the flash in which a board keeps data ([`flash`]).
+//! A model of one reaches the chips over wires, byte by byte and pin by pin ([`wires`]); ports in front of
+//! drivers ([`spi`], [`i2c`]) do so transaction by transaction.
 //!
 //! A chip behaves as its data sheet says, and where that promises nothing, it does the worst that is
 //! still allowed. What a driver does that the data sheet forbids is recorded ([`violation`]), so that a

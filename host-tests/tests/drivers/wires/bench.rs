@@ -107,7 +107,11 @@ impl<R: Rig> WirePort<'_, R> {
         };
         for operation in operations {
             match operation {
-                Operation::Write(sent) => sent.iter().for_each(|sent| drop(byte(*sent))),
+                Operation::Write(sent) => {
+                    for sent in *sent {
+                        byte(*sent);
+                    }
+                }
                 Operation::Read(reply) => reply.iter_mut().for_each(|reply| *reply = byte(0)),
                 Operation::TransferInPlace(both) => both.iter_mut().for_each(|b| *b = byte(*b)),
                 Operation::Transfer(reply, sent) => {

@@ -232,9 +232,12 @@ fn a_select_that_rises_within_a_byte_ends_the_transaction_with_a_wrong_length() 
     }
 }
 
+/// A chip with its mode, a write of a register, a read of the same, and what it holds after a reset.
+type Write = (Select, Mode, &'static [u8], &'static [u8], u8);
+
 #[test]
 fn a_write_that_is_cut_within_its_value_is_not_done() {
-    let writes: [(Select, Mode, &[u8], &[u8], u8); 3] = [
+    let writes: [Write; 3] = [
         (Select::Gyro, MODE_1, &[0x42, 0, 0x07], &[0x22, 0, 0], 0x05),
         (Select::Accelerometer, MODE_0, &[0x50, 0x05], &[0x51, 0], 0x00),
         (Select::Encoder, MODE_3, &[0x60, 0x0D, 0xA0], &[0x30, 0x0D, 0], 0xA7),
