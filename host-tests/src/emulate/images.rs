@@ -85,6 +85,6 @@ pub fn artifacts(messages: &str) -> Result<Images, String> {
 pub fn executable(messages: &str, name: &str) -> Result<PathBuf, String> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let named = messages.filter(|message| message["target"]["name"] == name);
-    let paths = named.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
-    paths.last().ok_or_else(|| format!("cargo built no image `{name}`"))
+    let mut paths = named.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
+    paths.next_back().ok_or_else(|| format!("cargo built no image `{name}`"))
 }
