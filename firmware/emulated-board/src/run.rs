@@ -298,7 +298,8 @@ pub fn execute(
             .processor
             .with_controller(|controller| std::mem::take(&mut controller.usart.sent));
         let received = on_link(&sent);
-        execution.processor.with_controller(|controller| controller.usart.offer(&received));
+        let now = execution.processor.now();
+        execution.processor.with_controller(|controller| controller.hear(&received, now));
         link.extend(sent);
     }
     Ok(report(image, order, &execution, gathered, &String::from_utf8_lossy(&link)))

@@ -96,7 +96,7 @@ impl Dma {
 
     /// A transfer of a channel that met no memory: the channel is switched off.
     pub fn fail(&mut self, channel: usize) {
-        self.flags |= 8 << (4 * channel);
+        self.flags = self.flags & !(0xF << (4 * channel)) | 8 << (4 * channel);
         self.channels[channel].control &= !1;
     }
 

@@ -160,6 +160,12 @@ impl Controller {
         self.hertz
     }
 
+    /// The other side of the serial port sends bytes from now on, one after the other.
+    pub fn hear(&mut self, bytes: &[u8], now: Time) {
+        self.usart.offer(bytes);
+        self.usart.begin(now, self.hertz);
+    }
+
     /// When something next happens of itself.
     pub fn due(&mut self, now: Time) -> Time {
         let spi = self.spi.iter().map(|spi| spi.due(self.hertz)).min().unwrap_or(Time::NEVER);

@@ -1,0 +1,120 @@
+//! Clocks, the timer and the watchdog.
+
+use emulated_board::controller::{Refused, ResetReason};
+use emulated_board::time::Time;
+
+use super::{Bench, RCC};
+
+/// The timer TIM15.
+const TIMER: u32 = 0x4001_4000;
+/// The independent watchdog.
+const WATCHDOG: u32 = 0x4000_3000;
+/// Power control.
+const POWER: u32 = 0x4000_7000;
+
+#[test]
+fn a_peripheral_without_its_clock_is_refused() {
+    let mut bench = Bench::new();
+    bench.write(RCC + 0x60, 0);
+    assert_eq!(bench.try_read(TIMER, 4), Err(Refused::NoClock));
+    bench.write(RCC + 0x60, 1 << 16);
+    assert_eq!(bench.try_read(TIMER, 4), Ok(0));
+}
+
+#[test]
+fn what_the_model_does_not_have_is_refused() {
+    let mut bench = Bench::new();
+    // A timer that no image uses, a reserved register of a port, one of the clocks, an address that is none.
+    for address in [0x4000_0000, 0x4800_0030, RCC + 0x24, 0x5000_0000] {
+        assert_eq!(bench.try_read(address, 4), Err(Refused::Unknown), "{address:#x}");
+        assert_eq!(bench.try_write(address, 0, 4), Err(Refused::Unknown), "{address:#x}");
+    }
+}
+
+#[test]
+fn the_oscillator_follows_the_crystal_when_that_oscillates() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.controller.hertz(), 4_000_000);
+    bench.write(RCC + 0x90, 1);
+    assert_eq!(bench.read(RCC + 0x90), 0, "the backup domain is closed");
+    bench.write(POWER, 0x300);
+    bench.write(RCC + 0x90, 1);
+    let control = bench.read(RCC);
+    bench.write(RCC, control | 4);
+    assert_eq!((bench.read(RCC + 0x90) & 2, bench.controller.hertz()), (0, 4_000_000));
+    bench.pass(Time::seconds(2.1));
+    assert_eq!(bench.read(RCC + 0x90) & 2, 2);
+    // 122 periods of 32 768 Hz.
+    assert_eq!(bench.controller.hertz(), 3_997_696);
+    // The PLL makes twenty times that of it.
+    bench.write(RCC + 0x0C, 1 | 40 << 8 | 1 << 24);
+    bench.write(RCC + 0x08, 3);
+    assert_eq!(bench.controller.hertz(), 79_953_920);
+}
+
+#[test]
+fn a_divider_that_is_not_modelled_is_refused() {
+    let mut bench = Bench::new();
+    let refused = bench.try_write(RCC + 0x08, 8 << 4, 4);
+    assert!(matches!(refused, Err(Refused::NotModelled(_))), "{refused:?}");
+}
+
+/// A timer that counts microseconds, at 4 MHz.
+fn timer() -> Bench {
+    let mut bench = Bench::new();
+    bench.write(TIMER + 0x28, 3);
+    bench.write(TIMER + 0x2C, 0xFFFF);
+    bench.write(TIMER, 4);
+    bench.write(TIMER + 0x14, 1);
+    bench.write(TIMER, 5);
+    bench
+}
+
+#[test]
+fn the_timer_counts_and_wraps() {
+    let mut bench = timer();
+    bench.pass(Time::microseconds(1000));
+    assert_eq!(bench.read(TIMER + 0x24), 1000);
+    bench.pass(Time::microseconds(65_000));
+    assert_eq!(bench.read(TIMER + 0x24), 66_000 - 65_536);
+    assert_eq!(bench.read(TIMER + 0x10) & 1, 1, "an overflow sets its flag");
+}
+
+#[test]
+fn a_compare_channel_interrupts_once_in_each_round() {
+    let mut bench = timer();
+    bench.write(TIMER + 0x38, 500);
+    bench.write(TIMER + 0x0C, 4);
+    for _ in 0..3 {
+        bench.pass(Time::microseconds(499));
+        assert!(!bench.interrupts(24));
+        bench.pass(Time::microseconds(1));
+        assert!(bench.interrupts(24));
+        bench.write(TIMER + 0x10, !4);
+        assert!(!bench.interrupts(24));
+        bench.pass(Time::microseconds(65_536 - 500));
+    }
+}
+
+#[test]
+fn the_watchdog_resets_after_its_time_and_the_reason_is_kept() {
+    let mut bench = Bench::new();
+    bench.write(WATCHDOG, 0xCCCC);
+    bench.write(WATCHDOG, 0x5555);
+    bench.write(WATCHDOG + 4, 4);
+    // 4096 periods of 32 kHz / 64.
+    let span = Time::seconds(8.192);
+    bench.pass(Time::seconds(8.0));
+    bench.write(WATCHDOG, 0xAAAA);
+    bench.pass(span - Time::microseconds(1));
+    assert_eq!(bench.controller.reset, None);
+    bench.pass(Time::microseconds(2));
+    assert_eq!(bench.controller.reset, Some(ResetReason::Watchdog));
+    bench.controller.restart(ResetReason::Watchdog, bench.now);
+    // The flag of the watchdog, beside those of the pin and of the supply before it.
+    assert_eq!(bench.read(RCC + 0x94) >> 24, 0x2C);
+    bench.write(RCC + 0x94, 1 << 23);
+    assert_eq!(bench.read(RCC + 0x94) >> 24, 0);
+    bench.pass(Time::seconds(20.0));
+    assert_eq!(bench.controller.reset, None, "a reset stops the watchdog");
+}

@@ -1,0 +1,86 @@
+//! Registers of the flash.
+
+use emulated_board::controller::flash::STORE;
+use emulated_board::time::Time;
+
+use super::Bench;
+
+/// Registers of the flash.
+const FLASH: u32 = 0x4002_2000;
+/// A row of the store.
+const ROW: u32 = STORE.start;
+
+/// A flash whose control register is open.
+fn open() -> Bench {
+    let mut bench = Bench::new();
+    bench.write(FLASH + 8, 0x4567_0123);
+    bench.write(FLASH + 8, 0xCDEF_89AB);
+    bench
+}
+
+/// Stores a row.
+fn store(bench: &mut Bench, words: [u32; 2]) {
+    for (offset, word) in [ROW, ROW + 4].into_iter().zip(words) {
+        let waits = bench.controller.flash.store(offset, word, 4, bench.now);
+        assert_eq!(waits, None);
+    }
+}
+
+#[test]
+fn without_the_keys_nothing_is_programmed() {
+    let mut bench = Bench::new();
+    bench.write(FLASH + 0x14, 1);
+    assert_eq!(bench.read(FLASH + 0x14), 1 << 31, "the lock holds");
+    store(&mut bench, [1, 2]);
+    assert_eq!(bench.read(FLASH + 0x10), 1 << 7, "an error of the sequence");
+    assert_eq!(bench.controller.flash.load(ROW, 4, bench.now), Ok(0xFFFF_FFFF));
+}
+
+#[test]
+fn two_words_program_a_row_in_82_microseconds_while_its_bank_cannot_be_read() {
+    let mut bench = open();
+    bench.write(FLASH + 0x14, 1);
+    store(&mut bench, [0x1111_2222, 0x3333_4444]);
+    assert_eq!(bench.read(FLASH + 0x10), 1 << 16);
+    let until = bench.controller.flash.load(ROW, 4, bench.now).expect_err("the bank is busy");
+    assert_eq!(until.as_nanoseconds(), 81_690);
+    assert!(bench.controller.flash.load(0, 4, bench.now).is_ok(), "the other bank can be read");
+    bench.pass(Time::microseconds(82));
+    assert_eq!(bench.read(FLASH + 0x10), 0);
+    assert_eq!(bench.controller.flash.load(ROW, 4, bench.now), Ok(0x1111_2222));
+    assert_eq!(bench.controller.flash.load(ROW + 4, 4, bench.now), Ok(0x3333_4444));
+    assert_eq!(bench.controller.flash.load(ROW + 5, 1, bench.now), Ok(0x44));
+    // A second time it is refused.
+    store(&mut bench, [0, 1]);
+    assert_eq!(bench.read(FLASH + 0x10) & 0xFFFF, 1 << 3);
+}
+
+#[test]
+fn a_page_is_erased_in_22_milliseconds_and_the_end_interrupts() {
+    let mut bench = open();
+    bench.controller.flash.array.burn(ROW, &[0; 16]);
+    // Page 254 of bank 2; the end interrupts.
+    bench.write(FLASH + 0x14, 2 | 254 << 3 | 1 << 11 | 1 << 16 | 1 << 24);
+    bench.pass(Time::microseconds(22_000));
+    assert!(!bench.interrupts(4));
+    bench.pass(Time::microseconds(100));
+    assert!(bench.interrupts(4));
+    assert_eq!(bench.controller.flash.load(ROW, 4, bench.now), Ok(0xFFFF_FFFF));
+    bench.write(FLASH + 0x10, 1);
+    assert!(!bench.interrupts(4));
+}
+
+#[test]
+fn a_row_that_lost_its_supply_or_charge_is_corrected_or_told() {
+    let mut bench = open();
+    bench.controller.flash.array.burn(ROW, &[0x55; 8]);
+    bench.controller.flash.array.invert(ROW, 3);
+    assert_eq!(bench.controller.flash.load(ROW, 4, bench.now), Ok(0x5555_5555));
+    assert_eq!(bench.read(FLASH + 0x18) >> 30, 1, "corrected");
+    bench.write(FLASH + 0x18, 1 << 30);
+    bench.controller.flash.array.invert(ROW, 4);
+    bench.controller.flash.array.switch_cache(false);
+    let _ = bench.controller.flash.load(ROW, 4, bench.now);
+    assert_eq!(bench.read(FLASH + 0x18) >> 31, 1, "beyond correction");
+    assert!(bench.controller.exceptions.pending[2], "which is not maskable");
+}

@@ -1,0 +1,162 @@
+//! The peripherals of the model by their registers, as the reference manual RM0351 describes them.
+
+mod bus;
+mod clocks;
+mod flash;
+mod serial;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use emulated_board::controller::rcc::Oscillators;
+use emulated_board::controller::{Controller, Memory, Refused};
+use emulated_board::time::Time;
+use emulated_board::wiring::board::Served;
+use emulated_board::wiring::{I2cBus, Pin, Wiring};
+use hal_mock::wires::Clock;
+
+/// Reset and clock control.
+const RCC: u32 = 0x4002_1000;
+
+/// Where the memory begins.
+const MEMORY: u32 = 0x2000_0000;
+
+/// Memory for the direct access.
+struct Ram(Vec<u8>);
+
+impl Memory for Ram {
+    fn read(&self, address: u32, bytes: &mut [u8]) -> bool {
+        let start = address.wrapping_sub(MEMORY) as usize;
+        let held = self.0.get(start..start.saturating_add(bytes.len()));
+        held.map(|held| bytes.copy_from_slice(held)).is_some()
+    }
+
+    fn write(&mut self, address: u32, bytes: &[u8]) -> bool {
+        let start = address.wrapping_sub(MEMORY) as usize;
+        let held = self.0.get_mut(start..start.saturating_add(bytes.len()));
+        held.map(|held| held.copy_from_slice(bytes)).is_some()
+    }
+}
+
+/// Wires on which each byte comes back inverted, and on which a device answers at address 0x6A.
+#[derive(Default)]
+struct Wires {
+    /// Bytes that were begun: bus, byte, clock and time.
+    bytes: Vec<(usize, u8, Clock, Time)>,
+    /// Bytes on the two-wire bus, and its conditions.
+    conditions: Vec<String>,
+}
+
+/// The wires, which a test looks at too.
+#[derive(Clone, Default)]
+struct Shared(Rc<RefCell<Wires>>);
+
+impl I2cBus for Shared {
+    fn start(&mut self, address: u8, reads: bool, _: u32, _: Time) -> bool {
+        let condition = format!("start {address:#x} {}", if reads { "reads" } else { "writes" });
+        self.0.borrow_mut().conditions.push(condition);
+        address == 0x6A
+    }
+
+    fn write(&mut self, byte: u8, _: Time) -> bool {
+        self.0.borrow_mut().conditions.push(format!("write {byte:#x}"));
+        true
+    }
+
+    fn read(&mut self, is_acknowledged: bool, _: Time) -> u8 {
+        let condition = if is_acknowledged { "read" } else { "read the last" };
+        self.0.borrow_mut().conditions.push(condition.to_owned());
+        0x42
+    }
+
+    fn stop(&mut self, _: Time) {
+        self.0.borrow_mut().conditions.push("stop".to_owned());
+    }
+}
+
+impl Wiring for Shared {
+    fn served(&mut self) -> Served {
+        Served::default()
+    }
+
+    fn drive(&mut self, _: Pin, _: Option<bool>, _: Time) {}
+
+    fn level(&mut self, _: Pin, _: Time) -> bool {
+        true
+    }
+
+    fn begin(&mut self, bus: usize, byte: u8, clock: Clock, now: Time) {
+        self.0.borrow_mut().bytes.push((bus, byte, clock, now));
+    }
+
+    fn finish(&mut self, bus: usize) -> u8 {
+        let wires = self.0.borrow();
+        let latest = wires.bytes.iter().rfind(|(own, ..)| *own == bus);
+        latest.map_or(0xFF, |(_, byte, ..)| !byte)
+    }
+
+    fn faults(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn due(&self) -> Time {
+        Time::NEVER
+    }
+
+    fn edges(&mut self, _: Time) -> Vec<(Pin, bool)> {
+        Vec::new()
+    }
+}
+
+/// A controller with memory and wires, and the time.
+struct Bench {
+    controller: Controller,
+    ram: Ram,
+    wires: Shared,
+    now: Time,
+}
+
+impl Bench {
+    /// A controller after the supply came up, at 4 MHz, with all peripherals clocked.
+    fn new() -> Self {
+        let wires = Shared::default();
+        let oscillators = Oscillators { has_crystal: true, msi_error: 0.0 };
+        let controller = Controller::new(oscillators, 1, Box::new(wires.clone()));
+        let mut bench = Self { controller, ram: Ram(vec![0; 4096]), wires, now: Time::ZERO };
+        for offset in [0x48, 0x4C, 0x58, 0x60] {
+            bench.write(RCC + offset, 0xFFFF_FFFF);
+        }
+        bench
+    }
+
+    /// Reads a word.
+    fn read(&mut self, address: u32) -> u32 {
+        self.try_read(address, 4).expect("the register is there")
+    }
+
+    /// Reads by an access of so many bytes.
+    fn try_read(&mut self, address: u32, size: u32) -> Result<u32, Refused> {
+        self.controller.read(&mut self.ram, address, size, (self.now, 0))
+    }
+
+    /// Writes a word.
+    fn write(&mut self, address: u32, value: u32) {
+        self.try_write(address, value, 4).expect("the register takes it");
+    }
+
+    /// Writes by an access of so many bytes.
+    fn try_write(&mut self, address: u32, value: u32, size: u32) -> Result<(), Refused> {
+        self.controller.write(&mut self.ram, address, (value, size), self.now)
+    }
+
+    /// Time passes.
+    fn pass(&mut self, span: Time) {
+        self.now = self.now + span;
+        self.controller.advance(&mut self.ram, self.now);
+    }
+
+    /// Whether an interrupt of a peripheral waits.
+    fn interrupts(&self, number: usize) -> bool {
+        self.controller.exceptions.lines[16 + number]
+    }
+}
