@@ -1,0 +1,58 @@
+//! Waits for events and interrupts that end at once.
+
+use cortex_m::asm::{isb, sev, wfe, wfi};
+
+use crate::Step;
+use crate::handlers::{on, write};
+use crate::interrupts::{FIRST, PEND, enable};
+use crate::line::say;
+
+/// `SCR`, and its bit by which an interrupt that becomes pending is an event.
+const SLEEP: u32 = 0xE000_ED10;
+const PENDING_IS_EVENT: u32 = 1 << 4;
+
+/// The steps.
+pub const STEPS: [Step; 4] = [
+    ("event sent", sent),
+    ("event of a return", returned),
+    ("event of what is pending", pending),
+    ("interrupt that is masked", masked),
+];
+
+fn sent() {
+    sev();
+    wfe();
+    say!(" awake");
+}
+
+fn returned() {
+    enable([0x80; 4]);
+    write(PEND, FIRST);
+    wfe();
+    say!(" awake");
+}
+
+fn pending() {
+    enable([0x80; 4]);
+    write(SLEEP, PENDING_IS_EVENT);
+    cortex_m::interrupt::disable();
+    write(PEND, FIRST);
+    wfe();
+    say!(" awake");
+    // SAFETY: nothing relies on the mask.
+    unsafe { cortex_m::interrupt::enable() };
+    isb();
+    write(SLEEP, 0);
+}
+
+fn masked() {
+    enable([0x80; 4]);
+    on(0x3C, |_| say!(" taken"));
+    cortex_m::interrupt::disable();
+    write(PEND, FIRST);
+    wfi();
+    say!(" awake");
+    // SAFETY: nothing relies on the mask.
+    unsafe { cortex_m::interrupt::enable() };
+    isb();
+}
