@@ -1,7 +1,9 @@
 //! Faults: what they tell, where they come from, what becomes of one that cannot be taken.
 
 use crate::Step;
-use crate::assembly::{call, divide, jump, load, load_and_move, load_if, load_many, load_pair, store, undefined};
+use crate::assembly::{
+    call, divide, jump, load, load_and_move, load_if, load_many, load_pair, store, undefined,
+};
 use crate::handlers::{Entry, on, read, write};
 use crate::interrupts::{FIRST, PEND, enable};
 use crate::line::say;

@@ -11,7 +11,8 @@ use crate::interrupts::{FIRST, PEND, SECOND, enable};
 use crate::line::say;
 
 /// The steps.
-pub const STEPS: [Step; 3] = [("integers stacked", integers), ("floats stacked", floats), ("floats nested", nested)];
+pub const STEPS: [Step; 3] =
+    [("integers stacked", integers), ("floats stacked", floats), ("floats nested", nested)];
 
 /// Whether floating-point registers are in use.
 fn in_use() -> u32 {

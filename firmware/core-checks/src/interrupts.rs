@@ -2,10 +2,10 @@
 
 use cortex_m::register::{basepri, basepri_max, faultmask, primask};
 
+use crate::Step;
 use crate::assembly::{call, call_if, pend_if};
 use crate::handlers::{on, read, write};
 use crate::line::say;
-use crate::Step;
 
 /// `ISER1`, `ICER1`, `ISPR1`, `ICPR1`, `IABR1`: interrupts 32 to 63.
 const ENABLE: u32 = 0xE000_E104;
@@ -60,7 +60,13 @@ pub fn enable(priorities: [u8; 4]) {
 /// What the core says of exceptions: which is handled, which waits, whether one waits, whether none is preempted.
 fn say_state() {
     let control = read(CONTROL);
-    say!(" [active {:x} pending {:x} {} base {}]", control & 0x1FF, control >> 12 & 0x1FF, control >> 22 & 1, control >> 11 & 1);
+    say!(
+        " [active {:x} pending {:x} {} base {}]",
+        control & 0x1FF,
+        control >> 12 & 0x1FF,
+        control >> 22 & 1,
+        control >> 11 & 1
+    );
     say!(" {:x}", read(ACTIVE) >> 12 & 0xF);
 }
 
@@ -238,7 +244,11 @@ fn service() {
 /// Tells the number that a call names.
 fn say_call(entry: &mut crate::handlers::Entry) {
     let frame = entry.frame();
-    say!(" {:x} {}", read(frame.pc - 2 & !3).to_le_bytes()[(frame.pc - 2 & 2) as usize], frame.pc - (call as *const () as u32 & !1));
+    say!(
+        " {:x} {}",
+        read(frame.pc - 2 & !3).to_le_bytes()[(frame.pc - 2 & 2) as usize],
+        frame.pc - (call as *const () as u32 & !1)
+    );
     frame.general[0] = 0x1234;
 }
 

@@ -18,7 +18,8 @@ mod waits;
 
 /// Does all steps and hands over the line of each. The last one locks the core up.
 pub fn run(mut show: impl FnMut(&str)) -> ! {
-    let steps = interrupts::STEPS.iter().chain(&floats::STEPS).chain(&stacks::STEPS).chain(&waits::STEPS);
+    let steps =
+        interrupts::STEPS.iter().chain(&floats::STEPS).chain(&stacks::STEPS).chain(&waits::STEPS);
     for (name, step) in steps.chain(&faults::STEPS).chain(&protection::STEPS) {
         line::begin(name);
         step();

@@ -223,7 +223,13 @@ fn guard() {
         say!(" {status:x}");
         end();
         let resumed = addr_of_mut!(RESUMED) as u32 + 7 & !7;
-        let frame = Frame { general: [0; 4], r12: 0, lr: 0, pc: pushed as *const () as u32 & !1, status: 1 << 24 };
+        let frame = Frame {
+            general: [0; 4],
+            r12: 0,
+            lr: 0,
+            pc: pushed as *const () as u32 & !1,
+            status: 1 << 24,
+        };
         // SAFETY: the memory is the frame's, and the thread's stack begins with it.
         unsafe {
             *(resumed as *mut Frame) = frame;

@@ -9,7 +9,8 @@ use crate::interrupts::{CONTROL, FIRST, PEND, enable};
 use crate::line::say;
 
 /// The steps.
-pub const STEPS: [Step; 3] = [("alignment", alignment), ("process stack", process), ("privilege", privilege)];
+pub const STEPS: [Step; 3] =
+    [("alignment", alignment), ("process stack", process), ("privilege", privilege)];
 
 /// Words of a process stack.
 const WORDS: usize = 64;
@@ -59,7 +60,7 @@ fn privilege() {
         crate::faults::say_faults();
         entry.skip();
     });
-    say!(" {:x}", read_unprivileged(0x2000_0000).min(1));
+    say!(" {:x}", read_unprivileged(0x0800_0000));
     say!(" {:x}", read_unprivileged(CONTROL));
     say!(" {}", u32::from(cortex_m::register::primask::read().is_inactive()));
 }

@@ -10,6 +10,7 @@ mod gpio;
 mod i2c;
 mod map;
 mod power;
+pub mod protection;
 pub mod rcc;
 mod spi;
 pub mod system;
@@ -32,7 +33,7 @@ use self::system::System;
 use self::timer::Timer;
 use self::usart::Usart;
 use self::watchdog::Watchdog;
-use crate::processor::exceptions::{Exceptions, FIRST_INTERRUPT};
+use crate::processor::exceptions::{Exceptions, FIRST_INTERRUPT, NOT_MASKABLE};
 use crate::time::Time;
 use crate::wiring::{Pin, Wiring};
 
@@ -298,9 +299,8 @@ impl Controller {
     /// Sets the lines of the interrupts.
     fn raise(&mut self) {
         let lines = &mut self.exceptions.lines;
-        let mut set = |interrupt: u32, is_active: bool| {
-            lines[(FIRST_INTERRUPT + interrupt) as usize] = is_active;
-        };
+        let mut set =
+            |interrupt: u32, is_active: bool| lines.put(FIRST_INTERRUPT + interrupt, is_active);
         set(4, self.flash.interrupts());
         let edges = self.exti.active();
         (0..5).for_each(|line| set(6 + line, edges >> line & 1 != 0));
@@ -317,7 +317,9 @@ impl Controller {
         set(34, error);
         set(37, self.usart.interrupts());
         // A row that cannot be corrected (3.3.2).
-        self.exceptions.pending[2] |= std::mem::take(&mut self.flash.is_broken);
+        if std::mem::take(&mut self.flash.is_broken) {
+            self.exceptions.pending.put(NOT_MASKABLE, true);
+        }
     }
 
     /// Determines the clock anew.

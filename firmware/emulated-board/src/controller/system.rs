@@ -2,22 +2,15 @@
 //! Reference Manual, B3).
 
 use super::Refused;
+use super::protection::Protection;
 use crate::processor::exceptions::{
-    BUS_FAULT, EXCEPTIONS, Exceptions, FIRST_INTERRUPT, MEMORY_FAULT, PENDABLE_SERVICE, PRIORITY_MASK, SYSTEM_TICK,
-    USAGE_FAULT,
+    BUS_FAULT, EXCEPTIONS, Exceptions, FIRST_INTERRUPT, HARD_FAULT, MEMORY_FAULT, NOT_MASKABLE,
+    PENDABLE_SERVICE, PRIORITY_MASK, SUPERVISOR_CALL, SYSTEM_TICK, Set, USAGE_FAULT,
 };
+use crate::processor::faults::Fault;
 
 /// The core's identity: Cortex-M4, r0p1.
 const IDENTITY: u32 = 0x410F_C241;
-
-/// A region of the memory protection unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Region {
-    /// `MPU_RBAR`.
-    pub base: u32,
-    /// `MPU_RASR`.
-    pub attributes: u32,
-}
 
 /// Registers beside those of the exceptions.
 #[derive(Clone, Debug, Default)]
@@ -36,15 +29,39 @@ pub struct System {
     float: [u32; 3],
     /// `DEMCR`.
     debug: u32,
-    /// `MPU_CTRL` and `MPU_RNR`.
-    protection: [u32; 2],
-    /// Its eight regions.
-    regions: [Region; 8],
+    /// The memory protection unit.
+    pub protection: Protection,
     /// Whether the program asks for a reset.
     pub wants_reset: bool,
 }
 
 impl System {
+    /// Tells of a fault, and whether it became a hard fault.
+    pub const fn tell(&mut self, fault: Fault, is_escalated: bool) {
+        self.faults[0] |= fault.status;
+        match (fault.number, fault.address) {
+            (MEMORY_FAULT, Some(address)) => self.faults[2] = address,
+            (BUS_FAULT, Some(address)) => self.faults[3] = address,
+            // DEBUGEVT.
+            (HARD_FAULT, _) => self.faults[1] |= 1 << 31,
+            _ => {}
+        }
+        // FORCED.
+        self.faults[1] |= (is_escalated as u32) << 30;
+    }
+
+    /// Whether a return to a thread may leave exceptions active (`NONBASETHRDENA`).
+    #[must_use]
+    pub const fn returns_to_thread_at_any_time(&self) -> bool {
+        self.configuration & 1 != 0
+    }
+
+    /// Whether an exception that becomes pending is an event (`SEVONPEND`).
+    #[must_use]
+    pub const fn pending_is_event(&self) -> bool {
+        self.sleep & 1 << 4 != 0
+    }
+
     /// The registers after a reset; the vectors are at the beginning of the flash.
     pub fn new() -> Self {
         Self { configuration: 0x200, float: [0xC000_0000, 0, 0], ..Self::default() }
@@ -52,20 +69,16 @@ impl System {
 
     /// Reads a register by its distance from 0xE000 E000; `active` is the exception that is being handled.
     pub fn read(&self, offset: u32, exceptions: &Exceptions, active: u32) -> Result<u32, Refused> {
-        let bits = |flags: &[bool; EXCEPTIONS]| {
-            let first = FIRST_INTERRUPT as usize + (offset % 0x80 * 8) as usize;
-            let bits = flags.iter().skip(first).take(32).enumerate();
-            bits.map(|(bit, is_set)| u32::from(*is_set) << bit).sum()
-        };
+        let bits = |set: Set| set.interrupts(offset % 0x80 * 8);
         Ok(match offset {
             0x010 | 0x014 | 0x018 => 0,
             0x004 => 2,
-            0x100..0x10C | 0x180..0x18C => bits(&exceptions.enabled),
-            0x200..0x20C | 0x280..0x28C => bits(&exceptions.pending),
-            0x300..0x30C => bits(&exceptions.active),
+            0x100..0x10C | 0x180..0x18C => bits(exceptions.enabled),
+            0x200..0x20C | 0x280..0x28C => bits(exceptions.requested()),
+            0x300..0x30C => bits(exceptions.active),
             0x400..0x454 => priorities(exceptions, FIRST_INTERRUPT + offset - 0x400),
             0xD00 => IDENTITY,
-            0xD04 => active | pending(exceptions) << 12,
+            0xD04 => icsr(exceptions, active),
             0xD08 => self.vectors,
             0xD0C => 0xFA05_0000,
             0xD10 => self.sleep,
@@ -76,10 +89,7 @@ impl System {
             0xD2C => self.faults[1],
             0xD34 | 0xD38 => self.faults[(offset as usize - 0xD34) / 4 + 2],
             0xD88 => self.coprocessors,
-            0xD90 => 0x800,
-            0xD94 | 0xD98 => self.protection[(offset as usize - 0xD94) / 4],
-            0xD9C => self.region().base,
-            0xDA0 => self.region().attributes,
+            0xD90..0xDA4 => self.protection.read(offset - 0xD90).ok_or(Refused::Unknown)?,
             0xDF0 => 0,
             0xDFC => self.debug,
             0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4],
@@ -87,18 +97,16 @@ impl System {
         })
     }
 
-    /// The region that the register of numbers chooses.
-    fn region(&self) -> Region {
-        self.regions[(self.protection[1] & 7) as usize]
-    }
-
     /// Writes a register by its distance from 0xE000 E000, by an access of so many bytes.
-    pub fn write(&mut self, offset: u32, value: u32, size: u32, exceptions: &mut Exceptions) -> Result<(), Refused> {
-        let set = |flags: &mut [bool; EXCEPTIONS], is_set: bool| {
-            let first = FIRST_INTERRUPT as usize + (offset % 0x80 * 8) as usize;
-            let bits = flags.iter_mut().skip(first).take(32).enumerate();
-            bits.filter(|(bit, _)| value >> bit & 1 != 0).for_each(|(_, flag)| *flag = is_set);
-        };
+    pub fn write(
+        &mut self,
+        offset: u32,
+        value: u32,
+        size: u32,
+        exceptions: &mut Exceptions,
+    ) -> Result<(), Refused> {
+        let set =
+            |set: &mut Set, are_in: bool| set.put_interrupts(offset % 0x80 * 8, value, are_in);
         match offset {
             0x010 if value & 1 != 0 => return Err(Refused::NotModelled("the core's timer")),
             0x010 | 0x014 | 0x018 => {}
@@ -106,11 +114,15 @@ impl System {
             0x180..0x18C => set(&mut exceptions.enabled, false),
             0x200..0x20C => set(&mut exceptions.pending, true),
             0x280..0x28C => set(&mut exceptions.pending, false),
-            0x400..0x454 => set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size),
+            0x400..0x454 => {
+                set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size)
+            }
             0xD04 => {
-                exceptions.pending[PENDABLE_SERVICE as usize] |= value & 1 << 28 != 0;
-                exceptions.pending[PENDABLE_SERVICE as usize] &= value & 1 << 27 == 0;
-                exceptions.pending[SYSTEM_TICK as usize] |= value & 1 << 26 != 0;
+                for (bit, number, is_set) in PENDING_BITS {
+                    if value >> bit & 1 != 0 {
+                        exceptions.pending.put(number, is_set);
+                    }
+                }
             }
             0xD08 => self.vectors = value,
             0xD0C if value >> 16 == 0x05FA => {
@@ -121,27 +133,24 @@ impl System {
             }
             0xD10 if value & 4 != 0 => return Err(Refused::NotModelled("deep sleep")),
             0xD10 => self.sleep = value,
+            // Bits that trap what is not trapped otherwise: unaligned accesses, divisions by zero.
+            0xD14 if value & 0x18 != 0 => {
+                return Err(Refused::NotModelled("traps of the configuration"));
+            }
             0xD14 => self.configuration = value,
             0xD18..0xD24 => set_priorities(exceptions, 4 + offset - 0xD18, value, size),
             0xD24 => {
+                // What is active or pending is not changed by hand: no image does.
                 for (bit, number) in [(16, MEMORY_FAULT), (17, BUS_FAULT), (18, USAGE_FAULT)] {
-                    exceptions.enabled[number as usize] = value >> bit & 1 != 0;
+                    exceptions.enabled.put(number, value >> bit & 1 != 0);
                 }
             }
             0xD28 => self.faults[0] &= !value,
             0xD2C => self.faults[1] &= !value,
             0xD88 => self.coprocessors = value,
-            0xD94 if value & 1 != 0 => return Err(Refused::NotModelled("the memory protection unit")),
-            0xD94 | 0xD98 => self.protection[(offset as usize - 0xD94) / 4] = value,
-            0xD9C => {
-                if value & 0x10 != 0 {
-                    self.protection[1] = value & 0xF;
-                }
-                self.regions[(self.protection[1] & 7) as usize].base = value & !0x1F;
-            }
-            0xDA0 => self.regions[(self.protection[1] & 7) as usize].attributes = value,
+            0xD94..0xDA4 if self.protection.write(offset - 0xD90, value) => {}
             0xDFC => self.debug = value,
-            0xF00 => exceptions.pending[(FIRST_INTERRUPT + (value & 0x1FF)) as usize % EXCEPTIONS] = true,
+            0xF00 => exceptions.pending.put_interrupts(value & 0x60, 1 << (value & 0x1F), true),
             0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4] = value,
             _ => return Err(Refused::Unknown),
         }
@@ -149,9 +158,29 @@ impl System {
     }
 }
 
-/// The most urgent exception that waits, for the register that shows it.
-fn pending(exceptions: &Exceptions) -> u32 {
-    exceptions.next(Default::default()).unwrap_or(0)
+/// Bits of `ICSR` that make exceptions of the core pending or not: the bit, the exception, which of both.
+const PENDING_BITS: [(u32, u32, bool); 5] = [
+    (31, NOT_MASKABLE, true),
+    (28, PENDABLE_SERVICE, true),
+    (27, PENDABLE_SERVICE, false),
+    (26, SYSTEM_TICK, true),
+    (25, SYSTEM_TICK, false),
+];
+
+/// What is active and pending (`ICSR`, B3.2.4); `active` is the exception that is being handled.
+fn icsr(exceptions: &Exceptions, active: u32) -> u32 {
+    let requested = exceptions.requested();
+    let of_core = PENDING_BITS.iter().filter(|(_, _, is_set)| *is_set);
+    let of_core: u32 =
+        of_core.map(|(bit, number, _)| u32::from(requested.has(*number)) << bit).sum();
+    let of_peripherals =
+        u32::from((0..EXCEPTIONS as u32).step_by(32).any(|first| requested.interrupts(first) != 0));
+    let most_urgent = exceptions.most_urgent().unwrap_or(0);
+    active
+        | u32::from(exceptions.is_base(active)) << 11
+        | most_urgent << 12
+        | of_peripherals << 22
+        | of_core
 }
 
 /// Priorities of four exceptions from this number on.
@@ -166,13 +195,23 @@ fn set_priorities(exceptions: &mut Exceptions, first: u32, value: u32, size: u32
     all.zip(value.to_le_bytes()).for_each(|(priority, byte)| *priority = byte & PRIORITY_MASK);
 }
 
-/// Which faults are enabled and active (`SHCSR`).
+/// Which exceptions of the core are enabled, pending and active (`SHCSR`, B3.2.13).
 fn shcsr(exceptions: &Exceptions) -> u32 {
-    let flag = |flags: &[bool; EXCEPTIONS], number: u32, bit: u32| u32::from(flags[number as usize]) << bit;
-    flag(&exceptions.active, MEMORY_FAULT, 0)
-        | flag(&exceptions.active, BUS_FAULT, 1)
-        | flag(&exceptions.active, USAGE_FAULT, 3)
-        | flag(&exceptions.enabled, MEMORY_FAULT, 16)
-        | flag(&exceptions.enabled, BUS_FAULT, 17)
-        | flag(&exceptions.enabled, USAGE_FAULT, 18)
+    let Exceptions { active, enabled, pending, .. } = exceptions;
+    let bits = [
+        (active, MEMORY_FAULT, 0),
+        (active, BUS_FAULT, 1),
+        (active, USAGE_FAULT, 3),
+        (active, SUPERVISOR_CALL, 7),
+        (active, PENDABLE_SERVICE, 10),
+        (active, SYSTEM_TICK, 11),
+        (pending, USAGE_FAULT, 12),
+        (pending, MEMORY_FAULT, 13),
+        (pending, BUS_FAULT, 14),
+        (pending, SUPERVISOR_CALL, 15),
+        (enabled, MEMORY_FAULT, 16),
+        (enabled, BUS_FAULT, 17),
+        (enabled, USAGE_FAULT, 18),
+    ];
+    bits.iter().map(|(set, number, bit)| u32::from(set.has(*number)) << bit).sum()
 }

@@ -20,8 +20,10 @@ pub struct Block {
 impl Block {
     /// Reads the instructions of a block from its bytes (ARMv7-M Architecture Reference Manual, A5.1).
     pub fn decode(address: u32, bytes: &[u8]) -> Self {
-        let halves: Vec<u16> = bytes.chunks_exact(2).map(|half| u16::from_le_bytes([half[0], half[1]])).collect();
-        let mut block = Self { address, offsets: Vec::new(), masks: false, signals: false, count: 0 };
+        let halves: Vec<u16> =
+            bytes.chunks_exact(2).map(|half| u16::from_le_bytes([half[0], half[1]])).collect();
+        let mut block =
+            Self { address, offsets: Vec::new(), masks: false, signals: false, count: 0 };
         let mut place = 0;
         while let Some(first) = halves.get(place) {
             block.offsets.push(2 * place as u16);
@@ -51,7 +53,9 @@ impl Blocks {
     /// The place of a block, which is decoded where it is new.
     pub fn place(&mut self, address: u32, size: u32, read: impl FnOnce(&mut [u8])) -> usize {
         let slot = (address.wrapping_sub(crate::FLASH) / 2) as usize;
-        if let Some((length, place)) = self.latest.get(slot) && *length == size {
+        if let Some((length, place)) = self.latest.get(slot)
+            && *length == size
+        {
             return *place as usize;
         }
         let place = *self.places.entry((address, size)).or_insert_with(|| {

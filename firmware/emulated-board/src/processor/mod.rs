@@ -7,16 +7,23 @@
 
 pub mod blocks;
 pub mod exceptions;
+pub mod faults;
+mod protecting;
+mod sleeping;
 mod stacking;
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use thiserror::Error;
-use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, Unicorn, uc_error};
+use unicorn_engine::{
+    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, UcHookId, Unicorn, uc_error,
+};
 
 use self::blocks::Blocks;
-use self::exceptions::{BUS_FAULT, Masks, SUPERVISOR_CALL, USAGE_FAULT};
+use self::exceptions::{Masks, Set};
+use self::faults::Fault;
+use crate::controller::protection::{Access, Level};
 use crate::controller::{Controller, Memory, Refused, ResetReason};
 use crate::image::Image;
 use crate::time::Time;
@@ -26,8 +33,6 @@ use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
 const NOWHERE: u64 = 0xF000_0000;
 /// Size of a page that Unicorn maps, bytes.
 const PAGE: usize = 4096;
-/// Cycles that the entry into an exception takes, and the return from it (Cortex-M4 TRM, 3.9.1).
-const EXCEPTION_CYCLES: u64 = 12;
 
 /// Something that the model does not know, and where the program asked for it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -57,12 +62,18 @@ pub enum Unknown {
 /// Why the core does not go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Halt {
-    /// It waits for an event, or for an interrupt.
+    /// It waits for an event.
+    Waiting,
+    /// It waits for an interrupt.
     Sleeping,
     /// It returns from an exception.
     Returning,
-    /// It takes an exception of its own.
-    Taking(u32),
+    /// It calls the supervisor.
+    Calling,
+    /// It faults.
+    Faulting(Fault),
+    /// It switches memory protection on or off.
+    Protecting,
     /// It asked the model for something that it does not know.
     Lost(u32, Refused, Option<u32>),
 }
@@ -102,6 +113,14 @@ struct State {
     masked_since: Option<Time>,
     /// Number of the exception that is being handled.
     active: u32,
+    /// Those that were pending when the core last looked.
+    requested: Set,
+    /// Who executes, for the protection of memory.
+    level: Level,
+    /// Whether a fault has locked the core up.
+    is_locked: bool,
+    /// What must be as it was before an access that faults.
+    undone: Option<protecting::Undone>,
     /// Why the core is stopped.
     halt: Option<Halt>,
     /// Counts.
@@ -126,14 +145,23 @@ impl State {
         if self.is_pending && self.controller.exceptions.next(masks(uc)).is_some() {
             return true;
         }
-        let read = |bytes: &mut [u8]| { let _ = uc.mem_read(address.into(), bytes); };
+        if !self.controller.system.protection.allows(address, 2, Access::Fetch, self.level) {
+            self.halt = Some(Halt::Faulting(Fault::PROTECTED_CODE));
+            return true;
+        }
+        let read = |bytes: &mut [u8]| {
+            let _ = uc.mem_read(address.into(), bytes);
+        };
         self.current = Some(self.blocks.place(address, size, read));
         false
     }
 
     /// Counts the block that was executed; whether it may have changed the masks.
     fn account(&mut self) -> bool {
-        let Some(block) = self.current.take().and_then(|place| self.blocks.all.get_mut(place)) else { return false };
+        let Some(block) = self.current.take().and_then(|place| self.blocks.all.get_mut(place))
+        else {
+            return false;
+        };
         block.count += 1;
         self.event |= block.signals;
         self.now = self.now + self.instruction.times(block.offsets.len() as u64);
@@ -144,11 +172,16 @@ impl State {
     fn look(&mut self) {
         self.due = self.controller.due(self.now);
         self.is_pending = self.controller.exceptions.waits();
+        let requested = self.controller.exceptions.requested();
+        self.event |=
+            self.controller.system.pending_is_event() && requested.has_other_than(self.requested);
+        self.requested = requested;
         self.instruction = Time::seconds(self.cycles / self.controller.hertz() as f64);
     }
 
-    /// Follows whether interrupts are off.
+    /// Follows whether interrupts are off, and who executes.
     fn watch_masks(&mut self, uc: &Unicorn<'_, ()>, address: u32) {
+        self.level = self.level(uc);
         match (masks(uc).all, self.masked_since) {
             (true, None) => self.masked_since = Some(self.now),
             (false, Some(since)) => {
@@ -156,6 +189,15 @@ impl State {
                 self.masked_since = None;
             }
             _ => {}
+        }
+    }
+
+    /// Who executes.
+    fn level(&self, uc: &Unicorn<'_, ()>) -> Level {
+        let control = uc.reg_read(RegisterARM::CONTROL).unwrap_or(0);
+        Level {
+            is_unprivileged: self.active == 0 && control & 1 != 0,
+            is_above_faults: self.controller.exceptions.is_locked(masks(uc)),
         }
     }
 
@@ -191,7 +233,9 @@ impl Memory for Ram<'_, '_> {
 
 /// Whether an address is in RAM.
 fn is_ram(address: u32) -> bool {
-    let within = |start: u32, bytes: usize| address.checked_sub(start).is_some_and(|at| (at as usize) < bytes);
+    let within = |start: u32, bytes: usize| {
+        address.checked_sub(start).is_some_and(|at| (at as usize) < bytes)
+    };
     within(RAM, RAM_BYTES) || within(RAM2, RAM2_BYTES)
 }
 
@@ -199,6 +243,8 @@ fn is_ram(address: u32) -> bool {
 pub struct Processor {
     uc: Unicorn<'static, ()>,
     state: Rc<RefCell<State>>,
+    /// What holds every access of data to the protection of memory, while it is on.
+    protecting: Option<UcHookId>,
     image: Rc<Image>,
 }
 
@@ -207,14 +253,18 @@ impl Processor {
     ///
     /// # Errors
     /// What Unicorn says.
-    pub fn new(image: Rc<Image>, mut controller: Controller, cycles: f64) -> Result<Self, uc_error> {
+    pub fn new(
+        image: Rc<Image>,
+        mut controller: Controller,
+        cycles: f64,
+    ) -> Result<Self, uc_error> {
         let mut uc = Unicorn::new(Arch::ARM, Mode::MCLASS | Mode::THUMB)?;
         uc.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
         let code = image.flash.len().next_multiple_of(PAGE);
         uc.mem_map(FLASH.into(), code as u64, Prot::READ | Prot::EXEC)?;
         uc.mem_write(FLASH.into(), &image.flash)?;
-        uc.mem_map(RAM.into(), RAM_BYTES as u64, Prot::READ | Prot::WRITE)?;
-        uc.mem_map(RAM2.into(), RAM2_BYTES as u64, Prot::READ | Prot::WRITE)?;
+        uc.mem_map(RAM.into(), RAM_BYTES as u64, Prot::ALL)?;
+        uc.mem_map(RAM2.into(), RAM2_BYTES as u64, Prot::ALL)?;
         controller.flash.array.burn(0, &image.flash);
         let state = Rc::new(RefCell::new(State {
             controller,
@@ -228,10 +278,14 @@ impl Processor {
             event: false,
             masked_since: None,
             active: 0,
+            requested: Set::default(),
+            level: Level::default(),
+            is_locked: false,
+            undone: None,
             halt: None,
             counts: Counts::default(),
         }));
-        let mut processor = Self { uc, state, image };
+        let mut processor = Self { uc, state, protecting: None, image };
         processor.hook()?;
         processor.map_store(code)?;
         processor.map_registers(0x4000_0000, 0x0003_0000)?;
@@ -253,26 +307,35 @@ impl Processor {
         let state = Rc::clone(&self.state);
         self.uc.add_intr_hook(move |uc, number| {
             let halt = match number {
-                2 => Halt::Taking(SUPERVISOR_CALL),
+                2 => Halt::Calling,
+                3 => Halt::Faulting(Fault::PROTECTED_CODE),
+                7 => Halt::Faulting(Fault::BREAKPOINT),
                 8 => Halt::Returning,
-                _ => Halt::Taking(USAGE_FAULT),
+                4 | 22 => Halt::Faulting(Fault::UNALIGNED),
+                _ => Halt::Faulting(Fault::UNDEFINED),
             };
             state.borrow_mut().halt(uc, halt);
         })?;
         let state = Rc::clone(&self.state);
         self.uc.add_insn_invalid_hook(move |uc| {
-            let halt = if is_wait(uc) { Halt::Sleeping } else { Halt::Taking(USAGE_FAULT) };
-            state.borrow_mut().halt(uc, halt);
-            halt == Halt::Sleeping
+            let mut state = state.borrow_mut();
+            let wait = state.wait(uc);
+            let is_thumb = uc.reg_read(RegisterARM::XPSR).unwrap_or(0) & 1 << 24 != 0;
+            let fault = if is_thumb { Fault::UNDEFINED } else { Fault::NO_THUMB };
+            state.halt(uc, wait.unwrap_or(Halt::Faulting(fault)));
+            wait.is_some()
         })?;
         let state = Rc::clone(&self.state);
         let faults = HookType::MEM_UNMAPPED | HookType::MEM_PROT;
-        self.uc.add_mem_hook(faults, 1, 0, move |uc, _: MemType, address, _, _| {
-            let mut state = state.borrow_mut();
-            // BFAR, and that the access was precise.
-            state.controller.system.faults[3] = address as u32;
-            state.controller.system.faults[0] |= 0x8200;
-            state.halt(uc, Halt::Taking(BUS_FAULT));
+        self.uc.add_mem_hook(faults, 1, 0, move |uc, kind: MemType, address, _, _| {
+            let address = address as u32;
+            let fault = match kind {
+                MemType::FETCH_UNMAPPED | MemType::FETCH_PROT | MemType::FETCH => {
+                    Fault::fetch(address)
+                }
+                _ => Fault::bus(address),
+            };
+            state.borrow_mut().undo(uc, fault, None);
             false
         })?;
         Ok(())
@@ -302,7 +365,10 @@ impl Processor {
         let write = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize, value: u64| {
             let mut state = writes.borrow_mut();
             let offset = code as u32 + offset as u32;
-            while let Some(until) = { let now = state.now; state.controller.flash.store(offset, value as u32, size as u32, now) } {
+            while let Some(until) = {
+                let now = state.now;
+                state.controller.flash.store(offset, value as u32, size as u32, now)
+            } {
                 state.now = until;
                 state.controller.advance(&mut Ram(uc), until);
             }
@@ -318,20 +384,32 @@ impl Processor {
         let read = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize| {
             let mut state = reads.borrow_mut();
             let (address, at) = (base + offset as u32, (state.now, state.active));
+            if state.is_barred(uc, address) {
+                return 0;
+            }
             let read = state.controller.read(&mut Ram(uc), address, size as u32, at);
             state.look();
             read.unwrap_or_else(|reason| {
                 state.halt(uc, Halt::Lost(address, reason, None));
                 0
-            }).into()
+            })
+            .into()
         };
         let write = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize, value: u64| {
             let mut state = writes.borrow_mut();
             let (address, now) = (base + offset as u32, state.now);
-            let written = state.controller.write(&mut Ram(uc), address, (value as u32, size as u32), now);
+            if state.is_barred(uc, address) {
+                return;
+            }
+            let was_protecting = state.controller.system.protection.is_on();
+            let written =
+                state.controller.write(&mut Ram(uc), address, (value as u32, size as u32), now);
             state.look();
             if let Err(reason) = written {
                 state.halt(uc, Halt::Lost(address, reason, Some(value as u32)));
+            }
+            if was_protecting != state.controller.system.protection.is_on() {
+                state.halt(uc, Halt::Protecting);
             }
         };
         self.uc.mmio_map(base.into(), size, Some(read), Some(write))
@@ -344,14 +422,23 @@ impl Processor {
     pub fn run(&mut self, until: Time) -> Result<(), Unknown> {
         while self.now() < until {
             self.restart();
+            if self.is_locked() {
+                self.idle(until);
+                continue;
+            }
             self.take_exceptions();
             self.execute(until)?;
             let halt = self.state.borrow_mut().halt.take();
             match halt {
+                Some(Halt::Waiting) => self.wait(until),
                 Some(Halt::Sleeping) => self.sleep(until),
                 Some(Halt::Returning) => self.leave(),
-                Some(Halt::Taking(number)) => self.fault(number),
-                Some(Halt::Lost(address, reason, value)) => return Err(self.lost(address, reason, value)),
+                Some(Halt::Calling) => self.call(),
+                Some(Halt::Faulting(fault)) => self.fault(fault),
+                Some(Halt::Protecting) => self.protect(),
+                Some(Halt::Lost(address, reason, value)) => {
+                    return Err(self.lost(address, reason, value));
+                }
                 None => {}
             }
         }
@@ -368,9 +455,12 @@ impl Processor {
         let pc = self.get(RegisterARM::PC);
         let ended = self.uc.emu_start(pc | 1, NOWHERE, 0, 0);
         let mut state = self.state.borrow_mut();
-        state.account();
-        if ended.is_ok() && state.halt.is_none() && is_wait(&self.uc) {
-            state.halt = Some(Halt::Sleeping);
+        if ended.is_ok() && state.halt.is_none() {
+            state.halt = state.wait(&self.uc);
+        }
+        if state.account() {
+            let pc = self.get(RegisterARM::PC) as u32;
+            state.watch_masks(&self.uc, pc);
         }
         match ended {
             Err(reason) if state.halt.is_none() => {
@@ -381,31 +471,10 @@ impl Processor {
         }
     }
 
-    /// Sleeps until an event, an exception or a moment.
-    fn sleep(&mut self, until: Time) {
-        let mut state = self.state.borrow_mut();
-        if std::mem::take(&mut state.event) {
-            return;
-        }
-        let start = state.now;
-        while state.now < until && state.controller.reset.is_none() {
-            let now = state.now;
-            // An interrupt that the mask holds back wakes too.
-            if state.controller.exceptions.waits() {
-                break;
-            }
-            let due = state.controller.due(now).min(until).max(now);
-            state.now = due;
-            state.controller.advance(&mut Ram(&mut self.uc), due);
-        }
-        let slept = state.now - start;
-        state.counts.asleep = state.counts.asleep + slept;
-        drop(state);
-        // A wait that has not ended is repeated.
-        if !self.state.borrow().controller.exceptions.waits() {
-            let pc = self.get(RegisterARM::PC);
-            self.set(RegisterARM::PC, pc.wrapping_sub(2) | 1);
-        }
+    /// Whether a fault that could not be taken has locked the core up, until a reset.
+    #[must_use]
+    pub fn is_locked(&self) -> bool {
+        self.state.borrow().is_locked
     }
 
     /// Time until now.
@@ -455,7 +524,8 @@ impl Processor {
 
     /// What was asked for, and where.
     fn lost(&self, address: u32, reason: Refused, value: Option<u32>) -> Unknown {
-        let access = value.map_or("a read of".to_owned(), |value| format!("a write of {value:#x} to"));
+        let access =
+            value.map_or("a read of".to_owned(), |value| format!("a write of {value:#x} to"));
         Unknown::Register { access, address, place: self.place(), reason }
     }
 
@@ -474,14 +544,9 @@ impl Processor {
             let now = state.now;
             state.controller.restart(reason, now);
             (state.halt, state.event, state.masked_since, state.active) = (None, false, None, 0);
+            (state.level, state.is_locked, state.undone) = (Level::default(), false, None);
         }
+        self.protect();
         self.start();
     }
-}
-
-/// Whether the core has just executed a wait for an event or an interrupt.
-fn is_wait(uc: &Unicorn<'_, ()>) -> bool {
-    let mut half = [0; 2];
-    let before = uc.reg_read(RegisterARM::PC).unwrap_or(0).wrapping_sub(2);
-    uc.mem_read(before, &mut half).is_ok() && matches!(u16::from_le_bytes(half), 0xBF20 | 0xBF30)
 }

@@ -157,6 +157,6 @@ impl Bench {
 
     /// Whether an interrupt of a peripheral waits.
     fn interrupts(&self, number: usize) -> bool {
-        self.controller.exceptions.lines[16 + number]
+        self.controller.exceptions.lines.has(16 + number as u32)
     }
 }

@@ -1,0 +1,124 @@
+//! Accesses that must not happen: the core is as it was before them, and nothing is written.
+//!
+//! Unicorn goes on to the end of an access that a hook refuses, and, among conditional instructions, beyond it. So
+//! registers and memory are put back. The protection of memory is a hook of every access of data, since its regions
+//! are smaller than Unicorn's pages; it is there only while protection is on.
+
+use std::rc::Rc;
+
+use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
+
+use super::faults::Fault;
+use super::{Halt, Processor, Ram, State};
+use crate::controller::Memory;
+use crate::controller::protection::Access;
+
+/// Registers that an instruction which faults leaves as they are.
+const KEPT: [RegisterARM; 17] = [
+    RegisterARM::R0,
+    RegisterARM::R1,
+    RegisterARM::R2,
+    RegisterARM::R3,
+    RegisterARM::R4,
+    RegisterARM::R5,
+    RegisterARM::R6,
+    RegisterARM::R7,
+    RegisterARM::R8,
+    RegisterARM::R9,
+    RegisterARM::R10,
+    RegisterARM::R11,
+    RegisterARM::R12,
+    RegisterARM::SP,
+    RegisterARM::LR,
+    RegisterARM::XPSR,
+    RegisterARM::PC,
+];
+
+/// What an access that faults must leave as it was.
+pub(super) struct Undone {
+    registers: [u64; KEPT.len()],
+    /// Address and bytes.
+    memory: Option<(u32, Vec<u8>)>,
+}
+
+impl State {
+    /// Stops the core for a fault of an access, which is undone; a write has so many bytes at an address.
+    pub(super) fn undo(
+        &mut self,
+        uc: &mut Unicorn<'_, ()>,
+        fault: Fault,
+        written: Option<(u32, usize)>,
+    ) {
+        if self.halt.is_some() {
+            return;
+        }
+        let memory = written.map(|(address, size)| {
+            let mut bytes = vec![0; size];
+            let _ = uc.mem_read(address.into(), &mut bytes);
+            (address, bytes)
+        });
+        self.undone = Some(Undone {
+            registers: KEPT.map(|register| uc.reg_read(register).unwrap_or(0)),
+            memory,
+        });
+        self.halt(uc, Halt::Faulting(fault));
+    }
+
+    /// Whether a register of the controller must not be accessed: the core stops already, or has no privilege for its
+    /// own registers (B3.1.1).
+    pub(super) fn is_barred(&mut self, uc: &mut Unicorn<'_, ()>, address: u32) -> bool {
+        if self.level.is_unprivileged && address >> 20 == 0xE00 {
+            self.halt(uc, Halt::Faulting(Fault::bus(address)));
+        }
+        matches!(self.halt, Some(Halt::Faulting(_)))
+    }
+
+    /// Holds an access of data to the protection of memory.
+    fn check(&mut self, uc: &mut Unicorn<'_, ()>, kind: MemType, address: u32, size: usize) {
+        let access = if kind == MemType::WRITE { Access::Write } else { Access::Read };
+        let protection = &self.controller.system.protection;
+        if let Some(refused) = protection.refuses(address, size as u32, access, self.level) {
+            let written = (access == Access::Write).then_some((address, size));
+            self.undo(uc, Fault::protected(refused), written);
+        }
+    }
+}
+
+impl Processor {
+    /// Puts back what an access that faulted has changed.
+    pub(super) fn put_back(&mut self) {
+        let Some(undone) = self.state.borrow_mut().undone.take() else { return };
+        if let Some((address, bytes)) = undone.memory {
+            Ram(&mut self.uc).write(address, &bytes);
+        }
+        for (register, value) in KEPT.iter().zip(undone.registers) {
+            // Writing the address also says that it is Thumb code, as all of it is.
+            self.set(*register, if *register == RegisterARM::PC { value | 1 } else { value });
+        }
+    }
+
+    /// Begins or ends to hold every access of data to the protection of memory.
+    pub(super) fn protect(&mut self) {
+        let is_on = self.state.borrow().controller.system.protection.is_on();
+        match (is_on, self.protecting.take()) {
+            (true, None) => {
+                let state = Rc::clone(&self.state);
+                let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, size, _| {
+                    state.borrow_mut().check(uc, kind, address as u32, size);
+                    true
+                };
+                self.protecting =
+                    self.uc.add_mem_hook(HookType::MEM_READ | HookType::MEM_WRITE, 1, 0, hook).ok();
+            }
+            (false, Some(hook)) => {
+                let _ = self.uc.remove_hook(hook);
+            }
+            (_, unchanged) => {
+                self.protecting = unchanged;
+                return;
+            }
+        }
+        // Code that was translated before does without the hook, or with it.
+        let _ = self.uc.ctl_flush_tb();
+    }
+}
