@@ -17,7 +17,8 @@ use std::rc::Rc;
 
 use thiserror::Error;
 use unicorn_engine::{
-    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, UcHookId, Unicorn, uc_error,
+    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, UcHookId,
+    Unicorn, uc_error,
 };
 
 use self::blocks::Blocks;
@@ -218,6 +219,23 @@ fn masks(uc: &Unicorn<'_, ()>) -> Masks {
     }
 }
 
+/// The addresses that are not in RAM, of which every access succeeds. A hook that covers RAM halves the speed:
+/// Unicorn then takes the long way for each write.
+const WITHOUT_RAM: [(u32, u32); 3] =
+    [(0, RAM2 - 1), (RAM2 + RAM2_BYTES as u32, RAM - 1), (RAM + RAM_BYTES as u32, u32::MAX)];
+
+/// Has Unicorn tell pages of code from those of data. Each write to a page that may hold code takes a long way round
+/// to look for code that it changes; it takes all RAM for such pages, since the default map of the core does.
+fn split_accesses(uc: &mut Unicorn<'_, ()>) -> Result<(), uc_error> {
+    uc.ctl_set_tlb_type(TlbType::VIRTUAL)?;
+    let entry = |_: &mut Unicorn<'_, ()>, paddr, kind| {
+        let perms =
+            if kind == MemType::FETCH { Prot::READ | Prot::EXEC } else { Prot::READ | Prot::WRITE };
+        Some(TlbEntry { paddr, perms })
+    };
+    uc.add_tlb_hook(1, 0, entry).map(|_| ())
+}
+
 /// The memory behind Unicorn.
 struct Ram<'u, 'a>(&'u mut Unicorn<'a, ()>);
 
@@ -263,6 +281,7 @@ impl Processor {
         let code = image.flash.len().next_multiple_of(PAGE);
         uc.mem_map(FLASH.into(), code as u64, Prot::READ | Prot::EXEC)?;
         uc.mem_write(FLASH.into(), &image.flash)?;
+        split_accesses(&mut uc)?;
         uc.mem_map(RAM.into(), RAM_BYTES as u64, Prot::ALL)?;
         uc.mem_map(RAM2.into(), RAM2_BYTES as u64, Prot::ALL)?;
         controller.flash.array.burn(0, &image.flash);
@@ -325,20 +344,23 @@ impl Processor {
             state.halt(uc, wait.unwrap_or(Halt::Faulting(fault)));
             wait.is_some()
         })?;
+        WITHOUT_RAM.into_iter().try_for_each(|(first, last)| self.hook_faults(first, last))
+    }
+
+    /// Hooks accesses that fault between two addresses.
+    fn hook_faults(&mut self, first: u32, last: u32) -> Result<(), uc_error> {
         let state = Rc::clone(&self.state);
-        let faults = HookType::MEM_UNMAPPED | HookType::MEM_PROT;
-        self.uc.add_mem_hook(faults, 1, 0, move |uc, kind: MemType, address, _, _| {
+        let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, _, _| {
             let address = address as u32;
             let fault = match kind {
-                MemType::FETCH_UNMAPPED | MemType::FETCH_PROT | MemType::FETCH => {
-                    Fault::fetch(address)
-                }
+                MemType::FETCH_UNMAPPED | MemType::FETCH_PROT => Fault::fetch(address),
                 _ => Fault::bus(address),
             };
             state.borrow_mut().undo(uc, fault, None);
             false
-        })?;
-        Ok(())
+        };
+        let kinds = HookType::MEM_UNMAPPED | HookType::MEM_PROT;
+        self.uc.add_mem_hook(kinds, first.into(), last.into(), hook).map(|_| ())
     }
 
     /// Maps the flash behind the image, which is read and written through the controller.
