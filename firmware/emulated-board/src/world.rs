@@ -105,6 +105,18 @@ impl World {
         Self { base: Some(base), truth_deg: Box::new(move |_| azimuth_deg), ..self }
     }
 
+    /// The world with other pages in its store.
+    #[must_use]
+    pub fn with_store(self, store: Vec<u8>) -> Self {
+        Self { store, ..self }
+    }
+
+    /// The world with another IMU on its base.
+    #[must_use]
+    pub fn with_base(self, base: BaseImu) -> Self {
+        Self { base: Some(base), ..self }
+    }
+
     /// The world with a truth, rad.
     fn with(self, truth_rad: impl Fn(Instant) -> f64 + 'static) -> Self {
         let truth_deg = Box::new(move |now| truth_rad(now).to_degrees().rem_euclid(360.0));
@@ -123,16 +135,31 @@ impl World {
     }
 }
 
+/// The store of an image in the flash of a controller of its own.
+pub type Store = FlashStore<PoweredFlash<Box<Cells>>>;
+
 /// The pages of a store that holds the record of these settings alone.
 fn store<C: CarrierSchedule>(settings: &Settings<C>) -> Result<Vec<u8>, String> {
+    stored(async |store| {
+        let saved = save(store, settings).await;
+        saved.map_err(|error| format!("the record of settings: {error}"))
+    })
+}
+
+/// The pages of a store into which this was written.
+///
+/// # Errors
+/// What the writer says, or that it waits for something.
+pub fn stored(
+    write: impl AsyncFnOnce(&mut Store) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
     let cells: Box<Cells> = vec![0; size_of::<Cells>()]
         .into_boxed_slice()
         .try_into()
         .map_err(|_| "no memory for the flash")?;
     let flash = Flash::erased(cells, hal_mock::flash::Times::TYPICAL, 0);
     let mut store = FlashStore::new(PoweredFlash::new(flash, 0), MapConfig::new(STORE));
-    let saved = at_once(save(&mut store, settings)).ok_or("the store waits")?;
-    saved.map_err(|error| format!("the record of settings: {error}"))?;
+    at_once(write(&mut store)).ok_or("the store waits")??;
     Ok(store.into_flash().flash.bytes()[STORE.start as usize..STORE.end as usize].to_vec())
 }
 

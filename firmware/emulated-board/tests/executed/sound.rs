@@ -1,0 +1,152 @@
+//! What holds today.
+
+use emulated_board::run::{Order, Report};
+use firmware::platform::Platform;
+
+use super::support::executed::{Executed, execute_anew, executed, executed_by};
+use super::support::images::root;
+
+/// Carriers whose alignment ends with an azimuth.
+const ALIGNED: [Platform; 3] = [Platform::Stage, Platform::Turntable, Platform::Vehicle];
+
+/// Distance of two azimuths the short way, °.
+fn distance(a: f64, b: f64) -> f64 {
+    ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs()
+}
+
+/// The azimuth and its 1σ, °.
+fn azimuth(report: &Report) -> (f64, f64) {
+    let [azimuth, sigma, _] = report.azimuth_deg.unwrap_or_else(|| panic!("{}", report.outcome));
+    (azimuth, sigma)
+}
+
+/// A figure of the budget.
+fn budget(name: &str) -> f64 {
+    let text = std::fs::read_to_string(root().join("firmware/budget.toml")).expect("the budget can be read");
+    let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name} in the budget"));
+    let figure = line.split(['=', '#']).nth(1).expect("a line of the budget has a figure");
+    figure.trim().replace('_', "").parse().expect("a figure of the budget is a number")
+}
+
+#[test]
+fn every_carrier_starts_with_its_record_and_its_chips_pass_their_self_tests() {
+    let axis = ["stage", "accelerometer", "encoder", "base", "gyro"];
+    let frames = ["outer frame", "inner frame", "accelerometer", "outer encoder", "inner encoder", "base", "gyro"];
+    let triad = ["accelerometer", "forward gyro", "right gyro", "down gyro"];
+    let spin = ["forward gyro", "up gyro", "right gyro", "up accelerometer", "right accelerometer"];
+    let chips: [&[&str]; 5] = [&axis, &frames, &axis, &triad, &spin];
+    for (carrier, chips) in Platform::ALL.into_iter().zip(chips) {
+        let shown = executed(carrier, 1);
+        let first = |count| shown.log.iter().map(|entry| entry.words.clone()).take(count).collect::<Vec<_>>();
+        let begin = [
+            "board: started by Supply, clock follows its crystal: true".to_owned(),
+            format!("board: carrier {carrier}, latitude 47.58°, settings of a record in flash"),
+        ];
+        assert_eq!(first(2), begin);
+        let passed: Vec<_> = shown.lines("identity and self-test passed, configured").collect();
+        let passed = passed.iter().map(|entry| entry.words.split(": ").next().unwrap_or_default());
+        assert_eq!(passed.collect::<Vec<_>>(), chips, "{carrier}");
+    }
+}
+
+#[test]
+fn no_chip_and_no_bus_is_used_as_its_data_sheet_forbids() {
+    for carrier in Platform::ALL {
+        assert_eq!(executed(carrier, 1).report.violations, [""; 0], "{carrier}");
+    }
+}
+
+#[test]
+fn azimuths_are_within_three_sigma_of_the_truth() {
+    for (carrier, seed) in ALIGNED.into_iter().flat_map(|carrier| [(carrier, 1), (carrier, 2)]) {
+        let report = &executed(carrier, seed).report;
+        let (azimuth, sigma) = azimuth(report);
+        let error = distance(azimuth, report.truth_deg);
+        assert!(error <= 3.0 * sigma, "{carrier}, seed {seed}: {error}° at a σ of {sigma}°");
+    }
+}
+
+#[test]
+fn an_azimuth_hardly_depends_on_the_cycles_of_an_instruction() {
+    for carrier in [Platform::Stage, Platform::Vehicle] {
+        let usual = Order::usual(carrier, 1);
+        let quick = executed_by(&Order { cycles: 0.5 * usual.cycles, ..usual });
+        let ((azimuth, sigma), (quick, _)) = (azimuth(&executed_by(&usual).report), azimuth(&quick.report));
+        let change = distance(azimuth, quick);
+        assert!(change <= 0.3 * sigma, "{carrier}: {change}° at a σ of {sigma}°");
+    }
+}
+
+#[test]
+fn an_order_that_is_executed_twice_shows_the_same() {
+    let text = |shown: &Executed| {
+        let report = serde_json::to_string(&shown.report).expect("a report is written as JSON");
+        (report, shown.text(), shown.link.clone())
+    };
+    let order = Order::usual(Platform::TwoFrame, 1);
+    assert_eq!(text(&executed_by(&order)), text(&execute_anew(&order)));
+}
+
+#[test]
+fn flash_and_static_ram_of_every_image_are_within_the_budget() {
+    for carrier in Platform::ALL {
+        let Report { flash_bytes, static_bytes, .. } = executed(carrier, 1).report;
+        assert!(flash_bytes as f64 <= budget("board_flash_bytes"), "{carrier}: {flash_bytes} bytes of flash");
+        assert!(f64::from(static_bytes) <= budget("board_static_ram_bytes"), "{carrier}: {static_bytes} bytes of RAM");
+    }
+}
+
+#[test]
+fn conversions_that_are_read_and_lost_are_those_that_the_converters_make() {
+    let rates = [(Platform::Stage, 400.0), (Platform::Turntable, 400.0), (Platform::TwoFrame, 400.0)];
+    let rates = rates.into_iter().chain([(Platform::Vehicle, 400.0), (Platform::Spin, 14_400.0)]);
+    for (carrier, hertz) in rates {
+        let shown = executed(carrier, 1);
+        let afterwards = if carrier == Platform::Spin { 0.0 } else { Order::usual(carrier, 1).afterwards };
+        let end = shown.report.seconds + afterwards - shown.report.start_seconds;
+        // A converter converts from its configuration on.
+        let passed = shown.lines("identity and self-test passed, configured");
+        let converters = passed.filter(|entry| {
+            entry.words.contains("gyro") || carrier == Platform::Spin && entry.words.contains("accelerometer")
+        });
+        let made: f64 = converters.map(|entry| (end - entry.seconds) * hertz).sum();
+        let counted: u64 = shown.report.service.iter().map(|service| service.read + service.lost).sum();
+        let ratio = counted as f64 / made;
+        assert!((0.99..=1.01).contains(&ratio), "{carrier}: {counted} conversions, of {made} that are made");
+    }
+}
+
+#[test]
+fn instructions_and_sleep_together_are_the_time_of_the_measurement() {
+    for carrier in ALIGNED {
+        let Report { samples, instructions_per_sample, cycles_per_instruction, idle, .. } =
+            executed(carrier, 1).report;
+        let parts: f64 = executed(carrier, 1).report.instructions_by_origin.values().sum();
+        assert!((parts / instructions_per_sample - 1.0).abs() < 1e-9, "{carrier}: {parts} in parts");
+        // 122 periods of the crystal where there were 4 MHz, times 20.
+        let hertz = 20.0 * 122.0 * 32_768.0;
+        let busy = instructions_per_sample * cycles_per_instruction / hertz * 400.0;
+        assert!(((busy + idle) - 1.0).abs() < 0.01, "{carrier}: {busy} busy, {idle} asleep, {samples} samples");
+    }
+}
+
+#[test]
+fn a_heading_in_flash_takes_eleven_rows() {
+    for carrier in [Platform::Stage, Platform::Vehicle] {
+        let [rows, pages] = executed(carrier, 1).report.flash_use;
+        assert!(rows > 0 && rows % 11 == 0 && pages == 0, "{carrier}: {rows} rows, {pages} pages");
+    }
+}
+
+#[test]
+fn a_vehicle_loses_nothing_until_its_conclusion_but_what_its_converters_convert_before_they_are_in_step() {
+    let shown = executed(Platform::Vehicle, 1);
+    let [forward, right, down] = ["forward", "right", "down"]
+        .map(|gyro| shown.line(&format!("{gyro} gyro: identity and self-test passed")).seconds);
+    let unread = 400.0 * ((down - forward) + (down - right));
+    let lost = shown.report.service[0].lost as f64;
+    assert!((lost - unread).abs() <= 3.0, "{lost} conversions are lost, {unread} came before all converters ran");
+    let measuring = shown.link.iter().take_while(|line| !line.starts_with("azimuth"));
+    assert!(measuring.clone().count() > 90, "the link says something every second");
+    measuring.for_each(|line| assert!(line.ends_with(", faults 0"), "{line}"));
+}

@@ -1,0 +1,43 @@
+//! The store at work while samples come. The driver of the flash polls, and no task runs meanwhile.
+
+use emulated_board::run::Order;
+use firmware::platform::Platform;
+
+use super::support::bench::Bench;
+use super::support::defect::hold;
+use super::support::worlds::short_stage;
+
+/// Headings that fill the page which has the settings.
+const FULL: usize = 20;
+/// Rows of the settings, and of a heading.
+const ROWS: [u64; 2] = [26, 11];
+
+/// The longest time for which a conversion waits when the first heading is saved into a store with so many others, ms;
+/// the rows that are programmed then, and the pages that are erased.
+fn saved(headings: usize) -> (f64, u64, u64) {
+    let mut bench = Bench::new(&Order::usual(Platform::Stage, 1), short_stage(true, headings));
+    bench.run_until("handed over", 90.0);
+    bench.run(0.2);
+    bench.longest_wait();
+    bench.run(3.0);
+    let used = bench.execution.processor.with_controller(|controller| controller.flash.used);
+    (1e3 * bench.longest_wait(), used.rows, used.pages)
+}
+
+#[test]
+#[should_panic(expected = "between 2.6 and 3.3 ms acquisition waits for a heading that is saved")]
+fn acquisition_waits_for_a_heading_that_is_saved_for_less_than_a_period() {
+    let (wait, rows, pages) = saved(0);
+    assert_eq!((rows, pages), (ROWS[1], 0));
+    hold(wait, 0.0..=2.5, 2.6..=3.3, "ms acquisition waits for a heading that is saved");
+}
+
+/// A quarter of it is the erasure; the rest goes into looking, for each item of the old page, whether a later one takes
+/// its place.
+#[test]
+#[should_panic(expected = "between 80 and 100 ms acquisition waits while the store makes room in another page")]
+fn acquisition_waits_for_a_page_that_is_erased_for_less_than_a_period() {
+    let (wait, rows, pages) = saved(FULL);
+    assert!(rows >= ROWS[0] + ROWS[1] && pages == 1, "{rows} rows, {pages} pages: no item was moved");
+    hold(wait, 0.0..=2.5, 80.0..=100.0, "ms acquisition waits while the store makes room in another page");
+}

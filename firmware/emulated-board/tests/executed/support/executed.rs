@@ -1,0 +1,92 @@
+//! Executions of images, each made once.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock};
+
+use emulated_board::probe::Line;
+use emulated_board::run::{Order, Report, execute};
+use emulated_board::world::World;
+use firmware::platform::Platform;
+
+use super::images::image;
+
+/// A line of the log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Time as the image states it, s from the start of its clock.
+    pub seconds: f64,
+    /// Words.
+    pub words: String,
+}
+
+impl Entry {
+    /// A line as the probe decodes it.
+    pub fn of(line: &Line) -> Self {
+        Self { seconds: line.time.parse().expect("a line begins with its time"), words: line.words.clone() }
+    }
+}
+
+/// What an execution showed.
+#[derive(Clone, Debug)]
+pub struct Executed {
+    /// What it measured.
+    pub report: Report,
+    /// Lines of the log.
+    pub log: Vec<Entry>,
+    /// Lines of the link, one a second.
+    pub link: Vec<String>,
+}
+
+impl Executed {
+    /// Lines of the log that contain these words.
+    pub fn lines(&self, words: &str) -> impl Iterator<Item = &Entry> {
+        self.log.iter().filter(move |entry| entry.words.contains(words))
+    }
+
+    /// The first line of the log that contains these words.
+    #[track_caller]
+    pub fn line(&self, words: &str) -> &Entry {
+        self.lines(words).next().unwrap_or_else(|| panic!("no line of the log contains {words:?}:\n{}", self.text()))
+    }
+
+    /// The log as text.
+    pub fn text(&self) -> String {
+        self.log.iter().map(|entry| format!("{:10.3} {}\n", entry.seconds, entry.words)).collect()
+    }
+}
+
+/// The order's image in a world.
+pub fn execute_in(order: &Order, world: World) -> Executed {
+    let (mut log, mut link) = (Vec::new(), Vec::new());
+    let on_link = |sent: &[u8]| {
+        link.extend_from_slice(sent);
+        Vec::new()
+    };
+    let report = execute(&image(order.carrier), order, world, |line| log.push(Entry::of(line)), on_link);
+    let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
+    let link = String::from_utf8(link).expect("the link carries text");
+    Executed { report, log, link: link.lines().map(str::to_owned).collect() }
+}
+
+/// The order's image in its usual world, without looking whether it was executed before.
+pub fn execute_anew(order: &Order) -> Executed {
+    execute_in(order, World::new(order.carrier, order.seed).expect("the usual world can be made"))
+}
+
+/// An execution that is made at most once.
+type Slot = Arc<OnceLock<Arc<Executed>>>;
+
+/// The order's image in its usual world; an order that was executed before is not executed again.
+pub fn executed_by(order: &Order) -> Arc<Executed> {
+    static ALL: Mutex<Option<HashMap<String, Slot>>> = Mutex::new(None);
+    let slot = {
+        let mut all = ALL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        Arc::clone(all.get_or_insert_default().entry(format!("{order:?}")).or_default())
+    };
+    Arc::clone(slot.get_or_init(|| Arc::new(execute_anew(order))))
+}
+
+/// The usual execution of a carrier by the seed of its world.
+pub fn executed(carrier: Platform, seed: u64) -> Arc<Executed> {
+    executed_by(&Order::usual(carrier, seed))
+}
