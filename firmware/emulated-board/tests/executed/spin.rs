@@ -18,20 +18,39 @@ fn shown(cycles: f64) -> (f64, f64) {
 }
 
 #[test]
-#[should_panic(expected = "between 0.77 and 0.82 of the conversions are lost at one cycle an instruction")]
+#[should_panic(
+    expected = "between 0.77 and 0.82 of the conversions are lost at one cycle an instruction"
+)]
 fn no_conversion_is_lost_at_one_cycle_an_instruction() {
-    hold(shown(1.0).0, 0.0..=0.0, 0.77..=0.82, "of the conversions are lost at one cycle an instruction");
+    hold(
+        shown(1.0).0,
+        0.0..=0.0,
+        0.77..=0.82,
+        "of the conversions are lost at one cycle an instruction",
+    );
 }
 
 #[test]
-#[should_panic(expected = "between 0.83 and 0.87 of the conversions are lost at 1.4 cycles an instruction")]
+#[should_panic(
+    expected = "between 0.83 and 0.87 of the conversions are lost at 1.4 cycles an instruction"
+)]
 fn no_conversion_is_lost_at_1_4_cycles_an_instruction() {
-    hold(shown(1.4).0, 0.0..=0.0, 0.83..=0.87, "of the conversions are lost at 1.4 cycles an instruction");
+    hold(
+        shown(1.4).0,
+        0.0..=0.0,
+        0.83..=0.87,
+        "of the conversions are lost at 1.4 cycles an instruction",
+    );
 }
 
 /// 80 MHz, 72 000 conversions a second, 1.4 cycles an instruction: 793 instructions for each.
 #[test]
 #[should_panic(expected = "between 5200 and 5800 instructions a conversion takes that is read")]
 fn a_conversion_takes_790_instructions_at_most() {
-    hold(shown(1.4).1, 0.0..=790.0, 5200.0..=5800.0, "instructions a conversion takes that is read");
+    hold(
+        shown(1.4).1,
+        0.0..=790.0,
+        5200.0..=5800.0,
+        "instructions a conversion takes that is read",
+    );
 }

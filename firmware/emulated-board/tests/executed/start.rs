@@ -22,10 +22,15 @@ fn interrupts_are_off_for_a_millisecond_at_most() {
 
 /// The watchdog ends the wait for the crystal, and what it found is forgotten with the supply.
 #[test]
-#[should_panic(expected = "between 8 and 9 s a board with a dead crystal takes to the first line of its log, at each start")]
+#[should_panic(
+    expected = "between 8 and 9 s a board with a dead crystal takes to the first line of its log, at each start"
+)]
 fn a_board_with_a_dead_crystal_starts_within_three_seconds() {
     let order = Order { has_crystal: false, ..Order::usual(Platform::Vehicle, 1) };
-    let mut bench = Bench::new(&order, World::new(order.carrier, order.seed).expect("the usual world can be made"));
+    let mut bench = Bench::new(
+        &order,
+        World::new(order.carrier, order.seed).expect("the usual world can be made"),
+    );
     let words = "board: started by Watchdog, clock follows its crystal: false";
     let starts = [0, 1].map(|_| {
         let supplied = bench.now();
@@ -44,10 +49,14 @@ fn a_board_with_a_dead_crystal_starts_within_three_seconds() {
 const CHIP: &str = "STM32L475VGTx";
 
 #[test]
-#[should_panic(expected = "cargo board names the chip STM32L475VG, which probe-rs lists as STM32L475VGTx")]
+#[should_panic(
+    expected = "cargo board names the chip STM32L475VG, which probe-rs lists as STM32L475VGTx"
+)]
 fn cargo_board_names_the_chip_as_probe_rs_lists_it() {
-    let text = fs::read_to_string(root().join(".cargo/config.toml")).expect("cargo's configuration can be read");
-    let line = text.lines().find(|line| line.starts_with("board = ")).expect("there is an alias `board`");
+    let text = fs::read_to_string(root().join(".cargo/config.toml"))
+        .expect("cargo's configuration can be read");
+    let line =
+        text.lines().find(|line| line.starts_with("board = ")).expect("there is an alias `board`");
     let chip = line.split("--chip ").nth(1).and_then(|rest| rest.split(['"', ' ']).next());
     let chip = chip.expect("the runner names a chip");
     assert!(chip == CHIP, "cargo board names the chip {chip}, which probe-rs lists as {CHIP}");

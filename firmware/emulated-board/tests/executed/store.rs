@@ -19,7 +19,7 @@ fn saved(headings: usize) -> (f64, u64, u64) {
     bench.run_until("handed over", 90.0);
     bench.run(0.2);
     bench.longest_wait();
-    bench.run(3.0);
+    bench.run(5.0);
     let used = bench.execution.processor.with_controller(|controller| controller.flash.used);
     (1e3 * bench.longest_wait(), used.rows, used.pages)
 }
@@ -35,9 +35,19 @@ fn acquisition_waits_for_a_heading_that_is_saved_for_less_than_a_period() {
 /// A quarter of it is the erasure; the rest goes into looking, for each item of the old page, whether a later one takes
 /// its place.
 #[test]
-#[should_panic(expected = "between 80 and 100 ms acquisition waits while the store makes room in another page")]
+#[should_panic(
+    expected = "between 80 and 100 ms acquisition waits while the store makes room in another page"
+)]
 fn acquisition_waits_for_a_page_that_is_erased_for_less_than_a_period() {
     let (wait, rows, pages) = saved(FULL);
-    assert!(rows >= ROWS[0] + ROWS[1] && pages == 1, "{rows} rows, {pages} pages: no item was moved");
-    hold(wait, 0.0..=2.5, 80.0..=100.0, "ms acquisition waits while the store makes room in another page");
+    assert!(
+        rows >= ROWS[0] + ROWS[1] && pages == 1,
+        "{rows} rows, {pages} pages: no item was moved"
+    );
+    hold(
+        wait,
+        0.0..=2.5,
+        80.0..=100.0,
+        "ms acquisition waits while the store makes room in another page",
+    );
 }

@@ -20,7 +20,8 @@ pub struct Bench {
 impl Bench {
     /// The order's image in a world, as its supply comes up.
     pub fn new(order: &Order, world: World) -> Self {
-        let execution = Execution::new(&image(order.carrier), order, world).expect("the image can be executed");
+        let execution =
+            Execution::new(&image(order.carrier), order, world).expect("the image can be executed");
         Self { execution, log: Vec::new(), link: String::new() }
     }
 
@@ -33,7 +34,10 @@ impl Bench {
     pub fn step(&mut self) {
         let lines = self.execution.step().expect("the model knows what the image does");
         self.log.extend(lines.iter().map(Entry::of));
-        let sent = self.execution.processor.with_controller(|controller| std::mem::take(&mut controller.usart.sent));
+        let sent = self
+            .execution
+            .processor
+            .with_controller(|controller| std::mem::take(&mut controller.usart.sent));
         self.link += &String::from_utf8_lossy(&sent);
     }
 
@@ -64,7 +68,8 @@ impl Bench {
 
     /// How long conversions waited at most to be read since this was asked for the last time, s.
     pub fn longest_wait(&self) -> f64 {
-        let served = self.execution.processor.with_controller(|controller| controller.wiring.served());
+        let served =
+            self.execution.processor.with_controller(|controller| controller.wiring.served());
         Time::as_seconds(served.longest.0)
     }
 

@@ -11,18 +11,20 @@
 use std::ops::RangeInclusive;
 
 /// Holds a figure to what it should be. Where it is not, but within the band that is known, panics with
-/// "between … and …" and the words; anywhere else with other words.
+/// "between … and …", or "exactly …" where the band is one number, and the words; anywhere else with other words.
 #[track_caller]
 pub fn hold(figure: f64, should: RangeInclusive<f64>, known: RangeInclusive<f64>, words: &str) {
     if should.contains(&figure) {
         return;
     }
     let (least, most) = known.into_inner();
-    assert!(
-        !(least..=most).contains(&figure),
-        "between {least} and {most} {words}: {figure}, not {} to {}",
-        should.start(),
-        should.end()
-    );
+    let band = if least < most {
+        format!("between {least} and {most}")
+    } else {
+        format!("exactly {least}")
+    };
+    if (least..=most).contains(&figure) {
+        panic!("{band} {words}: {figure}, not {} to {}", should.start(), should.end());
+    }
     panic!("{figure} {words}: neither as it should be nor as it is known");
 }

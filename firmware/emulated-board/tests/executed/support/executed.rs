@@ -22,7 +22,10 @@ pub struct Entry {
 impl Entry {
     /// A line as the probe decodes it.
     pub fn of(line: &Line) -> Self {
-        Self { seconds: line.time.parse().expect("a line begins with its time"), words: line.words.clone() }
+        Self {
+            seconds: line.time.parse().expect("a line begins with its time"),
+            words: line.words.clone(),
+        }
     }
 }
 
@@ -46,7 +49,9 @@ impl Executed {
     /// The first line of the log that contains these words.
     #[track_caller]
     pub fn line(&self, words: &str) -> &Entry {
-        self.lines(words).next().unwrap_or_else(|| panic!("no line of the log contains {words:?}:\n{}", self.text()))
+        self.lines(words)
+            .next()
+            .unwrap_or_else(|| panic!("no line of the log contains {words:?}:\n{}", self.text()))
     }
 
     /// The log as text.
@@ -62,7 +67,8 @@ pub fn execute_in(order: &Order, world: World) -> Executed {
         link.extend_from_slice(sent);
         Vec::new()
     };
-    let report = execute(&image(order.carrier), order, world, |line| log.push(Entry::of(line)), on_link);
+    let report =
+        execute(&image(order.carrier), order, world, |line| log.push(Entry::of(line)), on_link);
     let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
     let link = String::from_utf8(link).expect("the link carries text");
     Executed { report, log, link: link.lines().map(str::to_owned).collect() }
@@ -76,14 +82,19 @@ pub fn execute_anew(order: &Order) -> Executed {
 /// An execution that is made at most once.
 type Slot = Arc<OnceLock<Arc<Executed>>>;
 
-/// The order's image in its usual world; an order that was executed before is not executed again.
-pub fn executed_by(order: &Order) -> Arc<Executed> {
+/// An execution by its name; one that was made before is not made again.
+pub fn once(name: String, make: impl FnOnce() -> Executed) -> Arc<Executed> {
     static ALL: Mutex<Option<HashMap<String, Slot>>> = Mutex::new(None);
     let slot = {
         let mut all = ALL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        Arc::clone(all.get_or_insert_default().entry(format!("{order:?}")).or_default())
+        Arc::clone(all.get_or_insert_default().entry(name).or_default())
     };
-    Arc::clone(slot.get_or_init(|| Arc::new(execute_anew(order))))
+    Arc::clone(slot.get_or_init(|| Arc::new(make())))
+}
+
+/// The order's image in its usual world.
+pub fn executed_by(order: &Order) -> Arc<Executed> {
+    once(format!("{order:?}"), || execute_anew(order))
 }
 
 /// The usual execution of a carrier by the seed of its world.

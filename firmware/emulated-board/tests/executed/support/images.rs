@@ -45,7 +45,14 @@ fn build_all() -> PathBuf {
 fn build(carrier: Platform) -> PathBuf {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")));
     command.current_dir(root()).args(["build", "--locked", "--package", "board-b-l475e-iot01a"]);
-    command.args(["--target", "thumbv7em-none-eabihf", "--profile", "firmware", "--features", carrier.name()]);
+    command.args([
+        "--target",
+        "thumbv7em-none-eabihf",
+        "--profile",
+        "firmware",
+        "--features",
+        carrier.name(),
+    ]);
     command.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit());
     let output = command.output().expect("cargo can be started");
     assert!(output.status.success(), "the image of {carrier} does not build: cargo says why");

@@ -1,11 +1,35 @@
 //! Worlds of the tests beside the usual ones.
 
+use std::sync::Arc;
+
+use embassy_time::Instant;
+use emulated_board::run::Order;
+use emulated_board::wiring::board::BaseImu;
 use emulated_board::world::{World, stored};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
 use firmware::settings::save;
 use firmware::storage::HEADING;
+use hal_mock::chip::Single;
+use hal_mock::lsm6dsl::Lsm6dsl;
+use hal_mock::plant::base::{Base, CoarseConfiguration};
+use hal_mock::plant::sway::SwayConfiguration;
 use simulated::scenario::Scenario;
+
+use super::executed::{Executed, execute_in, once};
+
+/// Address of the LSM6DSL on the board, whose pin SA0 is low (data sheet, 6.1.1).
+const ADDRESS: u8 = 0x6A;
+/// An LSM6DSL of its data sheet, whose accelerometers are calibrated to 2 mg.
+const CALIBRATED: CoarseConfiguration = CoarseConfiguration {
+    rate_hz: 208.0,
+    rate_noise_mdps_sqrt_hz: 4.0,
+    rate_bias_sigma_deg_s: 3.0,
+    force_noise_ug_sqrt_hz: 90.0,
+    force_bias_sigma_mg: 2.0,
+    scale_sigma: 0.005,
+    lever_m: [0.1, 0.0, -0.4],
+};
 
 /// Bytes of a heading in the store: a version, eight numbers, a checksum.
 const HEADING_BYTES: usize = 72;
@@ -29,4 +53,23 @@ pub fn short_stage(holds: bool, headings: usize) -> World {
         Ok(())
     });
     usual(Platform::Stage).with_store(store.expect("a store takes settings and headings"))
+}
+
+/// Two frames on a base whose IMU has accelerometers as calibrated as their image states, until the result.
+pub fn calibrated_two_frames() -> Arc<Executed> {
+    once("calibrated two frames".to_owned(), || {
+        let order = Order { afterwards: 0.0, ..Order::usual(Platform::TwoFrame, 1) };
+        execute_in(
+            &order,
+            usual(Platform::TwoFrame)
+                .with_base(calibrated(&simulated::executed::two_frames(1).base)),
+        )
+    })
+}
+
+/// The calibrated IMU on the base of a scenario.
+fn calibrated(scenario: &Scenario) -> BaseImu {
+    let sway = SwayConfiguration::default();
+    let environment = Base::new(&scenario.instruments(), &sway, &CALIBRATED, None, scenario.seed);
+    Single { chip: Lsm6dsl::new(Instant::MIN, ADDRESS, 1.0), environment }
 }
