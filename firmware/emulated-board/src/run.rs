@@ -12,14 +12,12 @@ use crate::controller::{Controller, ResetReason};
 use crate::image::Image;
 use crate::measure::{Origin, Origins, Snapshot};
 use crate::probe::{Line, Probe};
-use crate::processor::{Processor, Unknown};
+use crate::processor::{PAINT, Processor, Unknown};
 use crate::time::Time;
 use crate::world::World;
 
 /// How often the probe looks, and the link is served.
 const LOOK: Time = Time::microseconds(1000);
-/// What chance leaves in RAM before the start, so that a stack shows how deep it was.
-const PAINT: u8 = 0xA5;
 
 /// What is executed.
 #[derive(Clone, Copy, Debug)]
@@ -96,9 +94,9 @@ impl Execution {
         stack_start - stack_end - untouched as u32
     }
 
-    /// Takes the supply away for a moment: RAM is lost, the chips of the board start again with it.
+    /// Takes the supply of the controller away for a moment: RAM is lost, what is written into the flash is torn. The
+    /// chips keep theirs.
     pub fn lose_supply(&mut self) {
-        self.processor.poke(crate::RAM, &vec![PAINT; crate::RAM_BYTES]);
         self.processor.reset(ResetReason::Supply);
     }
 }

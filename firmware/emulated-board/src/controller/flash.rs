@@ -57,6 +57,15 @@ pub struct FlashUse {
     pub pages: u64,
 }
 
+/// A loss of supply that is injected: within an operation, at its beginning or at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// How many operations, rows and pages, are begun before the one in which it falls.
+    pub after: u64,
+    /// Which part of that operation is over: 0 at its beginning, 1 where it has just been completed.
+    pub reached: f64,
+}
+
 /// The flash with its registers.
 pub struct Flash {
     /// The cells.
@@ -79,8 +88,10 @@ pub struct Flash {
     pub is_broken: bool,
     /// What was done to it.
     pub used: FlashUse,
-    /// The supply is lost when so many operations have been begun: a fault that is injected.
-    pub cut_after: Option<u64>,
+    /// When the supply is to be lost: a fault that is injected. It is over with the reset that follows.
+    pub cut: Option<Cut>,
+    /// When that is, once its operation has begun.
+    cut_at: Time,
 }
 
 /// The time of the cells.
@@ -107,7 +118,8 @@ impl Flash {
             is_running: false,
             is_broken: false,
             used: FlashUse::default(),
-            cut_after: None,
+            cut: None,
+            cut_at: Time::NEVER,
         }
     }
 
@@ -117,6 +129,7 @@ impl Flash {
         (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK, 0);
         (self.is_half_open, self.half, self.is_running, self.is_broken) =
             (false, None, false, false);
+        (self.cut, self.cut_at) = (None, Time::NEVER);
     }
 
     /// Wait states of a fetch.
@@ -133,13 +146,30 @@ impl Flash {
         is_busy
     }
 
-    /// When the operation that is under way ends.
+    /// When the operation that is under way ends, or the supply is lost.
     pub fn due(&mut self, now: Time) -> Time {
         if !self.is_running {
-            return Time::NEVER;
+            return self.cut_at;
         }
         let busy = self.array.busy(since_start(now));
-        busy.map_or(now, |busy| Time::nanoseconds(busy.until.as_nanos() as u64))
+        busy.map_or(now, |busy| Time::nanoseconds(busy.until.as_nanos() as u64)).min(self.cut_at)
+    }
+
+    /// Whether the supply is lost.
+    pub fn is_cut(&self, now: Time) -> bool {
+        self.cut_at <= now
+    }
+
+    /// An operation has begun. The supply may be lost in it.
+    fn run(&mut self, now: Time) {
+        self.is_running = true;
+        if let Some(Cut { reached, .. }) =
+            self.cut.take_if(|cut| cut.after < self.used.rows + self.used.pages)
+            && let Some(busy) = self.array.busy(since_start(now))
+        {
+            let lasts = busy.until.saturating_sub(since_start(now));
+            self.cut_at = now + Time::seconds(lasts.mul_f64(reached).as_secs_f64());
+        }
     }
 
     /// Completes what has ended.
@@ -219,7 +249,7 @@ impl Flash {
         match begun {
             Ok(()) => {
                 self.used.pages += 1;
-                self.is_running = true;
+                self.run(now);
             }
             Err(_) => self.status |= SEQUENCE,
         }
@@ -243,7 +273,7 @@ impl Flash {
                 match self.array.program(start, data, since_start(now)) {
                     Ok(()) => {
                         self.used.rows += 1;
-                        self.is_running = true;
+                        self.run(now);
                     }
                     Err(NotProgrammed::Programmed) => self.status |= PROGRAMMED,
                     Err(_) => self.status |= SEQUENCE,
@@ -281,11 +311,6 @@ impl Flash {
             self.ecc = (self.ecc & TELLS_FINDING) | bank | row;
         }
         self.ecc |= flag;
-    }
-
-    /// Operations that were begun.
-    pub fn operations(&self) -> u64 {
-        self.used.rows + self.used.pages
     }
 }
 

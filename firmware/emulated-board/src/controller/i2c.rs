@@ -67,6 +67,9 @@ pub struct I2c {
     received: Option<u8>,
     /// Whether the bus is this controller's, between a start and a stop.
     is_owner: bool,
+    /// Whether a device holds the clock line low, so that nothing on the wires ends: a fault that is injected, until a
+    /// reset.
+    pub hangs: bool,
 }
 
 impl I2c {
@@ -85,7 +88,8 @@ impl I2c {
 
     /// When what is on the wires ends.
     pub fn due(&self) -> Time {
-        self.wire.map_or(Time::NEVER, |(_, [_, end])| end)
+        let wire = self.wire.filter(|_| !self.hangs);
+        wire.map_or(Time::NEVER, |(_, [_, end])| end)
     }
 
     /// Puts something on the wires, of so many bits.
@@ -95,6 +99,9 @@ impl I2c {
 
     /// Does what is due: ends what is on the wires until now, and begins what follows.
     pub fn advance(&mut self, now: Time, clock: u64, bus: &mut dyn I2cBus) {
+        if self.hangs {
+            return;
+        }
         if let Some((wire, [begin, _])) = self.wire.take_if(|(_, [_, end])| *end <= now) {
             self.end(wire, [begin, now], clock, bus);
         }

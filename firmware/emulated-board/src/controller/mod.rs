@@ -94,7 +94,8 @@ pub struct Controller {
     /// Serial buses 1 and 2.
     pub spi: [Spi; 2],
     dma: [Dma; 2],
-    i2c: I2c,
+    /// The bus to the IMU on the base.
+    pub i2c: I2c,
     /// The serial port.
     pub usart: Usart,
     /// The watchdog.
@@ -206,6 +207,9 @@ impl Controller {
             self.i2c.advance(at, self.hertz, &mut *self.wiring);
         }
         self.flash.advance(at);
+        if self.flash.is_cut(at) {
+            self.reset = Some(ResetReason::Supply);
+        }
         if self.wiring.due() <= at {
             for (pin, rises) in self.wiring.edges(at) {
                 self.exti.edge(pin.port, pin.number, rises);

@@ -136,7 +136,9 @@ impl Rcc {
                 self.crystal_since = None;
             }
             BDCR => {
-                *held = value & !2;
+                // Once the clock of the RTC is chosen, only a reset of the backup domain changes it (6.4.29).
+                let chosen = *held & 0x300;
+                *held = if chosen == 0 { value & !2 } else { value & !0x302 | chosen };
                 match (value & 1, self.crystal_since) {
                     (0, _) => self.crystal_since = None,
                     (_, None) => self.crystal_since = Some(now),

@@ -32,8 +32,10 @@ pub struct Spi {
     shifting: Option<Time>,
     /// Sticky flags of the status.
     flags: u32,
-    /// Whether the transfer hangs: a fault that is injected.
+    /// Whether the next byte never begins: a fault that is injected, until the interface is disabled in that state.
     pub hangs: bool,
+    /// Whether a byte waits because of it.
+    is_hung: bool,
     /// Bytes that were lost because the buffer was full.
     pub overruns: u64,
 }
@@ -64,7 +66,11 @@ impl Spi {
 
     /// The byte that begins now, where there is one.
     pub fn begin(&mut self, now: Time) -> Option<u8> {
-        if self.shifting.is_some() || !self.is_on() || self.hangs {
+        if self.shifting.is_some() || !self.is_on() {
+            return None;
+        }
+        if self.hangs {
+            self.is_hung = !self.sending.is_empty();
             return None;
         }
         let byte = self.sending.pop_front()?;
@@ -140,7 +146,7 @@ impl Spi {
                 // A byte that is on the wires when it is disabled is lost; the buffers stay (42.4.9).
                 if value & ENABLED == 0 {
                     self.shifting = None;
-                    self.hangs = false;
+                    self.hangs &= !std::mem::take(&mut self.is_hung);
                 }
                 self.control[0] = value;
             }

@@ -13,6 +13,8 @@ pub struct Block {
     pub masks: bool,
     /// Whether one of them sends an event, which the next wait for an event takes.
     pub signals: bool,
+    /// Whether it is a branch to itself, which an exception or a reset alone ends.
+    pub is_endless: bool,
     /// How often it was executed.
     pub count: u64,
 }
@@ -22,8 +24,14 @@ impl Block {
     pub fn decode(address: u32, bytes: &[u8]) -> Self {
         let halves: Vec<u16> =
             bytes.chunks_exact(2).map(|half| u16::from_le_bytes([half[0], half[1]])).collect();
-        let mut block =
-            Self { address, offsets: Vec::new(), masks: false, signals: false, count: 0 };
+        let mut block = Self {
+            address,
+            offsets: Vec::new(),
+            masks: false,
+            signals: false,
+            is_endless: bytes == [0xFE, 0xE7],
+            count: 0,
+        };
         let mut place = 0;
         while let Some(first) = halves.get(place) {
             block.offsets.push(2 * place as u16);

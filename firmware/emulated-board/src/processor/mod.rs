@@ -22,7 +22,7 @@ use unicorn_engine::{
 };
 
 use self::blocks::Blocks;
-use self::exceptions::{Masks, Set};
+use self::exceptions::{NOT_MASKABLE, Masks, Set};
 use self::faults::Fault;
 use crate::controller::protection::{Access, Level};
 use crate::controller::{Controller, Memory, Refused, ResetReason};
@@ -34,6 +34,8 @@ use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
 const NOWHERE: u64 = 0xF000_0000;
 /// Size of a page that Unicorn maps, bytes.
 const PAGE: usize = 4096;
+/// What chance leaves in RAM before the start, so that a stack shows how deep it was.
+pub const PAINT: u8 = 0xA5;
 
 /// Something that the model does not know, and where the program asked for it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -166,6 +168,11 @@ impl State {
         block.count += 1;
         self.event |= block.signals;
         self.now = self.now + self.instruction.times(block.offsets.len() as u64);
+        if block.is_endless && self.due != Time::NEVER && self.due > self.now {
+            // Nothing happens before something is due.
+            block.count += ((self.due - self.now).as_seconds() / self.instruction.as_seconds()) as u64;
+            self.now = self.due;
+        }
         block.masks
     }
 
@@ -373,7 +380,10 @@ impl Processor {
                 let now = state.now;
                 match state.controller.flash.load(offset, size as u32, now) {
                     Ok(value) => {
-                        state.is_pending |= state.controller.flash.is_broken;
+                        if std::mem::take(&mut state.controller.flash.is_broken) {
+                            state.controller.exceptions.pending.put(NOT_MASKABLE, true);
+                            state.is_pending = true;
+                        }
                         return value.into();
                     }
                     // The bus stalls until the bank can be read.
@@ -559,7 +569,7 @@ impl Processor {
         }
     }
 
-    /// Resets controller and core.
+    /// Resets controller and core. Where the supply was lost, RAM holds what chance leaves.
     pub fn reset(&mut self, reason: ResetReason) {
         {
             let mut state = self.state.borrow_mut();
@@ -569,6 +579,9 @@ impl Processor {
             (state.level, state.is_locked, state.undone) = (Level::default(), false, None);
         }
         self.protect();
+        if reason == ResetReason::Supply {
+            self.poke(RAM, &vec![PAINT; RAM_BYTES]);
+        }
         self.start();
     }
 }

@@ -1,0 +1,15 @@
+//! The board's image with a fault: what happens today, said plainly. Where that is bad, a test says how it should be.
+//!
+//! An image is built for each carrier that is needed, unless `MERIDIAN_IMAGES` names a folder that has them, as
+//! `board-stage.elf`.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+mod board;
+mod hung;
+mod power;
+mod readme;
+mod saving;
+mod stopped;
+mod store;
+mod supply;

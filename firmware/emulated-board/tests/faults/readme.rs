@@ -1,0 +1,49 @@
+//! The log of a power-on in `firmware/README.md` is what the executed image logs.
+//!
+//! `MERIDIAN_GOLDEN=write cargo test -p emulated-board --test faults readme` writes it anew; a commit that does so says why.
+
+use std::path::{Path, PathBuf};
+
+use emulated_board::world::World;
+use firmware::platform::Platform;
+use hal_mock::flash::PAGE;
+
+use crate::board::Board;
+
+/// What stands before the block, and what ends it.
+const BEGIN: &str = "<!-- the log of a power-on -->\n```text\n";
+const END: &str = "```\n";
+/// The line with which the block ends: it shows that the instrument measures.
+const LAST: &str = "dwell 1 of 25";
+
+/// The page.
+fn page() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")
+}
+
+/// The log of a board that is flashed for the first time: nothing is in its store.
+fn logged() -> String {
+    let mut world = World::new(Platform::Stage, 1).expect("its settings are possible");
+    world.store = vec![0xFF; 2 * PAGE];
+    let mut board = Board::within(Platform::Stage, world);
+    board.until(LAST, 60.0);
+    let last = board.printed.iter().position(|line| line.contains(LAST)).expect("it has come");
+    board.printed[..=last].iter().flat_map(|line| [line.as_str(), "\n"]).collect()
+}
+
+#[test]
+fn the_log_of_a_power_on_in_the_readme_is_what_the_executed_image_logs() {
+    let text = std::fs::read_to_string(page()).expect("the page is there");
+    let (before, rest) = text.split_once(BEGIN).expect("the page has the block");
+    let (kept, after) = rest.split_once(END).expect("the block has an end");
+    let found = logged();
+    if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+        std::fs::write(page(), [before, BEGIN, &found, END, after].concat())
+            .expect("the page is ours");
+        return;
+    }
+    for (kept, found) in kept.lines().zip(found.lines()) {
+        assert_eq!(kept, found, "firmware/README.md; MERIDIAN_GOLDEN=write writes it anew");
+    }
+    assert_eq!(kept.lines().count(), found.lines().count(), "{found}");
+}

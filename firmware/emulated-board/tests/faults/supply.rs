@@ -1,0 +1,86 @@
+//! The supply of the controller breaks down for a moment, while the chips keep theirs; rows of the flash that cannot be
+//! read.
+//!
+//! RAM is lost. So the chips are in the midst of what they did when the board starts again, as after a brown-out above
+//! their own limit.
+
+use emulated_board::controller::flash::STORE;
+use firmware::platform::Platform;
+use hal_mock::flash::PAGE;
+
+use crate::board::{Board, TurningBoard};
+use crate::store::{Item, item, world};
+
+/// What has been measured is lost, as it is on purpose: the alignment begins anew. The motor driver, which the board left
+/// turning, is first not ready, and started again.
+#[test]
+fn a_brown_out_amid_measuring_begins_the_alignment_anew() {
+    let TurningBoard { mut board, .. } = TurningBoard::new();
+    let lost = board.seconds();
+    board.execution.lose_supply();
+    let start = board.until("board: started by Supply", 3.0);
+    // The crystal starts again.
+    assert!((2.0..2.1).contains(&(start - lost)), "{} s", start - lost);
+    board.until("begin: 8 turns", 1.0);
+    board.until("stage: not ready in time: starting it again", 3.0);
+    board.until("stage: turns at 72.0 °/s", 5.0);
+    let lines = board.lines(start, f64::INFINITY);
+    assert!(!lines.iter().any(|line| line.contains("given up")), "{board}");
+}
+
+/// Twelve seconds after the start the vehicle knows its azimuth again.
+#[test]
+fn a_brown_out_amid_keeping_costs_a_vehicle_at_rest_its_heading_for_fifteen_seconds() {
+    let mut board = Board::within(Platform::Vehicle, world(0));
+    board.until("azimuth 213.7° ± 0.0573° (1σ) recalled", 20.0);
+    board.run(0.5);
+    let lost = board.seconds();
+    board.execution.lose_supply();
+    let start = board.until("board: started by Supply", 3.0);
+    assert_eq!(board.controller(|controller| item(&controller.flash.array)), Item::New);
+    let known = board.until("azimuth 213.7° ± 0.0573° (1σ) recalled", 20.0);
+    assert!((14.0..15.0).contains(&(known - lost)), "{} s", known - lost);
+    assert!(board.sent(start, known).iter().all(|line| *line == "starting, faults 0"), "{board}");
+}
+
+/// Inverts bits of a row in the flash of a board.
+fn invert(board: &Board, offset: u32, bits: &[u8]) {
+    board.controller(|controller| {
+        for bit in bits {
+            controller.flash.array.invert(offset, *bit);
+        }
+    });
+}
+
+#[test]
+fn a_wrong_bit_in_the_store_is_corrected_and_nothing_is_said() {
+    let mut board = Board::new(Platform::Vehicle);
+    invert(&board, STORE.start + 16, &[3]);
+    board.until("settings of a record in flash", 3.0);
+    board.until("keeping: level", 1.0);
+}
+
+#[test]
+fn two_wrong_bits_in_a_row_that_is_not_read_do_no_harm() {
+    let mut board = Board::new(Platform::Vehicle);
+    invert(&board, STORE.start + PAGE as u32 * 3 / 2, &[3, 40]);
+    board.until("keeping: level", 5.0);
+}
+
+/// The row raises the non-maskable interrupt, for which the image has no handler but an endless loop. The watchdog
+/// resets, and the next start reads the row again: a start every 8.2 s, or 6.2 s after one that waited for the crystal,
+/// with one line of the log and none on the link, until the store is erased by a programmer.
+///
+/// As it should be: a handler clears the flag, the store passes over the row, and the board begins with the settings
+/// that are whole, or says that there are none.
+#[test]
+fn two_wrong_bits_in_a_row_of_the_store_reset_the_board_for_ever() {
+    let mut board = Board::new(Platform::Vehicle);
+    invert(&board, STORE.start + 16, &[3, 40]);
+    let first = board.until("board: started by Supply", 3.0);
+    let second = board.until("board: started by Watchdog", 9.0);
+    let third = board.until("board: started by Watchdog", 9.0);
+    assert!((6.1..6.3).contains(&(second - first)), "{board}");
+    assert!((8.1..8.3).contains(&(third - second)), "{board}");
+    assert_eq!((board.log.len(), board.link.len()), (3, 0), "{board}");
+}
