@@ -16,6 +16,7 @@ pub mod image;
 pub mod measure;
 pub mod probe;
 pub mod processor;
+pub mod report;
 pub mod run;
 pub mod time;
 pub mod wiring;

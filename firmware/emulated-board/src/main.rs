@@ -12,7 +12,8 @@ use std::rc::Rc;
 use clap::Parser;
 use emulated_board::image::Image;
 use emulated_board::probe::Line;
-use emulated_board::run::{Order, Report, execute};
+use emulated_board::report::Report;
+use emulated_board::run::{Order, execute};
 use emulated_board::world::World;
 use firmware::platform::Platform;
 

@@ -22,7 +22,7 @@ use unicorn_engine::{
 };
 
 use self::blocks::Blocks;
-use self::exceptions::{NOT_MASKABLE, Masks, Set};
+use self::exceptions::{Masks, NOT_MASKABLE, Set};
 use self::faults::Fault;
 use crate::controller::protection::{Access, Level};
 use crate::controller::{Controller, Memory, Refused, ResetReason};
@@ -170,7 +170,8 @@ impl State {
         self.now = self.now + self.instruction.times(block.offsets.len() as u64);
         if block.is_endless && self.due != Time::NEVER && self.due > self.now {
             // Nothing happens before something is due.
-            block.count += ((self.due - self.now).as_seconds() / self.instruction.as_seconds()) as u64;
+            block.count +=
+                ((self.due - self.now).as_seconds() / self.instruction.as_seconds()) as u64;
             self.now = self.due;
         }
         block.masks

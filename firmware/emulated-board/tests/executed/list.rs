@@ -26,8 +26,7 @@ fn expected(attribute: &str) -> (&str, &str) {
 
 #[test]
 fn the_list_has_every_defect_with_its_figure_and_its_test_and_no_other() {
-    let attributes =
-        SOURCES.iter().flat_map(|source| source.split("expected = \"").skip(1));
+    let attributes = SOURCES.iter().flat_map(|source| source.split("expected = \"").skip(1));
     let tests: BTreeSet<_> = attributes.map(expected).collect();
     let rows = LIST.lines().filter(|line| line.starts_with("| ") && line.contains('`'));
     let listed: BTreeSet<_> = rows

@@ -1,6 +1,7 @@
 //! What holds today.
 
-use emulated_board::run::{Order, Report};
+use emulated_board::report::Report;
+use emulated_board::run::Order;
 use firmware::platform::Platform;
 
 use super::support::executed::{Executed, execute_anew, executed, executed_by};

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use emulated_board::probe::Line;
-use emulated_board::run::{Order, Report, execute};
+use emulated_board::report::Report;
+use emulated_board::run::{Order, execute};
 use emulated_board::world::World;
 use firmware::platform::Platform;
 
