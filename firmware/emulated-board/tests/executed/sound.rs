@@ -138,7 +138,8 @@ fn conversions_that_are_read_and_lost_are_those_that_the_converters_make() {
         let counted: u64 =
             shown.report.service.iter().map(|service| service.read + service.lost).sum();
         let off = (counted as f64 / made - 1.0).abs();
-        // A conversion that ends while the one before it is read counts as neither: on a spinning body one in thirty.
+        // A read during which the next conversion ends is not counted: on a spinning body a fifth of
+        // those that are not lost.
         let bound = if carrier == Platform::Spin { 0.05 } else { 0.01 };
         assert!(off <= bound, "{carrier}: {counted} conversions, of {made} that are made");
     }

@@ -23,8 +23,7 @@ pub fn hold(figure: f64, should: RangeInclusive<f64>, known: RangeInclusive<f64>
     } else {
         format!("exactly {least}")
     };
-    if (least..=most).contains(&figure) {
-        panic!("{band} {words}: {figure}, not {} to {}", should.start(), should.end());
-    }
+    let should = format!("not {} to {}", should.start(), should.end());
+    assert!(!(least..=most).contains(&figure), "{band} {words}: {figure}, {should}");
     panic!("{figure} {words}: neither as it should be nor as it is known");
 }

@@ -1,7 +1,7 @@
 //! Executions of images, each made once.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use emulated_board::probe::Line;
 use emulated_board::report::Report;
@@ -57,7 +57,9 @@ impl Executed {
 
     /// The log as text.
     pub fn text(&self) -> String {
-        self.log.iter().map(|entry| format!("{:10.3} {}\n", entry.seconds, entry.words)).collect()
+        let lines =
+            self.log.iter().map(|Entry { seconds, words }| format!("{seconds:10.3} {words}"));
+        lines.collect::<Vec<_>>().join("\n")
     }
 }
 
@@ -87,7 +89,7 @@ type Slot = Arc<OnceLock<Arc<Executed>>>;
 pub fn once(name: String, make: impl FnOnce() -> Executed) -> Arc<Executed> {
     static ALL: Mutex<Option<HashMap<String, Slot>>> = Mutex::new(None);
     let slot = {
-        let mut all = ALL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
         Arc::clone(all.get_or_insert_default().entry(name).or_default())
     };
     Arc::clone(slot.get_or_init(|| Arc::new(make())))

@@ -58,6 +58,7 @@ fn build(carrier: Platform) -> PathBuf {
     assert!(output.status.success(), "the image of {carrier} does not build: cargo says why");
     let messages = String::from_utf8_lossy(&output.stdout);
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let built = messages.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
-    built.last().unwrap_or_else(|| panic!("cargo built no image of {carrier}"))
+    let mut built =
+        messages.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
+    built.next_back().unwrap_or_else(|| panic!("cargo built no image of {carrier}"))
 }
