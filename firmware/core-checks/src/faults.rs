@@ -22,7 +22,7 @@ const BUS_ADDRESS: u32 = 0xE000_ED38;
 const NOWHERE: u32 = 0x6000_0000;
 
 /// The steps.
-pub const STEPS: [Step; 15] = [
+pub const STEPS: &[Step] = &[
     ("undefined", undefined_instruction),
     ("undefined, escalated", escalated),
     ("undefined under the mask", under_mask),

@@ -6,13 +6,17 @@ use cortex_m::register::control;
 
 use crate::Step;
 use crate::assembly::{floats_across, spoil_floats};
-use crate::handlers::on;
+use crate::handlers::{self, on};
 use crate::interrupts::{FIRST, PEND, SECOND, enable};
 use crate::line::say;
 
 /// The steps.
-pub const STEPS: [Step; 3] =
-    [("integers stacked", integers), ("floats stacked", floats), ("floats nested", nested)];
+pub const STEPS: &[Step] = &[
+    ("integers stacked", integers),
+    ("floats stacked", floats),
+    ("floats nested", nested),
+    ("storm", storm),
+];
 
 /// Whether floating-point registers are in use.
 fn in_use() -> u32 {
@@ -29,7 +33,7 @@ fn integers() {
     enable([0x80; 4]);
     end_use();
     on(0x3C, |entry| say!(" {:x} {}", entry.link, in_use()));
-    crate::handlers::write(PEND, FIRST);
+    handlers::write(PEND, FIRST);
     say!(" {}", in_use());
 }
 
@@ -59,13 +63,44 @@ fn nested() {
     enable([0x80, 0x40, 0x80, 0x80]);
     on(0x3D, |entry| say!(" {:x} {:x}", entry.link, spoil_floats()));
     on(0x3C, |entry| {
-        crate::handlers::write(PEND, SECOND);
+        handlers::write(PEND, SECOND);
         let half = black_box(0.5_f32) * black_box(3.0);
-        crate::handlers::write(PEND, SECOND);
+        handlers::write(PEND, SECOND);
         say!(" {:x} {:x}", entry.link, half.to_bits());
     });
     for _ in 0..3 {
         across();
     }
     end_use();
+}
+
+/// Enables and disables the quiet interrupt, and pends it.
+const ENABLE: u32 = 0xE000_E104;
+const DISABLE: u32 = 0xE000_E184;
+const QUIET: u32 = 1 << (handlers::QUIET - 16 - 32);
+
+/// Arithmetic with comparisons, loops and conditional instructions, whose result no interrupt may change, wherever it
+/// comes.
+fn storm() {
+    handlers::write(ENABLE, QUIET);
+    let (mut x, mut above, mut bits) = (black_box(0.3_f32), 0_u32, 0x9E37_79B9_u32);
+    for turn in 0..2000_u32 {
+        x = 3.9 * x * (1.0 - x);
+        above += if x > 0.5 { turn } else { 1 };
+        bits = if bits & 1 == 0 { bits >> 1 } else { (bits >> 1) ^ 0xEDB8_8320 };
+        bits = bits.wrapping_add(greater(turn, above)).rotate_left(turn % 7);
+        x = x.clamp(0.001, 0.999);
+        if turn % 64 == 0 {
+            handlers::write(PEND, QUIET);
+        }
+    }
+    handlers::write(DISABLE, QUIET);
+    say!(" {:x} {above:x} {bits:x}", x.to_bits());
+    end_use();
+}
+
+/// The greater of two numbers, by way of the stack.
+#[inline(never)]
+fn greater(first: u32, second: u32) -> u32 {
+    *black_box([first, second]).iter().max().unwrap_or(&0)
 }

@@ -2,6 +2,7 @@
 
 use core::ptr::{addr_of, addr_of_mut, read_volatile, write_volatile};
 
+use crate::assembly::spoil_floats;
 use crate::line::say;
 
 /// What an entry stacks.
@@ -36,6 +37,9 @@ impl Entry {
         frame.status = frame.status & !0x0600_FC00 | 1 << 24;
     }
 }
+
+/// The exception whose handler says nothing: it overwrites what handlers may, and is pended from outside too.
+pub const QUIET: u32 = 16 + 50;
 
 /// What a step has a handler do.
 pub type Action = fn(&mut Entry);
@@ -81,6 +85,10 @@ pub fn write(address: u32, value: u32) {
 #[unsafe(no_mangle)]
 extern "C" fn handle(link: u32, frame: *mut Frame) {
     let number = number();
+    if number == QUIET {
+        spoil_floats();
+        return;
+    }
     say!(" >{number:x}");
     // SAFETY: no step changes it while handlers run.
     if let Some(action) = unsafe { (*addr_of!(ACTIONS))[number as usize] } {

@@ -31,7 +31,7 @@ const THIRD: u32 = 1 << 14;
 const FOURTH: u32 = 1 << 15;
 
 /// The steps.
-pub const STEPS: [Step; 17] = [
+pub const STEPS: &[Step] = &[
     ("preemption", preemption),
     ("order", order),
     ("priority raised while active", raised),

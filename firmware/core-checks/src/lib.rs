@@ -18,9 +18,15 @@ mod waits;
 
 /// Does all steps and hands over the line of each. The last one locks the core up.
 pub fn run(mut show: impl FnMut(&str)) -> ! {
-    let steps =
-        interrupts::STEPS.iter().chain(&floats::STEPS).chain(&stacks::STEPS).chain(&waits::STEPS);
-    for (name, step) in steps.chain(&faults::STEPS).chain(&protection::STEPS) {
+    let steps = [
+        interrupts::STEPS,
+        floats::STEPS,
+        stacks::STEPS,
+        waits::STEPS,
+        faults::STEPS,
+        protection::STEPS,
+    ];
+    for (name, step) in steps.into_iter().flatten() {
         line::begin(name);
         step();
         handlers::forget();

@@ -28,7 +28,7 @@ const FULL: u32 = 3 << 24;
 const NEVER: u32 = 1 << 28;
 
 /// The steps.
-pub const STEPS: [Step; 11] = [
+pub const STEPS: &[Step] = &[
     ("protection unit", unit),
     ("no access", no_access),
     ("read only", read_only),

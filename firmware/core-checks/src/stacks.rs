@@ -9,8 +9,8 @@ use crate::interrupts::{CONTROL, FIRST, PEND, enable};
 use crate::line::say;
 
 /// The steps.
-pub const STEPS: [Step; 3] =
-    [("alignment", alignment), ("process stack", process), ("privilege", privilege)];
+pub const STEPS: &[Step] =
+    &[("alignment", alignment), ("process stack", process), ("privilege", privilege)];
 
 /// Words of a process stack.
 const WORDS: usize = 64;

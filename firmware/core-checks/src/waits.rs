@@ -12,7 +12,7 @@ const SLEEP: u32 = 0xE000_ED10;
 const PENDING_IS_EVENT: u32 = 1 << 4;
 
 /// The steps.
-pub const STEPS: [Step; 4] = [
+pub const STEPS: &[Step] = &[
     ("event sent", sent),
     ("event of a return", returned),
     ("event of what is pending", pending),

@@ -80,8 +80,8 @@ impl Spi {
 
     /// When the byte on the wires ends, by the clock of the peripheral, Hz.
     pub fn due(&self, hertz: u64) -> Time {
-        let bits = Time::periods(8, self.clock(hertz).hertz.into());
-        self.shifting.map_or(Time::NEVER, |begin| begin + bits)
+        let bits = || Time::periods(8, self.clock(hertz).hertz.into());
+        self.shifting.map_or(Time::NEVER, |begin| begin + bits())
     }
 
     /// The byte on the wires has ended: takes in the one that came back.

@@ -102,8 +102,10 @@ struct State {
     instruction: Time,
     /// Cycles of an instruction.
     cycles: f64,
-    /// When the controller next does something.
+    /// When the controller next does something, or the core is to stop.
     due: Time,
+    /// When the core is to stop.
+    until: Time,
     /// What was executed.
     blocks: Blocks,
     /// The block that is being executed.
@@ -142,7 +144,8 @@ impl State {
             self.controller.advance(&mut Ram(uc), now);
             self.look();
         }
-        if self.halt.is_some() || self.controller.reset.is_some() {
+        let is_over = self.now >= self.until;
+        if is_over || self.halt.is_some() || self.controller.reset.is_some() {
             return true;
         }
         if self.is_pending && self.controller.exceptions.next(masks(uc)).is_some() {
@@ -179,7 +182,7 @@ impl State {
 
     /// Looks what the controller has become.
     fn look(&mut self) {
-        self.due = self.controller.due(self.now);
+        self.due = self.controller.due(self.now).min(self.until);
         self.is_pending = self.controller.exceptions.waits();
         let requested = self.controller.exceptions.requested();
         self.event |=
@@ -299,6 +302,7 @@ impl Processor {
             instruction: Time::ZERO,
             cycles,
             due: Time::ZERO,
+            until: Time::ZERO,
             blocks: Blocks::default(),
             current: None,
             is_pending: false,
@@ -482,8 +486,8 @@ impl Processor {
     fn execute(&mut self, until: Time) -> Result<(), Unknown> {
         {
             let mut state = self.state.borrow_mut();
+            state.until = until;
             state.look();
-            state.due = state.due.min(until);
         }
         let pc = self.get(RegisterARM::PC);
         let ended = self.uc.emu_start(pc | 1, NOWHERE, 0, 0);

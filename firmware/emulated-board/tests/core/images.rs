@@ -14,6 +14,9 @@ use emulated_board::wiring::board::Served;
 use emulated_board::wiring::{I2cBus, Pin, Wiring};
 use hal_mock::wires::Clock;
 
+/// Less time than fills the buffer of the lines.
+pub const LOOK: Time = Time::microseconds(500);
+
 /// Builds both images; the path of one of them.
 fn image(name: &str) -> Result<PathBuf, String> {
     let build = "build --locked --quiet --package core-checks --profile firmware --target thumbv7em-none-eabihf";
@@ -66,20 +69,24 @@ impl Board {
         while lines.last().is_none_or(|line| line != end)
             && self.processor.now() < Time::seconds(1.0)
         {
-            let went_on = self.go_on();
-            self.probe.poll(&mut self.processor, |line| lines.push(line.words));
-            if let Err(unknown) = went_on {
-                lines.push(unknown);
-                break;
+            match self.go_on(LOOK) {
+                Ok(more) => lines.extend(more),
+                Err(unknown) => {
+                    lines.push(unknown);
+                    break;
+                }
             }
         }
         lines
     }
 
-    /// Goes on for less time than fills the buffer of the lines.
-    pub fn go_on(&mut self) -> Result<(), String> {
-        let until = self.processor.now() + Time::microseconds(500);
-        self.processor.run(until).map_err(|unknown| unknown.to_string())
+    /// Goes on for some time; the lines of it.
+    pub fn go_on(&mut self, span: Time) -> Result<Vec<String>, String> {
+        let until = self.processor.now() + span;
+        let ran = self.processor.run(until);
+        let mut lines = Vec::new();
+        self.probe.poll(&mut self.processor, |line| lines.push(line.words));
+        ran.map(|()| lines).map_err(|unknown| unknown.to_string())
     }
 }
 

@@ -1,9 +1,11 @@
 //! The core's exceptions, faults and memory protection, held to those of QEMU by an image that both execute.
 
+mod exceptions;
 mod images;
 mod protection;
 
-use images::Board;
+use emulated_board::time::Time;
+use images::{Board, LOOK};
 
 /// What QEMU says beside the steps when the core has locked up.
 const LOCKED: &str = "Lockup: can't escalate 3 to HardFault";
@@ -61,16 +63,55 @@ fn meant(told: &str) -> &str {
 fn a_fault_in_the_handler_of_hard_faults_locks_the_core_up() -> Result<(), String> {
     let mut board = Board::new()?;
     board.lines_until("end");
-    board.go_on()?;
+    board.go_on(LOOK)?;
     assert!(board.processor.is_locked(), "the core goes on");
     let instructions = board.processor.with_blocks(|blocks| blocks.instructions());
     let now = board.processor.now();
-    board.go_on()?;
+    board.go_on(LOOK)?;
     assert_eq!(
         board.processor.with_blocks(|blocks| blocks.instructions()),
         instructions,
         "it executes"
     );
     assert!(board.processor.now() > now, "time stands still");
+    Ok(())
+}
+
+#[test]
+fn no_interrupt_between_two_instructions_changes_what_is_computed() -> Result<(), String> {
+    /// The interrupt whose handler overwrites all registers that it may.
+    const QUIET: u32 = 16 + 50;
+    let told = images::in_qemu()?;
+    let mut board = Board::new()?;
+    let (mut lines, mut pended) = (Vec::new(), 0);
+    while lines.last().is_none_or(|line: &String| !line.starts_with("storm")) {
+        let is_enabled = board.processor.with_controller(|controller| {
+            let exceptions = &mut controller.exceptions;
+            exceptions.pending.put(QUIET, exceptions.enabled.has(QUIET) && pended % 3 != 0);
+            exceptions.enabled.has(QUIET)
+        });
+        pended += u64::from(is_enabled);
+        // Blocks of few instructions, each at another place of the loop.
+        let span = if is_enabled { 5 + pended % 7 } else { 500 };
+        lines.extend(board.go_on(Time::microseconds(span))?);
+    }
+    let exceptions = board.processor.counts().exceptions;
+    assert!(exceptions > 2000, "only {exceptions} exceptions");
+    assert!(
+        told.lines().any(|line| Some(line) == lines.last().map(String::as_str)),
+        "{:?}",
+        lines.last()
+    );
+    Ok(())
+}
+
+#[test]
+fn a_core_that_loops_stops_when_it_is_to() -> Result<(), String> {
+    let mut board = Board::new()?;
+    // A branch to itself, in RAM.
+    board.processor.poke(emulated_board::RAM, &[0xFE, 0xE7]);
+    board.processor.jump(emulated_board::RAM);
+    board.go_on(Time::microseconds(500))?;
+    assert!(board.processor.now() < Time::microseconds(501), "{:?}", board.processor.now());
     Ok(())
 }
