@@ -5,7 +5,7 @@ use crate::assembly::{
     call, divide, jump, load, load_and_move, load_if, load_many, load_pair, store, undefined,
 };
 use crate::handlers::{Entry, on, read, write};
-use crate::interrupts::{FIRST, PEND, enable};
+use crate::interrupts::{FIRST, PEND, enable, unmask};
 use crate::line::say;
 
 /// `SHCSR`, and its bits that enable memory, bus and usage faults.
@@ -95,8 +95,7 @@ fn under_mask() {
     on_faults(|entry| say_at(entry, undefined as *const () as u32));
     cortex_m::interrupt::disable();
     undefined();
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
+    unmask();
 }
 
 fn as_urgent() {

@@ -88,6 +88,11 @@ fn order() {
     primask();
     write(PEND, FIRST | SECOND | THIRD | FOURTH);
     say_state();
+    unmask();
+}
+
+/// Masks interrupts no longer.
+pub fn unmask() {
     // SAFETY: nothing relies on the mask.
     unsafe { cortex_m::interrupt::enable() };
     cortex_m::asm::isb();
@@ -116,9 +121,7 @@ fn all_masked() {
     primask();
     write(PEND, FIRST);
     say!(" held");
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
-    cortex_m::asm::isb();
+    unmask();
     say!(" let");
 }
 
@@ -201,9 +204,7 @@ fn unpended() {
     primask();
     write(PEND, FIRST | SECOND);
     write(UNPEND, FIRST);
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
-    cortex_m::asm::isb();
+    unmask();
 }
 
 fn again() {
@@ -236,19 +237,16 @@ fn service() {
     primask();
     write(CONTROL, 1 << 28);
     write(CONTROL, 1 << 27);
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
+    unmask();
     write(SERVICE_PRIORITY, 0);
 }
 
 /// Tells the number that a call names.
 fn say_call(entry: &mut crate::handlers::Entry) {
     let frame = entry.frame();
-    say!(
-        " {:x} {}",
-        read(frame.pc - 2 & !3).to_le_bytes()[(frame.pc - 2 & 2) as usize],
-        frame.pc - (call as *const () as u32 & !1)
-    );
+    let instruction = frame.pc - 2;
+    let named = read(instruction & !3) >> (8 * (instruction & 2)) & 0xFF;
+    say!(" {named:x} {}", frame.pc - (call as *const () as u32 & !1));
     frame.general[0] = 0x1234;
 }
 
@@ -261,8 +259,7 @@ fn called_masked() {
     primask();
     on(3, |_| crate::faults::say_faults());
     call();
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
+    unmask();
 }
 
 fn conditional() {

@@ -6,6 +6,7 @@ use crate::Step;
 use crate::assembly::{jump, load, push_at, pushed, read_unprivileged, store, store_byte};
 use crate::faults::{on_faults, say_faults, tell_load};
 use crate::handlers::{Entry, Frame, on, read, write};
+use crate::interrupts::unmask;
 use crate::line::say;
 use crate::stacks::set_control;
 
@@ -19,7 +20,7 @@ const ATTRIBUTES: u32 = 0xE000_EDA0;
 /// Enabled, with the default map for privileged code.
 const ON: u32 = 0b101;
 /// Attributes of RAM (normal memory, not shared), with the bit that enables the region.
-const RAM: u32 = 0b000_1_0_11 << 16 | 1;
+const RAM: u32 = 0b1011 << 16 | 1;
 /// Accesses: none, privileged read and write, read only, all; and execute never.
 const NONE: u32 = 0;
 const PRIVILEGED: u32 = 1 << 24;
@@ -105,7 +106,6 @@ fn no_access() {
     try_words(&[0]);
     write(CONTROL, ON);
     try_words(&[0, 0x7FC]);
-    say!(" {:x}", load(address() + 0x800).min(0));
     end();
     say!(" {:x} {:x}", load(address()), load(address() + 0x7FC));
 }
@@ -208,8 +208,7 @@ fn unprotected() {
     });
     cortex_m::interrupt::disable();
     crate::assembly::undefined();
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
+    unmask();
     end();
 }
 
@@ -222,7 +221,7 @@ fn guard() {
         write(0xE000_ED28, status);
         say!(" {status:x}");
         end();
-        let resumed = addr_of_mut!(RESUMED) as u32 + 7 & !7;
+        let resumed = (addr_of_mut!(RESUMED) as u32 + 7) & !7;
         let frame = Frame {
             general: [0; 4],
             r12: 0,

@@ -1,10 +1,10 @@
 //! Waits for events and interrupts that end at once.
 
-use cortex_m::asm::{isb, sev, wfe, wfi};
+use cortex_m::asm::{sev, wfe, wfi};
 
 use crate::Step;
 use crate::handlers::{on, write};
-use crate::interrupts::{FIRST, PEND, enable};
+use crate::interrupts::{FIRST, PEND, enable, unmask};
 use crate::line::say;
 
 /// `SCR`, and its bit by which an interrupt that becomes pending is an event.
@@ -39,9 +39,7 @@ fn pending() {
     write(PEND, FIRST);
     wfe();
     say!(" awake");
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
-    isb();
+    unmask();
     write(SLEEP, 0);
 }
 
@@ -52,7 +50,5 @@ fn masked() {
     write(PEND, FIRST);
     wfi();
     say!(" awake");
-    // SAFETY: nothing relies on the mask.
-    unsafe { cortex_m::interrupt::enable() };
-    isb();
+    unmask();
 }

@@ -15,7 +15,5 @@ fn main() -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     defmt::println!("panicked: {}", defmt::Display2Format(info));
-    loop {
-        cortex_m::asm::udf();
-    }
+    cortex_m::asm::udf()
 }

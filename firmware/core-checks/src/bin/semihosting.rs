@@ -15,7 +15,5 @@ fn main() -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     hprintln!("{info}");
-    loop {
-        cortex_m::asm::udf();
-    }
+    cortex_m::asm::udf()
 }

@@ -47,7 +47,7 @@ impl Region {
     /// Whether it allows an access (table B3-15).
     const fn allows(self, access: Access, is_unprivileged: bool) -> bool {
         let (reads, writes) = match (self.attributes >> 24 & 7, is_unprivileged) {
-            (1, false) | (2, false) | (3, _) => (true, true),
+            (1 | 2, false) | (3, _) => (true, true),
             (2, true) | (5, false) | (6 | 7, _) => (true, false),
             _ => (false, false),
         };

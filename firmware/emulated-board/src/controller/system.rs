@@ -71,7 +71,7 @@ impl System {
     pub fn read(&self, offset: u32, exceptions: &Exceptions, active: u32) -> Result<u32, Refused> {
         let bits = |set: Set| set.interrupts(offset % 0x80 * 8);
         Ok(match offset {
-            0x010 | 0x014 | 0x018 => 0,
+            0x010 | 0x014 | 0x018 | 0xDF0 => 0,
             0x004 => 2,
             0x100..0x10C | 0x180..0x18C => bits(exceptions.enabled),
             0x200..0x20C | 0x280..0x28C => bits(exceptions.requested()),
@@ -90,7 +90,6 @@ impl System {
             0xD34 | 0xD38 => self.faults[(offset as usize - 0xD34) / 4 + 2],
             0xD88 => self.coprocessors,
             0xD90..0xDA4 => self.protection.read(offset - 0xD90).ok_or(Refused::Unknown)?,
-            0xDF0 => 0,
             0xDFC => self.debug,
             0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4],
             _ => return Err(Refused::Unknown),
@@ -115,7 +114,7 @@ impl System {
             0x200..0x20C => set(&mut exceptions.pending, true),
             0x280..0x28C => set(&mut exceptions.pending, false),
             0x400..0x454 => {
-                set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size)
+                set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size);
             }
             0xD04 => {
                 for (bit, number, is_set) in PENDING_BITS {
@@ -133,9 +132,9 @@ impl System {
             }
             0xD10 if value & 4 != 0 => return Err(Refused::NotModelled("deep sleep")),
             0xD10 => self.sleep = value,
-            // Bits that trap what is not trapped otherwise: unaligned accesses, divisions by zero.
-            0xD14 if value & 0x18 != 0 => {
-                return Err(Refused::NotModelled("traps of the configuration"));
+            // Traps of unaligned accesses and of divisions by zero; frames that are not aligned.
+            0xD14 if value & 0x218 != 0x200 => {
+                return Err(Refused::NotModelled("traps and alignment of the configuration"));
             }
             0xD14 => self.configuration = value,
             0xD18..0xD24 => set_priorities(exceptions, 4 + offset - 0xD18, value, size),
@@ -147,10 +146,16 @@ impl System {
             }
             0xD28 => self.faults[0] &= !value,
             0xD2C => self.faults[1] &= !value,
+            0xD88 if value >> 20 & 0xF != 0xF => {
+                return Err(Refused::NotModelled("a floating-point unit that is off"));
+            }
             0xD88 => self.coprocessors = value,
             0xD94..0xDA4 if self.protection.write(offset - 0xD90, value) => {}
             0xDFC => self.debug = value,
             0xF00 => exceptions.pending.put_interrupts(value & 0x60, 1 << (value & 0x1F), true),
+            0xF34 if value >> 31 == 0 => {
+                return Err(Refused::NotModelled("floating-point registers that are not stacked"));
+            }
             0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4] = value,
             _ => return Err(Refused::Unknown),
         }

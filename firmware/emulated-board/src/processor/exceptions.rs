@@ -134,7 +134,7 @@ impl Exceptions {
     /// Priority of an exception.
     fn priority(&self, number: u32) -> i32 {
         match number {
-            1..4 => number as i32 - 4,
+            1..4 => number.cast_signed() - 4,
             _ => i32::from(self.priorities[number as usize]),
         }
     }

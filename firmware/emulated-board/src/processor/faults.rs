@@ -62,9 +62,10 @@ impl Fault {
     }
 
     const fn of_stack(is_protected: bool, bit: u32) -> Self {
-        match is_protected {
-            true => Self { number: MEMORY_FAULT, status: 1 << bit, address: None },
-            false => Self { number: BUS_FAULT, status: 1 << (bit + 8), address: None },
+        if is_protected {
+            Self { number: MEMORY_FAULT, status: 1 << bit, address: None }
+        } else {
+            Self { number: BUS_FAULT, status: 1 << (bit + 8), address: None }
         }
     }
 }

@@ -151,7 +151,8 @@ impl State {
         if self.is_pending && self.controller.exceptions.next(masks(uc)).is_some() {
             return true;
         }
-        if !self.controller.system.protection.allows(address, 2, Access::Fetch, self.level) {
+        let protection = &self.controller.system.protection;
+        if protection.is_on() && !protection.allows(address, 2, Access::Fetch, self.level) {
             self.halt = Some(Halt::Faulting(Fault::PROTECTED_CODE));
             return true;
         }

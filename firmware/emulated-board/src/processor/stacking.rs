@@ -149,7 +149,7 @@ impl Processor {
     /// How a handler that is entered now returns (`EXC_RETURN`, B1.5.8).
     fn link(&self) -> u32 {
         let control = self.get(RegisterARM::CONTROL);
-        let to_thread = self.get(RegisterARM::XPSR) & 0x1FF == 0;
+        let to_thread = self.get(RegisterARM::IPSR) == 0;
         let has_floats = control & FLOAT_ACTIVE != 0;
         let on_process_stack = to_thread && control & PROCESS_STACK != 0;
         0xFFFF_FFE1
@@ -282,7 +282,7 @@ impl Processor {
             .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
             .collect();
         let status = stacked[7];
-        let sp = frame + bytes.len() as u32 | if status & ALIGNED != 0 { 4 } else { 0 };
+        let sp = (frame + bytes.len() as u32) | if status & ALIGNED != 0 { 4 } else { 0 };
         // The mode changes first, since each has its stack pointer; privilege ends last.
         let is_unprivileged = self.get(RegisterARM::CONTROL) & UNPRIVILEGED;
         let in_use = if has_floats { FLOATS_IN_USE } else { 0 }
