@@ -4,6 +4,7 @@ mod exceptions;
 mod images;
 mod protection;
 
+use emulated_board::processor::blocks::Blocks;
 use emulated_board::time::Time;
 use images::{Board, LOOK};
 
@@ -65,11 +66,11 @@ fn a_fault_in_the_handler_of_hard_faults_locks_the_core_up() -> Result<(), Strin
     board.lines_until("end");
     board.go_on(LOOK)?;
     assert!(board.processor.is_locked(), "the core goes on");
-    let instructions = board.processor.with_blocks(|blocks| blocks.instructions());
+    let instructions = board.processor.with_blocks(Blocks::instructions);
     let now = board.processor.now();
     board.go_on(LOOK)?;
     assert_eq!(
-        board.processor.with_blocks(|blocks| blocks.instructions()),
+        board.processor.with_blocks(Blocks::instructions),
         instructions,
         "it executes"
     );
