@@ -54,6 +54,22 @@ global_asm!(
     "ldreq r0, [r0]",
     "addeq r1, #16",
     "bx lr",
+    // Loads within conditional instructions, after which the condition no longer holds in the next block: 7.
+    ".global loads_if",
+    ".type loads_if, %function",
+    ".thumb_func",
+    "loads_if:",
+    "mov r3, r0",
+    "mov r0, #0",
+    "cmp r3, r3",
+    "itt eq",
+    "ldreq r1, [r3]",
+    "ldreq r2, [r3]",
+    "movs r1, #1",
+    "b loaded_if",
+    "loaded_if:",
+    "mov r0, #7",
+    "bx lr",
     // A call within conditional instructions: what comes after it is done by its own condition.
     ".global call_if",
     ".type call_if, %function",
@@ -202,6 +218,7 @@ unsafe extern "C" {
     pub safe fn divide(dividend: u32, divisor: u32) -> u32;
     pub safe fn call() -> u32;
     pub safe fn load_if(address: u32) -> u32;
+    pub safe fn loads_if(address: u32) -> u32;
     pub safe fn call_if(condition: u32) -> u32;
     pub safe fn pend_if(bit: u32, register: u32) -> u32;
     pub safe fn call_on(moved: u32) -> u32;

@@ -3,7 +3,9 @@
 use core::ptr::addr_of_mut;
 
 use crate::Step;
-use crate::assembly::{jump, load, push_at, pushed, read_unprivileged, store, store_byte};
+use crate::assembly::{
+    jump, load, loads_if, push_at, pushed, read_unprivileged, store, store_byte,
+};
 use crate::faults::{on_faults, say_faults, tell_load};
 use crate::handlers::{Entry, Frame, on, read, write};
 use crate::interrupts::unmask;
@@ -37,6 +39,7 @@ pub const STEPS: &[Step] = &[
     ("subregion", subregion),
     ("region over region", over),
     ("execute never", never),
+    ("conditional loads", conditional),
     ("without the default map", without_map),
     ("privileged only", privileged),
     ("hard fault without protection", unprotected),
@@ -162,6 +165,17 @@ fn never() {
     end();
     jump(address() | 1);
     say!(" done");
+}
+
+fn conditional() {
+    on_protected();
+    say!(" {:x}", loads_if(address()));
+    region(0, address(), 11, READ_ONLY);
+    write(CONTROL, ON);
+    say!(" {:x}", loads_if(address()));
+    region(0, address(), 11, NONE);
+    say!(" {:x}", loads_if(address()));
+    end();
 }
 
 /// Tells of a fault of fetched code, at an address within what is protected.

@@ -240,10 +240,12 @@ const WITHOUT_RAM: [(u32, u32); 3] =
 /// to look for code that it changes; it takes all RAM for such pages, since the default map of the core does.
 fn split_accesses(uc: &mut Unicorn<'_, ()>) -> Result<(), uc_error> {
     uc.ctl_set_tlb_type(TlbType::VIRTUAL)?;
-    let entry = |_: &mut Unicorn<'_, ()>, paddr, kind| {
-        let perms =
-            if kind == MemType::FETCH { Prot::READ | Prot::EXEC } else { Prot::READ | Prot::WRITE };
-        Some(TlbEntry { paddr, perms })
+    let entry = |uc: &mut Unicorn<'_, ()>, paddr, kind| {
+        if kind == MemType::FETCH {
+            return Some(TlbEntry { paddr, perms: Prot::READ | Prot::EXEC });
+        }
+        protecting::forget_conditions(uc);
+        Some(TlbEntry { paddr, perms: Prot::READ | Prot::WRITE })
     };
     uc.add_tlb_hook(1, 0, entry).map(|_| ())
 }

@@ -34,6 +34,15 @@ const KEPT: [RegisterARM; 17] = [
     RegisterARM::PC,
 ];
 
+/// Puts right what Unicorn leaves behind where it calls a hook for an access of data among conditional instructions:
+/// their state, which would hold for the next block too.
+pub(super) fn forget_conditions(uc: &mut Unicorn<'_, ()>) {
+    const NONE: u64 = 1 << 24;
+    if uc.reg_read(RegisterARM::EPSR) != Ok(NONE) {
+        let _ = uc.reg_write(RegisterARM::EPSR, NONE);
+    }
+}
+
 /// What an access that faults must leave as it was.
 pub(super) struct Undone {
     registers: [u64; KEPT.len()],
@@ -81,6 +90,7 @@ impl State {
             let written = (access == Access::Write).then_some((address, size));
             self.undo(uc, Fault::protected(refused), written);
         }
+        forget_conditions(uc);
     }
 }
 
