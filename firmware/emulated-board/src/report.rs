@@ -263,8 +263,9 @@ fn instructions(
 
 /// The faults that the last line of the link counts.
 fn faults(link: &str) -> u64 {
-    let counts = link.lines().filter_map(|line| line.rsplit("faults ").next()?.trim().parse().ok());
-    counts.last().unwrap_or(0)
+    let mut counts =
+        link.lines().filter_map(|line| line.rsplit("faults ").next()?.trim().parse().ok());
+    counts.next_back().unwrap_or(0)
 }
 
 /// What was done to chips and buses that data sheets forbid.

@@ -69,11 +69,7 @@ fn a_fault_in_the_handler_of_hard_faults_locks_the_core_up() -> Result<(), Strin
     let instructions = board.processor.with_blocks(Blocks::instructions);
     let now = board.processor.now();
     board.go_on(LOOK)?;
-    assert_eq!(
-        board.processor.with_blocks(Blocks::instructions),
-        instructions,
-        "it executes"
-    );
+    assert_eq!(board.processor.with_blocks(Blocks::instructions), instructions, "it executes");
     assert!(board.processor.now() > now, "time stands still");
     Ok(())
 }
