@@ -35,6 +35,12 @@ struct Region {
 }
 
 impl Region {
+    /// Its first and last address; none where it is disabled.
+    fn ends(self) -> Option<(u32, u32)> {
+        let rest = u32::MAX >> (31 - (self.attributes >> 1 & 0x1F));
+        (self.attributes & 1 != 0).then_some((self.base & !rest, self.base | rest))
+    }
+
     /// Whether it covers an address (B3.5.3, `ValidateAddress`).
     const fn covers(self, address: u32) -> bool {
         let power = (self.attributes >> 1 & 0x1F) + 1;
@@ -74,6 +80,21 @@ impl Protection {
     #[must_use]
     pub const fn is_on(&self) -> bool {
         self.control & 1 != 0
+    }
+
+    /// The first and the last address between which an access of data may not be allowed; none where all are. Code
+    /// without privilege may be refused anywhere.
+    #[must_use]
+    pub fn watched(&self, is_unprivileged: bool) -> Option<(u32, u32)> {
+        let has_default_map = self.control & 4 != 0;
+        match self.is_on() {
+            false => None,
+            true if is_unprivileged || !has_default_map => Some((0, u32::MAX)),
+            true => {
+                let ends = self.regions.iter().filter_map(|region| region.ends());
+                ends.reduce(|all, ends| (all.0.min(ends.0), all.1.max(ends.1)))
+            }
+        }
     }
 
     /// Reads a register by its distance from `MPU_TYPE`; none where there is none.

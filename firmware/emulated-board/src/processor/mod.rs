@@ -75,7 +75,7 @@ enum Halt {
     Calling,
     /// It faults.
     Faulting(Fault),
-    /// It switches memory protection on or off.
+    /// It changes where memory is protected, or from whom.
     Protecting,
     /// It asked the model for something that it does not know.
     Lost(u32, Refused, Option<u32>),
@@ -195,6 +195,9 @@ impl State {
     /// Follows whether interrupts are off, and who executes.
     fn watch_masks(&mut self, uc: &Unicorn<'_, ()>, address: u32) {
         self.level = self.level(uc);
+        if self.level.is_unprivileged && self.controller.system.protection.is_on() {
+            self.halt.get_or_insert(Halt::Protecting);
+        }
         match (masks(uc).all, self.masked_since) {
             (true, None) => self.masked_since = Some(self.now),
             (false, Some(since)) => {
@@ -275,8 +278,10 @@ fn is_ram(address: u32) -> bool {
 pub struct Processor {
     uc: Unicorn<'static, ()>,
     state: Rc<RefCell<State>>,
-    /// What holds every access of data to the protection of memory, while it is on.
-    protecting: Option<UcHookId>,
+    /// What holds accesses of data to the protection of memory, and between which addresses.
+    protecting: Option<(UcHookId, (u32, u32))>,
+    /// Whether there was a thread without privilege.
+    was_unprivileged: bool,
     image: Rc<Image>,
 }
 
@@ -319,7 +324,7 @@ impl Processor {
             halt: None,
             counts: Counts::default(),
         }));
-        let mut processor = Self { uc, state, protecting: None, image };
+        let mut processor = Self { uc, state, protecting: None, was_unprivileged: false, image };
         processor.hook()?;
         processor.map_store(code)?;
         processor.map_registers(0x4000_0000, 0x0003_0000)?;
@@ -441,14 +446,14 @@ impl Processor {
             if state.is_barred(uc, address) {
                 return;
             }
-            let was_protecting = state.controller.system.protection.is_on();
+            let was_watched = state.controller.system.protection.watched(false);
             let written =
                 state.controller.write(&mut Ram(uc), address, (value as u32, size as u32), now);
             state.look();
             if let Err(reason) = written {
                 state.halt(uc, Halt::Lost(address, reason, Some(value as u32)));
             }
-            if was_protecting != state.controller.system.protection.is_on() {
+            if was_watched != state.controller.system.protection.watched(false) {
                 state.halt(uc, Halt::Protecting);
             }
         };
@@ -462,6 +467,7 @@ impl Processor {
     pub fn run(&mut self, until: Time) -> Result<(), Unknown> {
         while self.now() < until {
             self.restart();
+            self.protect();
             if self.is_locked() {
                 self.idle(until);
                 continue;
@@ -475,11 +481,10 @@ impl Processor {
                 Some(Halt::Returning) => self.leave(),
                 Some(Halt::Calling) => self.call(),
                 Some(Halt::Faulting(fault)) => self.fault(fault),
-                Some(Halt::Protecting) => self.protect(),
                 Some(Halt::Lost(address, reason, value)) => {
                     return Err(self.lost(address, reason, value));
                 }
-                None => {}
+                Some(Halt::Protecting) | None => {}
             }
         }
         Ok(())
@@ -586,7 +591,6 @@ impl Processor {
             (state.halt, state.event, state.masked_since, state.active) = (None, false, None, 0);
             (state.level, state.is_locked, state.undone) = (Level::default(), false, None);
         }
-        self.protect();
         if reason == ResetReason::Supply {
             self.poke(RAM, &vec![PAINT; RAM_BYTES]);
         }

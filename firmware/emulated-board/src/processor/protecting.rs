@@ -1,8 +1,8 @@
 //! Accesses that must not happen: the core is as it was before them, and nothing is written.
 //!
 //! Unicorn goes on to the end of an access that a hook refuses, and, among conditional instructions, beyond it. So
-//! registers and memory are put back. The protection of memory is a hook of every access of data, since its regions
-//! are smaller than Unicorn's pages; it is there only while protection is on.
+//! registers and memory are put back. The protection of memory is a hook of accesses of data, since its regions are
+//! smaller than Unicorn's pages; it is there only while protection is on, and only where that may refuse an access.
 
 use std::rc::Rc;
 
@@ -107,26 +107,31 @@ impl Processor {
         }
     }
 
-    /// Begins or ends to hold every access of data to the protection of memory.
+    /// Holds accesses of data to the protection of memory, where it may refuse them. Once there was a thread without
+    /// privilege, that is everywhere: a change has all code translated anew.
     pub(super) fn protect(&mut self) {
-        let is_on = self.state.borrow().controller.system.protection.is_on();
-        match (is_on, self.protecting.take()) {
-            (true, None) => {
-                let state = Rc::clone(&self.state);
-                let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, size, _| {
-                    state.borrow_mut().check(uc, kind, address as u32, size);
-                    true
-                };
-                self.protecting =
-                    self.uc.add_mem_hook(HookType::MEM_READ | HookType::MEM_WRITE, 1, 0, hook).ok();
-            }
-            (false, Some(hook)) => {
-                let _ = self.uc.remove_hook(hook);
-            }
-            (_, unchanged) => {
-                self.protecting = unchanged;
-                return;
-            }
+        let watched = {
+            let state = self.state.borrow();
+            self.was_unprivileged |= state.level.is_unprivileged;
+            state.controller.system.protection.watched(self.was_unprivileged)
+        };
+        if watched == self.protecting.map(|(_, watched)| watched) {
+            return;
+        }
+        if let Some((hook, _)) = self.protecting.take() {
+            let _ = self.uc.remove_hook(hook);
+        }
+        if let Some((first, last)) = watched {
+            let state = Rc::clone(&self.state);
+            let check = move |uc: &mut Unicorn<'_, ()>, kind, address, size, _| {
+                state.borrow_mut().check(uc, kind, address as u32, size);
+                true
+            };
+            // An access of up to eight bytes may begin before what is watched.
+            let begin = first.saturating_sub(7);
+            let kinds = HookType::MEM_READ | HookType::MEM_WRITE;
+            let hook = self.uc.add_mem_hook(kinds, begin.into(), last.into(), check);
+            self.protecting = hook.ok().map(|hook| (hook, (first, last)));
         }
         // Code that was translated before does without the hook, or with it.
         let _ = self.uc.ctl_flush_tb();
