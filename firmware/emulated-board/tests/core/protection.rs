@@ -80,3 +80,15 @@ fn a_region_of_all_addresses_and_one_of_32_bytes_cover_what_they_say() {
     assert!(eighths.allows(0x2000_001C, 4, Access::Read, HANDLER));
     assert!(!eighths.allows(0x2000_0020, 4, Access::Read, HANDLER));
 }
+
+#[test]
+fn accesses_are_watched_where_one_may_be_refused() {
+    let region = 4 << 1 | 1;
+    assert_eq!(unit(0, 0x2000_0020, region).watched(true), None);
+    assert_eq!(unit(0b101, 0x2000_0020, region).watched(false), Some((0x2000_0020, 0x2000_003F)));
+    assert_eq!(unit(0b101, 0x2000_0020, 0).watched(false), None);
+    assert_eq!(unit(0b101, 0x8000_0000, 31 << 1 | 1).watched(false), Some((0, u32::MAX)));
+    // Without the default map, or without privilege, what no region covers is refused too.
+    assert_eq!(unit(0b001, 0x2000_0020, region).watched(false), Some((0, u32::MAX)));
+    assert_eq!(unit(0b101, 0x2000_0020, region).watched(true), Some((0, u32::MAX)));
+}
