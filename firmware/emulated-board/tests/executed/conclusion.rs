@@ -47,11 +47,11 @@ fn a_conclusion_on_a_turntable_loses_no_conversion() {
 
 #[test]
 #[should_panic(
-    expected = "between 180 and 230 conversions are lost to the conclusion on two frames"
+    expected = "between 210 and 255 conversions are lost to the conclusion on two frames"
 )]
 fn a_conclusion_on_two_frames_loses_no_conversion() {
     let words = "conversions are lost to the conclusion on two frames";
-    hold(lost(&calibrated_two_frames()), 0.0..=0.0, 180.0..=230.0, words);
+    hold(lost(&calibrated_two_frames()), 0.0..=0.0, 210.0..=255.0, words);
 }
 
 #[test]
