@@ -179,6 +179,8 @@ pub struct Board {
     base: (Option<BaseImu>, I2cWires),
     /// Whether the motor drivers are enabled.
     motors: bool,
+    /// When the latest byte on a serial bus began.
+    begun: Time,
 }
 
 impl Board {
@@ -197,17 +199,22 @@ impl Board {
         };
         let buses = [SpiWires::new(), SpiWires::new()];
         let lines = lines.iter().map(line).collect();
-        Self { carrier, buses, selects, lines, base: (base, I2cWires::new()), motors: true }
+        let base = (base, I2cWires::new());
+        Self { carrier, buses, selects, lines, base, motors: true, begun: Time::ZERO }
     }
 
-    /// Looks at the data-ready lines: when they next fall, and whether conversions were read.
+    /// Looks when the data-ready lines next fall.
     fn look(&mut self, now: Time) {
         for line in &mut self.lines {
+            line.next = self.carrier.borrow_mut().ready_line(line.select, now.instant()).next;
+        }
+    }
+
+    /// Counts the conversions that are read from now on: the first byte to a converter lifts its line.
+    fn serve(&mut self, now: Time) {
+        for line in self.lines.iter_mut().filter(|line| line.waits.is_some()) {
             let seen = self.carrier.borrow_mut().ready_line(line.select, now.instant());
-            line.next = seen.next;
-            if !seen.active
-                && let Some(since) = line.waits.take()
-            {
+            if let Some(since) = line.waits.take_if(|_| !seen.active) {
                 line.served.read += 1;
                 line.served.longest = line.served.longest.max((now - since, now));
             }
@@ -282,10 +289,13 @@ impl Wiring for Board {
 
     fn begin(&mut self, bus: usize, byte: u8, clock: Clock, now: Time) {
         self.buses[bus].begin(&mut *self.carrier.borrow_mut(), byte, clock, now.as_nanoseconds());
+        self.begun = now;
     }
 
     fn finish(&mut self, bus: usize) -> u8 {
-        self.buses[bus].finish(&mut *self.carrier.borrow_mut())
+        let answer = self.buses[bus].finish(&mut *self.carrier.borrow_mut());
+        self.serve(self.begun);
+        answer
     }
 
     fn faults(&self) -> Vec<String> {
