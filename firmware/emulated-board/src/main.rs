@@ -82,7 +82,15 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
         eprintln!("{:>12} {:<5} {}", line.time, line.level.unwrap_or("-"), line.words);
     };
     let world = World::new(order.carrier, order.seed)?;
-    execute(&image, &order, world, on_line, |sent| exchange(client.as_mut(), sent))
+    let report = execute(&image, &order, world, on_line, |sent| exchange(client.as_mut(), sent))?;
+    let file = arguments.image.display();
+    match report.outcome.as_str() {
+        "" => Err(format!(
+            "{file}: its log says nothing: is it the image of a board, for this carrier?"
+        )),
+        refused if refused.starts_with("board: no settings") => Err(format!("{file}: {refused}")),
+        _ => Ok(report),
+    }
 }
 
 /// The client of the link, who is waited for.

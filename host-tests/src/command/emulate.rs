@@ -20,14 +20,30 @@ pub struct EmulateOptions {
     #[arg(long, value_name = "CARRIER", value_parser = carriers)]
     board: Option<Carriers>,
     /// With --board: cycles of the core for an instruction, wait states of the flash included.
-    #[arg(long, default_value_t = 1.4, requires = "board")]
+    #[arg(long, default_value_t = 1.4, requires = "board", value_parser = cycles)]
     cycles: f64,
     /// With --board: how long it goes on after its result, s; 10 unless stated.
-    #[arg(long, value_name = "SECONDS", requires = "board")]
+    #[arg(long, value_name = "SECONDS", requires = "board", value_parser = afterwards)]
     afterwards: Option<f64>,
     /// With --board and one carrier: the link as a byte stream for one client, which is waited for.
     #[arg(long, value_name = "tcp:PORT", requires = "board")]
     link: Option<String>,
+}
+
+/// A number within a range.
+fn within(text: &str, [least, most]: [f64; 2]) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+    number.ok_or_else(|| format!("{least} to {most} are meant"))
+}
+
+/// Cycles of an instruction.
+fn cycles(text: &str) -> Result<f64, String> {
+    within(text, [0.5, 20.0])
+}
+
+/// Time after the result, s.
+fn afterwards(text: &str) -> Result<f64, String> {
+    within(text, [0.0, 3600.0])
 }
 
 /// Carriers whose images are executed.

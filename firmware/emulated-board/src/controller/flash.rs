@@ -307,7 +307,7 @@ impl Flash {
     fn report(&mut self, offset: u32, flag: u32) {
         if self.ecc & (CORRECTED | BROKEN) == 0 {
             let bank = if offset as usize >= SIZE / 2 { 1 << 19 } else { 0 };
-            let row = offset % (SIZE as u32 / 2) / ROW as u32;
+            let row = (offset % (SIZE as u32 / 2)) & !(ROW as u32 - 1);
             self.ecc = (self.ecc & TELLS_FINDING) | bank | row;
         }
         self.ecc |= flag;

@@ -1,4 +1,5 @@
-//! Pins (RM0351, chapter 8): what each port drives, and what the other functions of a pin are.
+//! Pins (RM0351, chapter 8): what each port drives. Which function a pin has besides is written and not looked at: wires
+//! go to the peripherals that the board's pins are meant for.
 
 use super::Refused;
 

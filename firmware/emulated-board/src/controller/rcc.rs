@@ -184,14 +184,13 @@ impl Rcc {
         }
     }
 
-    /// Frequency of the oscillator MSI, Hz: with the crystal the nearest multiple of it below (AN2606's figure for
-    /// 4 MHz is 122 of them).
+    /// Frequency of the oscillator MSI, Hz: with the crystal the nearest multiple of it, 122 for 4 MHz.
     fn msi(&self, now: Time) -> u64 {
         let control = self.words[CR];
         let range = if control & 8 != 0 { control >> 4 & 0xF } else { self.words[CSR] >> 8 & 0xF };
         let nominal = MSI_HERTZ[(range as usize).min(MSI_HERTZ.len() - 1)];
         if control & 4 != 0 && self.crystal_runs(now) {
-            return nominal / LSE_HERTZ * LSE_HERTZ;
+            return (nominal + LSE_HERTZ / 2) / LSE_HERTZ * LSE_HERTZ;
         }
         (nominal as f64 * (1.0 + self.oscillators.msi_error)).round() as u64
     }

@@ -48,6 +48,10 @@ impl Watchdog {
 
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
+        // Any key but that of access protects prescaler and reload value.
+        if offset == 0 {
+            self.is_open = value & 0xFFFF == 0x5555;
+        }
         match (offset, value & 0xFFFF) {
             (0x00, 0xCCCC) => self.fed = self.fed.or(Some(now)),
             (0x00, 0xAAAA) => {
@@ -58,10 +62,9 @@ impl Watchdog {
                     self.fed = None;
                 }
             }
-            (0x00, key) => self.is_open = key == 0x5555,
             (0x04, value) if self.is_open => self.prescaler = value & 7,
             (0x08, value) if self.is_open => self.reload = value & 0xFFF,
-            (0x04 | 0x08, _) => {}
+            (0x00 | 0x04 | 0x08, _) => {}
             _ => return Err(Refused::Unknown),
         }
         Ok(())

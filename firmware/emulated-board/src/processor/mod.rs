@@ -224,6 +224,15 @@ impl State {
     }
 }
 
+/// Where this controller has registers, modelled or not (RM0351, 2.2.2), with the size, bytes: system memory with the
+/// unique identity, peripherals, external memories' controllers, the core's own. Accesses elsewhere are bus faults.
+const REGISTERS: [(u32, u64); 4] = [
+    (0x1FFF_0000, 0x0001_0000),
+    (0x4000_0000, 0x2000_0000),
+    (0xA000_0000, 0x0000_2000),
+    (0xE000_0000, 0x0010_0000),
+];
+
 /// The masks of the core.
 fn masks(uc: &Unicorn<'_, ()>) -> Masks {
     let read = |register| uc.reg_read(register).unwrap_or(0);
@@ -327,10 +336,9 @@ impl Processor {
         let mut processor = Self { uc, state, protecting: None, was_unprivileged: false, image };
         processor.hook()?;
         processor.map_store(code)?;
-        processor.map_registers(0x4000_0000, 0x0003_0000)?;
-        processor.map_registers(0x4800_0000, 0x0001_0000)?;
-        processor.map_registers(0xE000_E000, 0x0000_1000)?;
-        processor.map_registers(0xE004_2000, 0x0000_1000)?;
+        for (base, size) in REGISTERS {
+            processor.map_registers(base, size)?;
+        }
         processor.start();
         Ok(processor)
     }

@@ -72,18 +72,6 @@ impl Report {
             .map_err(|error| format!("the report of an executed image: {error}"))
     }
 
-    /// Conversions that were lost until the result.
-    #[must_use]
-    pub fn lost_before_result(&self) -> u64 {
-        self.service[0].lost + self.service[1].lost
-    }
-
-    /// Conversions that were lost in all.
-    #[must_use]
-    pub fn lost(&self) -> u64 {
-        self.service.iter().map(|service| service.lost).sum()
-    }
-
     /// The longest time for which a conversion waited to be read, s.
     #[must_use]
     pub fn longest_wait_seconds(&self) -> f64 {
