@@ -54,7 +54,7 @@ pub fn turntable(seed: u64) -> TurntableScenario {
     }
 }
 
-/// A vehicle with two stops of a quarter of a minute and a short drive, which nobody tells where it is.
+/// A vehicle with two stops of a quarter of a minute and a short drive, without aiding by position.
 pub fn vehicle(seed: u64) -> VehicleScenario {
     let base = Scenario { has_base_imu: false, ..base(seed) };
     VehicleScenario { base, place: Place::Unknown, ..VehicleScenario::brief(seed) }

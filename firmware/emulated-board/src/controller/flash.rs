@@ -132,11 +132,6 @@ impl Flash {
         (self.cut, self.cut_at) = (None, Time::NEVER);
     }
 
-    /// Wait states of a fetch.
-    pub fn wait_states(&self) -> u32 {
-        self.access & 7
-    }
-
     /// Whether an operation is under way.
     fn is_busy(&mut self, now: Time) -> bool {
         let is_busy = self.array.busy(since_start(now)).is_some();

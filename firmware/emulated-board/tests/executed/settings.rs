@@ -58,7 +58,7 @@ fn a_board_with_a_damaged_record_says_so_over_the_link() {
     hold(silent, 0.0..=2.0, 19.0..=21.0, "s a board with a damaged record is mute, and fed");
 }
 
-/// What the store's own checksum refuses counts as absent, so the board begins with settings that nobody chose.
+/// What the store's own checksum refuses counts as absent, so the board begins with the settings of its image.
 #[test]
 #[should_panic(
     expected = "exactly 1 board with a record that its store has lost begins with the image's settings"
@@ -101,7 +101,7 @@ fn a_store_with_another_programs_remains_is_erased() {
     hold(ended as f64, 0.0..=0.0, 3.0..=3.0, words);
 }
 
-/// Nobody takes the samples any more, and every one of them counts as a fault.
+/// The samples are not taken any more, and every one of them counts as a fault.
 #[test]
 #[should_panic(
     expected = "between 390 and 410 faults a second are counted after the result of a stage that does not hold it"

@@ -1,13 +1,9 @@
 //! A board that is executed step by step, with its log, its link and its faults.
 
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::rc::Rc;
-use std::sync::Mutex;
 
 use emulated_board::controller::Controller;
-use emulated_board::image::Image;
 use emulated_board::run::{Execution, Order};
 use emulated_board::wiring::board::Carrier;
 use emulated_board::world::World;
@@ -15,40 +11,7 @@ use firmware::platform::Platform;
 use simulated::executed;
 use simulated::fault::Injection;
 
-/// Images are built one after the other, and each once.
-static BUILT: Mutex<Vec<Platform>> = Mutex::new(Vec::new());
-
-/// The image of a carrier: of the folder that the environment variable `MERIDIAN_IMAGES` names, or built.
-pub fn image(carrier: Platform) -> Rc<Image> {
-    let folder = std::env::var_os("MERIDIAN_IMAGES").map_or_else(|| built(carrier), PathBuf::from);
-    let image = Image::read(&folder.join(format!("board-{}.elf", carrier.name())));
-    Rc::new(image.expect("it is an image"))
-}
-
-/// The folder into which the image of a carrier has been built.
-fn built(carrier: Platform) -> PathBuf {
-    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let target =
-        Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("it is in the target folder");
-    let folder = target.join("images-of-faults");
-    let mut all = BUILT.lock().expect("no build has panicked");
-    if !all.contains(&carrier) {
-        let arguments =
-            ["build", "--quiet", "--locked", "--profile", "firmware", "--target", TARGET];
-        let what = ["--package", "board-b-l475e-iot01a", "--features", carrier.name()];
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.current_dir(package).env("CARGO_TARGET_DIR", target).args(arguments).args(what);
-        assert!(cargo.status().expect("cargo is there").success(), "{}: not built", carrier.name());
-        std::fs::create_dir_all(&folder).expect("the target folder is ours");
-        let image = folder.join(format!("board-{}.elf", carrier.name()));
-        std::fs::copy(target.join(TARGET).join("firmware/board"), image).expect("it was built");
-        all.push(carrier);
-    }
-    folder
-}
-
-/// The target of the images.
-const TARGET: &str = "thumbv7em-none-eabihf";
+use crate::images::image;
 
 /// A board that is executed.
 pub struct Board {

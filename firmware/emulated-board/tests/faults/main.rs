@@ -7,6 +7,8 @@
 
 mod board;
 mod hung;
+#[path = "../support/images.rs"]
+mod images;
 mod power;
 mod readme;
 mod saving;

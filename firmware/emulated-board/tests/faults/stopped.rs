@@ -10,7 +10,8 @@
 use emulated_board::processor::exceptions::HARD_FAULT;
 use firmware::platform::Platform;
 
-use crate::board::{Board, TurningBoard, image};
+use crate::board::{Board, TurningBoard};
+use crate::images::image;
 
 /// Where there is nothing.
 const NOWHERE: u32 = 0x6000_0000;

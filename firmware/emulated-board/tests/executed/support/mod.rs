@@ -3,5 +3,6 @@
 pub mod bench;
 pub mod defect;
 pub mod executed;
+#[path = "../../support/images.rs"]
 pub mod images;
 pub mod worlds;

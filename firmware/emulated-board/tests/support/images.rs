@@ -1,4 +1,4 @@
-//! The images of all carriers, built once.
+//! The images of the carriers, each built once.
 
 use std::env;
 use std::ffi::OsString;
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::rc::Rc;
-use std::sync::OnceLock;
+use std::sync::Mutex;
 
 use emulated_board::image::Image;
 use firmware::platform::Platform;
@@ -18,25 +18,30 @@ pub fn root() -> &'static Path {
     own.ancestors().nth(2).expect("the crate lies in the workspace's folder `firmware`")
 }
 
-/// The image of a carrier.
+/// Carriers whose images were built; one after the other, since each has the name of the one before.
+static BUILT: Mutex<Vec<Platform>> = Mutex::new(Vec::new());
+
+/// The image of a carrier, `board-NAME.elf`: of the folder that the environment variable `MERIDIAN_IMAGES` names, or
+/// built.
 pub fn image(carrier: Platform) -> Rc<Image> {
-    let path = folder().join(carrier.name());
-    Rc::new(Image::read(&path).unwrap_or_else(|error| panic!("the image of {carrier}: {error}")))
+    let folder = env::var_os("MERIDIAN_IMAGES").map_or_else(|| built(carrier), PathBuf::from);
+    let image = Image::read(&folder.join(name(carrier)));
+    Rc::new(image.unwrap_or_else(|error| panic!("the image of {carrier}: {error}")))
 }
 
-/// The folder with a file for each carrier: that of the variable `MERIDIAN_IMAGES`, or one with images that are
-/// built now.
-fn folder() -> &'static Path {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    FOLDER.get_or_init(|| env::var_os("MERIDIAN_IMAGES").map_or_else(build_all, PathBuf::from))
+/// The file of a carrier's image.
+fn name(carrier: Platform) -> String {
+    format!("board-{}.elf", carrier.name())
 }
 
-/// Builds the images one after the other: each has the name of the one before.
-fn build_all() -> PathBuf {
+/// The folder into which the image of a carrier has been built.
+fn built(carrier: Platform) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("images");
-    fs::create_dir_all(&folder).expect("cargo's folder for tests takes another");
-    for carrier in Platform::ALL {
-        fs::copy(build(carrier), folder.join(carrier.name())).expect("an image can be copied");
+    let mut all = BUILT.lock().expect("no build has panicked");
+    if !all.contains(&carrier) {
+        fs::create_dir_all(&folder).expect("cargo's folder for tests takes another");
+        fs::copy(build(carrier), folder.join(name(carrier))).expect("an image can be copied");
+        all.push(carrier);
     }
     folder
 }
