@@ -9,6 +9,8 @@ use hal_mock::flash::{
 use super::Refused;
 use crate::time::Time;
 
+/// `FLASH_ACR`: the data cache is on.
+const CACHES_DATA: u32 = 1 << 10;
 /// `FLASH_CR`: stores program rows.
 const PROGRAM: u32 = 1;
 /// `FLASH_CR`: a page is erased.
@@ -53,6 +55,10 @@ const OPTIONS: u32 = 0xFFEF_F8AA;
 pub struct FlashUse {
     /// Rows that were programmed.
     pub rows: u64,
+    /// Those whose programming began with the data cache on. The core runs from one bank and programs the other, which
+    /// may then corrupt the cache: an erratum of this controller, described in [`hal_mock::flash::data_cache`], whose
+    /// remedy is to switch the cache off before a write and to reset it after it.
+    pub rows_with_cache_on: u64,
     /// Pages that were erased.
     pub pages: u64,
 }
@@ -195,7 +201,7 @@ impl Flash {
     pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
         match offset {
             0x00 => {
-                self.array.switch_cache(value & 1 << 10 != 0);
+                self.array.switch_cache(value & CACHES_DATA != 0);
                 if value & 1 << 12 != 0 {
                     self.array.reset_cache();
                 }
@@ -268,6 +274,7 @@ impl Flash {
                 match self.array.program(start, data, since_start(now)) {
                     Ok(()) => {
                         self.used.rows += 1;
+                        self.used.rows_with_cache_on += u64::from(self.access & CACHES_DATA != 0);
                         self.run(now);
                     }
                     Err(NotProgrammed::Programmed) => self.status |= PROGRAMMED,

@@ -56,6 +56,26 @@ fn two_words_program_a_row_in_82_microseconds_while_its_bank_cannot_be_read() {
 }
 
 #[test]
+fn rows_that_are_programmed_beside_the_data_cache_are_counted_apart() {
+    let mut bench = open();
+    bench.write(FLASH + 0x14, 1);
+    let counted = |bench: &Bench| {
+        let used = bench.controller.flash.used;
+        [used.rows, used.rows_with_cache_on]
+    };
+    // The cache is on after a reset (RM0351, 3.7.1).
+    store(&mut bench, [1, 2]);
+    assert_eq!(counted(&bench), [1, 1]);
+    bench.pass(Time::microseconds(82));
+    let access = bench.read(FLASH);
+    bench.write(FLASH, access & !(1 << 10));
+    for (offset, word) in [(ROW + 8, 3), (ROW + 12, 4)] {
+        bench.controller.flash.store(offset, word, 4, bench.now);
+    }
+    assert_eq!(counted(&bench), [2, 1]);
+}
+
+#[test]
 fn a_page_is_erased_in_22_milliseconds_and_the_end_interrupts() {
     let mut bench = open();
     bench.controller.flash.array.burn(ROW, &[0; 16]);
