@@ -13,11 +13,11 @@
 //!   operation". The sheet of the STM32L475 is ES0302 (Zephyr, pull request 67740), whose text was not at hand; this
 //!   is ST's of the `STM32F42x` (2.1.11 of its errata, quoted in trezor-core's pull request 57). Zephyr (pull request
 //!   13732: section 2.2.3, and bus faults because of it), `NuttX` (pull request 166) and embassy (pull request 6384:
-//!   section 2.2.2 of ES0510) find it in the sheets of the STM32L4, too. When
-//!   the flash is written, the cache is updated to reflect it; if the other bank is read during that update, the
-//!   cache may be corrupted, and later reads from the same address that hit the cache get wrong data. It needs both
-//!   banks, reading from one (data or code) while the other is written, and the cache on. The remedy is to switch the
-//!   cache off before a write, and to reset it before it is switched on again.
+//!   section 2.2.2 of ES0510) find it in the sheets of the STM32L4, too. When the flash is written, the cache is
+//!   updated to reflect it; if the other bank is read during that update, the cache may be corrupted, and later reads
+//!   from the same address that hit the cache get wrong data. It needs both banks, reading from one (data or code)
+//!   while the other is written, and the cache on. The remedy is to switch the cache off before a write, and to reset
+//!   it before it is switched on again.
 //!
 //! When the update takes place, how often it spoils a row, and what with, ST does not tell. Here any fetch of
 //! a row while the other bank is programmed may spoil it, with a probability that the user sets: the read itself

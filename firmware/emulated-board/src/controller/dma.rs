@@ -75,6 +75,11 @@ impl Dma {
         self.selections >> (4 * channel) & 0xF
     }
 
+    /// The priority of a channel, 0 to 3.
+    pub const fn priority(&self, channel: usize) -> u32 {
+        self.channels[channel].control >> 12 & 3
+    }
+
     /// The next item of a channel whose request is active; it counts as done.
     pub fn take(&mut self, channel: usize) -> Option<Item> {
         let armed = self.channels.get_mut(channel).filter(|channel| channel.is_armed())?;

@@ -23,12 +23,20 @@ const ERASE_UPPER: u32 = 1 << 15;
 const START: u32 = 1 << 16;
 /// `FLASH_CR`: it cannot be written.
 const LOCK: u32 = 1 << 31;
+/// `FLASH_CR`: the option bytes cannot be written, which stays so.
+const LOCK_OPTIONS: u32 = 1 << 30;
+/// `FLASH_CR`: option bytes, fast programming, interrupts of protected areas.
+const UNUSUAL: u32 = 1 << 17 | 1 << 18 | 1 << 26 | 1 << 27;
+/// `FLASH_ACR`: powers the flash down while the core runs or sleeps.
+const POWER_DOWN: u32 = 3 << 13;
 /// `FLASH_SR`: an operation has ended.
 const DONE: u32 = 1;
 /// `FLASH_SR`: the row was programmed before.
 const PROGRAMMED: u32 = 1 << 3;
 /// `FLASH_SR`: the stores are not those of a row.
 const UNALIGNED: u32 = 1 << 5;
+/// `FLASH_SR`: a store was shorter than a word.
+const SIZE_ERROR: u32 = 1 << 6;
 /// `FLASH_SR`: the control register does not ask for what is done.
 const SEQUENCE: u32 = 1 << 7;
 /// `FLASH_SR`: any error.
@@ -117,7 +125,7 @@ impl Flash {
             array: Array::erased(cells, Times::TYPICAL, seed),
             access: 0x600,
             status: 0,
-            control: LOCK,
+            control: LOCK | LOCK_OPTIONS,
             ecc: 0,
             is_half_open: false,
             half: None,
@@ -132,7 +140,7 @@ impl Flash {
     /// A reset: what is under way is torn.
     pub fn reset(&mut self, now: Time) {
         self.array.lose_supply(since_start(now));
-        (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK, 0);
+        (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK | LOCK_OPTIONS, 0);
         (self.is_half_open, self.half, self.is_running, self.is_broken) =
             (false, None, false, false);
         (self.cut, self.cut_at) = (None, Time::NEVER);
@@ -200,36 +208,60 @@ impl Flash {
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
         match offset {
-            0x00 => {
-                self.array.switch_cache(value & CACHES_DATA != 0);
-                if value & 1 << 12 != 0 {
-                    self.array.reset_cache();
-                }
-                self.access = value & !0x1800;
-            }
-            0x08 if self.control & LOCK == 0 => {}
-            0x08 if value == KEYS[0] && !self.is_half_open => self.is_half_open = true,
-            0x08 if value == KEYS[1] && self.is_half_open => {
-                (self.control, self.is_half_open) = (self.control & !LOCK, false);
-            }
-            0x08 => {
-                return Err(Refused::NotModelled(
-                    "a wrong key, which locks the flash until the next reset",
-                ));
-            }
+            0x00 => self.write_access(value)?,
+            0x08 => self.write_key(value)?,
             0x10 => self.status &= !value,
-            0x14 if self.control & LOCK != 0 => {}
-            0x14 => {
-                self.control = value & !START;
-                if value & START != 0 {
-                    self.erase(now);
-                }
-            }
+            0x14 if self.control & LOCK == 0 => self.write_control(value, now)?,
+            0x14 => {}
             0x18 => {
                 let kept = self.ecc & !(value & (CORRECTED | BROKEN)) & !TELLS_FINDING;
                 self.ecc = kept | (value & TELLS_FINDING);
             }
             _ => return Err(Refused::Unknown),
+        }
+        Ok(())
+    }
+
+    /// Writes `FLASH_ACR`.
+    fn write_access(&mut self, value: u32) -> Result<(), Refused> {
+        if value & POWER_DOWN != 0 {
+            return Err(Refused::NotModelled("a flash without its power"));
+        }
+        self.array.switch_cache(value & CACHES_DATA != 0);
+        if value & 1 << 12 != 0 {
+            self.array.reset_cache();
+        }
+        self.access = value & !0x1800;
+        Ok(())
+    }
+
+    /// Writes `FLASH_KEYR`, which opens the control register.
+    fn write_key(&mut self, value: u32) -> Result<(), Refused> {
+        match (self.control & LOCK != 0, self.is_half_open) {
+            (false, _) => {}
+            (true, false) if value == KEYS[0] => self.is_half_open = true,
+            (true, true) if value == KEYS[1] => {
+                (self.control, self.is_half_open) = (self.control & !LOCK, false);
+            }
+            _ => {
+                return Err(Refused::NotModelled(
+                    "a wrong key, which locks the flash until the next reset",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes `FLASH_CR`.
+    fn write_control(&mut self, value: u32, now: Time) -> Result<(), Refused> {
+        if value & UNUSUAL != 0 {
+            return Err(Refused::NotModelled(
+                "option bytes, fast programming or interrupts of protected areas",
+            ));
+        }
+        self.control = value & !START | LOCK_OPTIONS;
+        if value & START != 0 {
+            self.erase(now);
         }
         Ok(())
     }
@@ -263,8 +295,12 @@ impl Flash {
             return Some(Time::nanoseconds(busy.until.as_nanos() as u64));
         }
         self.is_busy(now);
-        if self.control & (PROGRAM | LOCK) != PROGRAM || size != 4 || self.status & ERRORS != 0 {
+        if self.control & (PROGRAM | LOCK) != PROGRAM || self.status & ERRORS != 0 {
             self.status |= SEQUENCE;
+            return None;
+        }
+        if size < 4 {
+            self.status |= SIZE_ERROR;
             return None;
         }
         match self.half.take() {

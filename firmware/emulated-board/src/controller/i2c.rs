@@ -22,6 +22,11 @@ const TCR: u32 = 1 << 7;
 /// The bus is in use.
 const BUSY: u32 = 1 << 15;
 
+/// `I2C_CR1`: it is enabled, its interrupts, direct memory access. No other bit may be set.
+const CONTROL: u32 = 0xC0FF;
+/// `I2C_CR2`: addresses of ten bits, checksums.
+const UNUSUAL: u32 = 1 << 11 | 1 << 12 | 1 << 26;
+
 /// Bits of `I2C_CR2`.
 const READS: u32 = 1 << 10;
 /// Asks for a start.
@@ -51,8 +56,6 @@ enum Wire {
 pub struct I2c {
     /// `I2C_CR1` and `I2C_CR2`.
     control: [u32; 2],
-    /// `I2C_OAR1`, `OAR2`, `TIMEOUTR`: without effect.
-    others: [u32; 3],
     /// `I2C_TIMINGR`.
     timing: u32,
     /// Flags of the status.
@@ -84,6 +87,11 @@ impl I2c {
         let field = |bit: u32, mask: u32| u64::from(self.timing >> bit & mask) + 1;
         let clocks = (field(0, 0xFF) + field(8, 0xFF)) * field(28, 0xF) + 4;
         (clock / clocks) as u32
+    }
+
+    /// Whether something is on the wires.
+    pub const fn uses_wires(&self) -> bool {
+        self.wire.is_some()
     }
 
     /// When what is on the wires ends.
@@ -222,9 +230,9 @@ impl I2c {
     pub fn read(&mut self, offset: u32) -> Result<u32, Refused> {
         Ok(match offset {
             0x00 | 0x04 => self.control[(offset / 4) as usize],
-            0x08 | 0x0C => self.others[(offset / 4 - 2) as usize],
             0x10 => self.timing,
-            0x14 => self.others[2],
+            // It has no address of its own, and no time-outs.
+            0x08 | 0x0C | 0x14 => 0,
             0x18 => self.status(),
             0x24 => self.received.take().unwrap_or(0).into(),
             0x28 => self.waiting.unwrap_or(0).into(),
@@ -234,6 +242,7 @@ impl I2c {
 
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
+        Refused::where_asked(unmodelled(offset, value))?;
         match offset {
             0x00 => {
                 self.control[0] = value;
@@ -256,15 +265,23 @@ impl I2c {
                     self.flags &= !TC;
                 }
             }
-            0x08 | 0x0C => self.others[(offset / 4 - 2) as usize] = value,
             0x10 => self.timing = value,
-            0x14 => self.others[2] = value,
             0x18 if value & TXE != 0 => self.waiting = None,
-            0x18 => {}
+            0x08 | 0x0C | 0x14 | 0x18 => {}
             0x1C => self.flags &= !(value & (NACKF | STOPF | 0x3F00)),
             0x28 => self.waiting = Some(value as u8),
             _ => return Err(Refused::Unknown),
         }
         Ok(())
+    }
+}
+
+/// What a write of a register asks for that is not modelled.
+const fn unmodelled(offset: u32, value: u32) -> Option<&'static str> {
+    match offset {
+        0x00 if value & !CONTROL != 0 => Some("other filters, or functions of a device on the bus"),
+        0x04 if value & UNUSUAL != 0 => Some("addresses of ten bits, or checksums"),
+        0x08 | 0x0C | 0x14 if value != 0 => Some("an address of its own, or time-outs"),
+        _ => None,
     }
 }

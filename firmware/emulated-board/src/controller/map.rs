@@ -36,6 +36,19 @@ pub enum Peripheral {
     Debug,
 }
 
+impl Peripheral {
+    /// Whether it takes a write of so many bytes at an address: of a word. Registers of the core take bytes, that of the
+    /// data of a serial peripheral interface, too, and those on the peripherals' buses that have sixteen bits take those.
+    pub fn takes(self, address: u32, size: u32) -> bool {
+        match self {
+            Self::System => true,
+            Self::Spi(_) => address.is_multiple_of(4),
+            Self::Timer => address.is_multiple_of(4) && size >= 2,
+            _ => size == 4,
+        }
+    }
+}
+
 /// The peripheral at an address, and what gives it its clock: offset of a register of [`Rcc`] and bit.
 pub const fn peripheral(address: u32) -> Option<(Peripheral, Option<(u32, u32)>)> {
     Some(match address & !0x3FF {
@@ -63,7 +76,7 @@ pub const fn peripheral(address: u32) -> Option<(Peripheral, Option<(u32, u32)>)
 }
 
 /// Requests of peripherals for direct memory access: controller, channel from zero, selection (tables 44, 45).
-pub const REQUESTS: [(usize, usize, u32, Request); 10] = [
+pub const REQUESTS: [(usize, usize, u32, Request); 12] = [
     (0, 1, 1, Request::FromSpi(0)),
     (0, 2, 1, Request::ToSpi(0)),
     (0, 3, 1, Request::FromSpi(1)),
@@ -72,6 +85,8 @@ pub const REQUESTS: [(usize, usize, u32, Request); 10] = [
     (0, 4, 3, Request::FromI2c),
     (0, 3, 2, Request::ToUsart),
     (0, 4, 2, Request::FromUsart),
+    (1, 2, 4, Request::FromSpi(0)),
+    (1, 3, 4, Request::ToSpi(0)),
     (1, 5, 2, Request::ToUsart),
     (1, 6, 2, Request::FromUsart),
 ];

@@ -9,6 +9,7 @@ pub mod flash;
 mod gpio;
 mod i2c;
 mod map;
+mod pins;
 mod power;
 pub mod protection;
 pub mod rcc;
@@ -18,6 +19,8 @@ mod timer;
 mod usart;
 mod watchdog;
 
+use std::cmp::Reverse;
+
 use thiserror::Error;
 
 use self::dma::{Dma, Item};
@@ -26,6 +29,7 @@ use self::flash::Flash;
 use self::gpio::Port;
 use self::i2c::I2c;
 use self::map::{DMA_INTERRUPTS, Peripheral, REQUESTS, Request, peripheral};
+use self::pins::Signal;
 use self::power::Power;
 use self::rcc::{Oscillators, Rcc};
 use self::spi::Spi;
@@ -39,6 +43,9 @@ use crate::wiring::{Pin, Wiring};
 
 /// Ports A to H.
 const PORTS: usize = 8;
+/// What a channel meets whose address in the peripheral is that of another register.
+const NO_DATA_REGISTER: Refused =
+    Refused::NotModelled("direct memory access to another register than one of data");
 
 /// Why an access is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -52,6 +59,17 @@ pub enum Refused {
     /// A function that the model does not have.
     #[error("not modelled: {0}")]
     NotModelled(&'static str),
+    /// A peripheral is used whose signal is not connected to the pin at which the board has its wire. What asks for it
+    /// may have been done before, as by direct memory access.
+    #[error("{0}")]
+    NotConnected(Signal),
+}
+
+impl Refused {
+    /// Refuses a function that the model does not have, where one is asked for.
+    fn where_asked(function: Option<&'static str>) -> Result<(), Self> {
+        function.map_or(Ok(()), |function| Err(Self::NotModelled(function)))
+    }
 }
 
 /// Why the controller starts again.
@@ -110,6 +128,8 @@ pub struct Controller {
     pub reset: Option<ResetReason>,
     /// When the crystal begins to oscillate, where the clock then changes.
     crystal: Time,
+    /// What happened of itself that the model does not carry out: the next access tells it.
+    refused: Option<Refused>,
 }
 
 impl Controller {
@@ -123,7 +143,7 @@ impl Controller {
             flash: Flash::new(seed),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
-            timer: Timer::default(),
+            timer: Timer::new(4_000_000),
             spi: [Spi::new(), Spi::new()],
             dma: Default::default(),
             i2c: I2c::new(),
@@ -134,6 +154,7 @@ impl Controller {
             wiring,
             reset: None,
             crystal: Time::NEVER,
+            refused: None,
         }
     }
 
@@ -145,11 +166,12 @@ impl Controller {
         self.system = System::new();
         self.usart.reset();
         self.exti.reset();
-        (self.timer, self.dma, self.i2c) = (Timer::default(), Default::default(), I2c::new());
+        (self.dma, self.i2c) = (Default::default(), I2c::new());
+        self.timer = Timer::new(self.hertz);
         self.spi = [Spi::new(), Spi::new()];
         self.watchdog = Watchdog::default();
         self.debug = [0; 4];
-        self.reset = None;
+        (self.reset, self.refused) = (None, None);
         for index in 0..PORTS {
             self.ports[index] = Port::new(index);
             self.drive(index, now);
@@ -211,8 +233,10 @@ impl Controller {
             self.reset = Some(ResetReason::Supply);
         }
         if self.wiring.due() <= at {
-            for (pin, rises) in self.wiring.edges(at) {
-                self.exti.edge(pin.port, pin.number, rises);
+            for (Pin { port, number }, rises) in self.wiring.edges(at) {
+                if self.ports[port].is_read(number) {
+                    self.exti.edge(port, number, rises);
+                }
             }
         }
         if self.crystal <= at {
@@ -238,24 +262,46 @@ impl Controller {
         }
         // What has begun may leave room for another byte.
         while self.transfer(memory) {}
+        if let Some(signal) = self.disconnected() {
+            self.refused = Some(Refused::NotConnected(signal));
+        }
         self.raise();
     }
 
-    /// Transfers one item of a channel whose peripheral asks for it; whether there was one.
+    /// A signal that is on its way although its pin is not connected to its peripheral.
+    fn disconnected(&self) -> Option<Signal> {
+        let [sends, receives] = self.usart.uses();
+        let [first, second] = self.spi.each_ref().map(Spi::is_shifting);
+        let used: [(bool, &[Signal]); 5] = [
+            (first, &pins::SPI[0]),
+            (second, &pins::SPI[1]),
+            (self.i2c.uses_wires(), &pins::I2C),
+            (sends, &pins::SENT),
+            (receives, &pins::RECEIVED),
+        ];
+        let mut signals = used.into_iter().filter(|(is_used, _)| *is_used).flat_map(|(_, all)| all);
+        signals.find(|signal| !signal.is_connected(&self.ports)).copied()
+    }
+
+    /// Transfers one item of a channel whose peripheral asks for it; whether there was one. Of several channels of a
+    /// controller the one with the highest priority goes first, among equals that with the lowest number (11.4.3).
     fn transfer(&mut self, memory: &mut dyn Memory) -> bool {
-        for (controller, channel, selection, request) in REQUESTS {
-            let dma = &mut self.dma[controller];
-            let is_chosen = dma.channels[channel].is_armed() && dma.selection(channel) == selection;
-            if !is_chosen || !self.asks(request) {
-                continue;
-            }
-            let Some(item) = self.dma[controller].take(channel) else { continue };
-            if !self.carry(memory, item) {
-                self.dma[controller].fail(channel);
-            }
-            return true;
+        let due = REQUESTS.into_iter().filter(|(controller, channel, selection, request)| {
+            let dma = &self.dma[*controller];
+            dma.channels[*channel].is_armed()
+                && dma.selection(*channel) == *selection
+                && self.asks(*request)
+        });
+        let first = due.max_by_key(|(controller, channel, ..)| {
+            (Reverse(*controller), self.dma[*controller].priority(*channel), Reverse(*channel))
+        });
+        let Some((controller, channel, ..)) = first else { return false };
+        if let Some(item) = self.dma[controller].take(channel)
+            && !self.carry(memory, item)
+        {
+            self.dma[controller].fail(channel);
         }
-        false
+        true
     }
 
     /// Whether a peripheral asks for an item.
@@ -270,34 +316,48 @@ impl Controller {
         }
     }
 
-    /// Carries an item between memory and a data register; whether both are there.
+    /// Carries an item between memory and a register; whether there is memory.
     fn carry(&mut self, memory: &mut dyn Memory, item: Item) -> bool {
-        let Some((peripheral, _)) = peripheral(item.peripheral) else { return false };
-        let offset = item.peripheral & 0x3FF;
         let mut bytes = [0; 4];
         let held = &mut bytes[..item.memory_size as usize];
         if item.is_to_peripheral {
-            if !memory.read(item.memory, held) {
-                return false;
+            let is_there = memory.read(item.memory, held);
+            if is_there && self.put(item, u32::from_le_bytes(bytes)).is_none() {
+                self.refused = Some(NO_DATA_REGISTER);
             }
-            let value = u32::from_le_bytes(bytes);
-            let written = match peripheral {
-                Peripheral::Spi(bus) => self.spi[bus].write(offset, value, item.peripheral_size),
-                Peripheral::I2c => self.i2c.write(offset, value),
-                Peripheral::Usart => self.usart.write(offset, value),
-                _ => Err(Refused::Unknown),
-            };
-            return written.is_ok();
+            return is_there;
         }
-        let value = match peripheral {
-            Peripheral::Spi(bus) => self.spi[bus].read(offset, item.peripheral_size),
-            Peripheral::I2c => self.i2c.read(offset),
-            Peripheral::Usart => self.usart.read(offset),
-            _ => Err(Refused::Unknown),
+        let Some(value) = self.get(item) else {
+            self.refused = Some(NO_DATA_REGISTER);
+            return true;
         };
-        value.is_ok_and(|value| {
-            memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize])
-        })
+        memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize])
+    }
+
+    /// Writes an item into the register of a peripheral that sends; none where it is no such register.
+    fn put(&mut self, item: Item, value: u32) -> Option<()> {
+        let offset = item.peripheral & 0x3FF;
+        match (peripheral(item.peripheral)?.0, offset) {
+            (Peripheral::Spi(bus), 0x0C) => {
+                self.spi[bus].write(offset, value, item.peripheral_size)
+            }
+            (Peripheral::I2c, 0x28) => self.i2c.write(offset, value),
+            (Peripheral::Usart, 0x28) => self.usart.write(offset, value),
+            _ => return None,
+        }
+        .ok()
+    }
+
+    /// Reads an item from the register of a peripheral that receives; none where it is no such register.
+    fn get(&mut self, item: Item) -> Option<u32> {
+        let offset = item.peripheral & 0x3FF;
+        match (peripheral(item.peripheral)?.0, offset) {
+            (Peripheral::Spi(bus), 0x0C) => self.spi[bus].read(offset, item.peripheral_size),
+            (Peripheral::I2c, 0x24) => self.i2c.read(offset),
+            (Peripheral::Usart, 0x24) => self.usart.read(offset),
+            _ => return None,
+        }
+        .ok()
     }
 
     /// Sets the lines of the interrupts.
@@ -319,6 +379,8 @@ impl Controller {
         let [event, error] = self.i2c.interrupts();
         set(33, event);
         set(34, error);
+        set(35, self.spi[0].interrupts());
+        set(36, self.spi[1].interrupts());
         set(37, self.usart.interrupts());
         // A row that cannot be corrected (3.3.2).
         if std::mem::take(&mut self.flash.is_broken) {
@@ -331,6 +393,7 @@ impl Controller {
         self.crystal = self.rcc.crystal_due().filter(|due| *due > now).unwrap_or(Time::NEVER);
         if let Ok(hertz) = self.rcc.hertz(now) {
             self.hertz = hertz;
+            self.timer.reclock(hertz, now);
         }
     }
 
@@ -341,9 +404,10 @@ impl Controller {
         }
     }
 
-    /// The levels of a port's pins.
+    /// The levels of a port's pins, as their inputs read them.
     fn levels(&mut self, port: usize, now: Time) -> u16 {
-        (0..16).fold(0, |levels, number| {
+        let read = (0..16).filter(|number| self.ports[port].is_read(*number));
+        read.fold(0, |levels, number| {
             let driven = self.ports[port].driven(number);
             let level = driven.unwrap_or_else(|| self.wiring.level(Pin { port, number }, now));
             levels | u16::from(level) << number
@@ -362,18 +426,14 @@ impl Controller {
         (now, active): (Time, u32),
     ) -> Result<u32, Refused> {
         self.advance(memory, now);
-        let (peripheral, gate) = peripheral(address).ok_or(Refused::Unknown)?;
-        if gate.is_some_and(|(offset, bit)| !self.rcc.has_clock(offset, bit)) {
-            return Err(Refused::NoClock);
-        }
         let offset = address & 0x3FC;
-        let word = match peripheral {
+        let word = match self.clocked(address)? {
             Peripheral::Spi(bus) => self.spi[bus].read(offset, size),
             Peripheral::I2c => self.i2c.read(offset),
             Peripheral::Power => self.power.read(offset),
             Peripheral::Watchdog => self.watchdog.read(offset),
             Peripheral::System => self.system.read(address & 0xFFC, &self.exceptions, active),
-            Peripheral::Configuration => self.exti.ports(offset).copied(),
+            Peripheral::Configuration => self.exti.read_ports(offset),
             Peripheral::Exti => self.exti.read(offset),
             Peripheral::Usart => self.usart.read(offset),
             Peripheral::Timer => self.timer.read(offset, now),
@@ -387,7 +447,7 @@ impl Controller {
             Peripheral::Debug => self.debug_word(address).copied(),
         }?;
         self.settle(memory, now);
-        Ok(word >> (8 * (address & 3)))
+        self.refused.take().map_or(Ok(word >> (8 * (address & 3))), Err)
     }
 
     /// Writes a register by an access of so many bytes.
@@ -402,10 +462,35 @@ impl Controller {
         now: Time,
     ) -> Result<(), Refused> {
         self.advance(memory, now);
+        let peripheral = self.clocked(address)?;
+        if !peripheral.takes(address, size) {
+            return Err(Refused::NotModelled("a write of a part of a register"));
+        }
+        self.write_to(peripheral, address, (value, size), now)?;
+        if self.system.wants_reset {
+            self.reset = Some(ResetReason::Software);
+        }
+        self.settle(memory, now);
+        self.refused.take().map_or(Ok(()), Err)
+    }
+
+    /// The peripheral at an address, which has its clock.
+    fn clocked(&self, address: u32) -> Result<Peripheral, Refused> {
         let (peripheral, gate) = peripheral(address).ok_or(Refused::Unknown)?;
         if gate.is_some_and(|(offset, bit)| !self.rcc.has_clock(offset, bit)) {
             return Err(Refused::NoClock);
         }
+        Ok(peripheral)
+    }
+
+    /// Writes a register of a peripheral.
+    fn write_to(
+        &mut self,
+        peripheral: Peripheral,
+        address: u32,
+        (value, size): (u32, u32),
+        now: Time,
+    ) -> Result<(), Refused> {
         let offset = address & 0x3FF;
         match peripheral {
             Peripheral::Spi(bus) => self.spi[bus].write(offset, value, size),
@@ -415,10 +500,10 @@ impl Controller {
             Peripheral::System => {
                 self.system.write(address & 0xFFF, value, size, &mut self.exceptions)
             }
-            Peripheral::Configuration => self.exti.ports(offset).map(|ports| *ports = value),
+            Peripheral::Configuration => self.exti.write_ports(offset, value),
             Peripheral::Exti => self.exti.write(offset, value),
             Peripheral::Usart => self.usart.write(offset, value),
-            Peripheral::Timer => self.timer.write(offset, value, now, self.hertz),
+            Peripheral::Timer => self.timer.write(offset, value, now),
             Peripheral::Dma(controller) => self.dma[controller].write(offset, value),
             Peripheral::Rcc => self.write_clocks(offset, value, now),
             Peripheral::Flash => self.flash.write(offset, value, now),
@@ -428,15 +513,10 @@ impl Controller {
                 written
             }
             Peripheral::Debug => self.debug_word(address).map(|word| *word = value),
-        }?;
-        if self.system.wants_reset {
-            self.reset = Some(ResetReason::Software);
         }
-        self.settle(memory, now);
-        Ok(())
     }
 
-    /// A register of the debug unit.
+    /// A register of the debug unit: what stops while a debugger halts the core, which none does.
     fn debug_word(&mut self, address: u32) -> Result<&mut u32, Refused> {
         let place = (address & 0x3FF).checked_sub(4).ok_or(Refused::Unknown)? / 4;
         self.debug.get_mut(place as usize).ok_or(Refused::Unknown)
@@ -448,38 +528,29 @@ impl Controller {
             return Ok(());
         }
         self.rcc.write(offset, value, now)?;
-        self.reset_peripherals(offset, value);
+        self.reset_peripherals(offset, value, now);
         self.reclock(now);
         self.rcc.hertz(now).map(|_| ())
     }
 
-    /// Puts peripherals into reset, by a reset register and its bits.
-    fn reset_peripherals(&mut self, offset: u32, bits: u32) {
-        let is_set = |bit: u32| bits >> bit & 1 != 0;
-        match offset {
-            0x28 => (0..2)
-                .filter(|dma| is_set(*dma))
-                .for_each(|dma| self.dma[dma as usize] = Dma::default()),
-            0x38 => {
-                if is_set(14) {
-                    self.spi[1] = Spi::new();
+    /// Puts peripherals into reset, by a reset register and its bits. The flash is only reset without its power (6.4.10).
+    fn reset_peripherals(&mut self, offset: u32, bits: u32, now: Time) {
+        for bit in (0..32).filter(|bit| bits >> bit & 1 != 0) {
+            match (offset, bit) {
+                (0x28, 0 | 1) => self.dma[bit as usize] = Dma::default(),
+                (0x2C, 0..8) => {
+                    self.ports[bit as usize] = Port::new(bit as usize);
+                    self.drive(bit as usize, now);
                 }
-                if is_set(22) {
-                    self.i2c = I2c::new();
-                }
+                (0x38, 14) => self.spi[1] = Spi::new(),
+                (0x38, 22) => self.i2c = I2c::new(),
+                (0x38, 28) => self.power = Power::default(),
+                (0x40, 0) => self.exti.reset_ports(),
+                (0x40, 12) => self.spi[0] = Spi::new(),
+                (0x40, 14) => self.usart.reset(),
+                (0x40, 16) => self.timer = Timer::new(self.hertz),
+                _ => {}
             }
-            0x40 => {
-                if is_set(12) {
-                    self.spi[0] = Spi::new();
-                }
-                if is_set(14) {
-                    self.usart.reset();
-                }
-                if is_set(16) {
-                    self.timer = Timer::default();
-                }
-            }
-            _ => {}
         }
     }
 }

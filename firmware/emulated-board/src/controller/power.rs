@@ -2,6 +2,12 @@
 
 use super::Refused;
 
+/// `PWR_CR1` to `PWR_CR4` after a reset (5.4.1 to 5.4.4): the regulator has its range 1.
+const RESET: [u32; 4] = [0x200, 0, 0x8000, 0];
+/// Bits of them that may be set otherwise: which mode deep sleep is, which the core does not have here; whether the
+/// backup domain may be written; whether port G, which the package does not have, is supplied.
+const FREE: [u32; 4] = [0x107, 1 << 9, 0, 0];
+
 /// The registers, as written.
 #[derive(Clone, Debug)]
 pub struct Power {
@@ -11,7 +17,7 @@ pub struct Power {
 
 impl Default for Power {
     fn default() -> Self {
-        Self { control: [0x200, 0, 0x8000, 0] }
+        Self { control: RESET }
     }
 }
 
@@ -29,10 +35,16 @@ impl Power {
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
         match offset {
-            0x00..0x10 => self.control[(offset / 4) as usize] = value,
-            _ => return Err(Refused::Unknown),
+            0x00..0x10 => {
+                let place = (offset / 4) as usize;
+                if (value ^ RESET[place]) & !FREE[place] != 0 {
+                    return Err(Refused::NotModelled("other voltages, their monitors, or standby"));
+                }
+                self.control[place] = value;
+                Ok(())
+            }
+            _ => Err(Refused::Unknown),
         }
-        Ok(())
     }
 
     /// Whether the backup domain may be written.

@@ -3,7 +3,7 @@
 use super::{Refused, ResetReason};
 use crate::time::Time;
 
-/// Frequency of the internal oscillator LSI, Hz; 31 040 to 32 960 (DS10198, table 62).
+/// Frequency of the internal oscillator LSI, Hz; 31 040 to 32 960 (DS10969, LSI oscillator characteristics).
 pub const LSI_HERTZ: u64 = 32_000;
 /// The crystal X2 of the board, Hz.
 pub const LSE_HERTZ: u64 = 32_768;
@@ -14,7 +14,7 @@ const MSI_HERTZ: [u64; 12] = [
     100_000, 200_000, 400_000, 800_000, 1_000_000, 2_000_000, 4_000_000, 8_000_000, 16_000_000,
     24_000_000, 32_000_000, 48_000_000,
 ];
-/// Start of the crystal (DS10198, table 59, typical with any drive).
+/// Start of the crystal (DS10969, LSE oscillator characteristics: typical with any drive).
 const LSE_START: Time = Time::microseconds(2_000_000);
 
 /// Bits of `RCC_CSR` by the reason of a reset.
@@ -59,12 +59,49 @@ const DIVIDERS: u32 = 0x3FF0;
 const CFGR: usize = 0x08 / 4;
 /// Word of `RCC_PLLCFGR`.
 const PLLCFGR: usize = 0x0C / 4;
-/// First and last word of the registers that give peripherals their clock.
-const ENABLES: [usize; 2] = [0x48 / 4, 0x60 / 4];
+/// Word of `RCC_CIFR`, which is not written.
+const CIFR: usize = 0x1C / 4;
+/// Word of `RCC_CICR`, which clears what is never set here.
+const CICR: usize = 0x20 / 4;
 /// Word of `RCC_BDCR`.
 const BDCR: usize = 0x90 / 4;
 /// Word of `RCC_CSR`.
 const CSR: usize = 0x94 / 4;
+
+/// Registers that are not zero after a reset (6.4), but for `BDCR` and `CSR`: offset and value. The calibration of `ICSCR`
+/// is that of no board.
+const RESET: [(usize, u32); 12] = [
+    (0x00, 0x63),
+    (0x04, 0x1000_0000),
+    (0x0C, 0x1000),
+    (0x10, 0x1000),
+    (0x14, 0x1000),
+    (0x48, 0x100),
+    (0x68, 0x0001_1303),
+    (0x6C, 0x0005_32FF),
+    (0x70, 0x101),
+    (0x78, 0xF2FE_CA3F),
+    (0x7C, 0x25),
+    (0x80, 0x0167_7C01),
+];
+
+/// Registers of which only these bits may change, since the model does not have what the others ask for: the offset of
+/// the first and of the last one, the bits, what the others are. Outputs of the PLL that nothing here uses may be on.
+const PARTIAL: [(u32, u32, u32, &str); 8] = [
+    (0x00, 0x00, 0x0100_01FD | READY, "the oscillator HSE, a guard of clocks, a further PLL"),
+    (0x04, 0x04, 0, "trimmed oscillators"),
+    (0x08, 0x08, 0x3FFF, "a pin with a clock, a wake-up by the oscillator HSI16"),
+    (0x0C, 0x0C, 0x0773_7F73, "reserved bits of the PLL"),
+    (0x10, 0x18, 0, "a further PLL, interrupts of oscillators that are ready"),
+    (0x68, 0x80, 0, "clocks that stop while the core sleeps"),
+    (0x88, 0x88, !0xC003, "another clock of USART1 or I2C2"),
+    (
+        0x90,
+        0x90,
+        0x0001_831B,
+        "the crystal without its oscillator, its guard, a pin with a slow clock",
+    ),
+];
 
 /// Offsets of the registers from the first to the last of those that follow each other (6.4).
 const REGISTERS: [[u32; 2]; 9] = [
@@ -100,10 +137,9 @@ impl Rcc {
             _ => (self.words[BDCR], self.words[CSR] & 0xFF00_0000),
         };
         self.words = [0; 40];
-        self.words[CR] = 0x63;
-        self.words[PLLCFGR] = 0x1000;
-        self.words[ENABLES[0]] = 0x100;
-        self.words[0x68 / 4] = 0x0001_1303;
+        for (offset, value) in RESET {
+            self.words[offset / 4] = value;
+        }
         self.words[BDCR] = backup;
         self.words[CSR] = 0x600 | reasons | flags(reason);
         if backup & 1 == 0 {
@@ -128,7 +164,13 @@ impl Rcc {
     pub fn write(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
         let word = word(offset)?;
         let held = &mut self.words[word];
+        for (first, last, bits, others) in PARTIAL {
+            if (first..=last).contains(&offset) && (*held ^ value) & !bits != 0 {
+                return Err(Refused::NotModelled(others));
+            }
+        }
         match word {
+            CIFR | CICR => {}
             CSR if value & 1 << 23 != 0 => *held = value & 0xFFF,
             CSR => *held = *held & 0xFF00_0000 | value & 0xFFF,
             BDCR if value & 1 << 16 != 0 => {

@@ -15,6 +15,8 @@ const IDENTITY: u32 = 0x410F_C241;
 /// Registers beside those of the exceptions.
 #[derive(Clone, Debug, Default)]
 pub struct System {
+    /// `SYST_CSR`, without the bit that has it count, and `SYST_RVR`.
+    tick: [u32; 2],
     /// `VTOR`.
     pub vectors: u32,
     /// `SCR`.
@@ -71,7 +73,8 @@ impl System {
     pub fn read(&self, offset: u32, exceptions: &Exceptions, active: u32) -> Result<u32, Refused> {
         let bits = |set: Set| set.interrupts(offset % 0x80 * 8);
         Ok(match offset {
-            0x010 | 0x014 | 0x018 | 0xDF0 => 0,
+            0x010 | 0x014 => self.tick[(offset as usize - 0x010) / 4],
+            0x018 | 0xDF0 => 0,
             0x004 => 2,
             0x100..0x10C | 0x180..0x18C => bits(exceptions.enabled),
             0x200..0x20C | 0x280..0x28C => bits(exceptions.requested()),
@@ -104,62 +107,82 @@ impl System {
         size: u32,
         exceptions: &mut Exceptions,
     ) -> Result<(), Refused> {
-        let set =
-            |set: &mut Set, are_in: bool| set.put_interrupts(offset % 0x80 * 8, value, are_in);
+        Refused::where_asked(unmodelled(offset, value))?;
         match offset {
-            0x010 if value & 1 != 0 => return Err(Refused::NotModelled("the core's timer")),
-            0x010 | 0x014 | 0x018 => {}
-            0x100..0x10C => set(&mut exceptions.enabled, true),
-            0x180..0x18C => set(&mut exceptions.enabled, false),
-            0x200..0x20C => set(&mut exceptions.pending, true),
-            0x280..0x28C => set(&mut exceptions.pending, false),
-            0x400..0x454 => {
-                set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size);
-            }
-            0xD04 => {
-                for (bit, number, is_set) in PENDING_BITS {
-                    if value >> bit & 1 != 0 {
-                        exceptions.pending.put(number, is_set);
-                    }
-                }
-            }
-            0xD08 => self.vectors = value,
-            0xD0C if value >> 16 == 0x05FA => {
-                if value & 0x700 != 0 {
-                    return Err(Refused::NotModelled("groups of priorities"));
-                }
-                self.wants_reset |= value & 4 != 0;
-            }
-            0xD10 if value & 4 != 0 => return Err(Refused::NotModelled("deep sleep")),
-            0xD10 => self.sleep = value,
-            // Traps of unaligned accesses and of divisions by zero; frames that are not aligned.
-            0xD14 if value & 0x218 != 0x200 => {
-                return Err(Refused::NotModelled("traps and alignment of the configuration"));
-            }
-            0xD14 => self.configuration = value,
+            0x010..0x01C => self.write_tick(offset, value)?,
+            0x100..0x454 | 0xF00 => write_interrupts(exceptions, offset, value, size)?,
+            0xD04 => set_pending(exceptions, value),
             0xD18..0xD24 => set_priorities(exceptions, 4 + offset - 0xD18, value, size),
-            0xD24 => {
-                // What is active or pending is not changed by hand: no image does.
-                for (bit, number) in [(16, MEMORY_FAULT), (17, BUS_FAULT), (18, USAGE_FAULT)] {
-                    exceptions.enabled.put(number, value >> bit & 1 != 0);
-                }
-            }
+            0xD24 => set_shcsr(exceptions, value)?,
+            0xD08 => self.vectors = value,
+            0xD0C => self.wants_reset |= value & 4 != 0,
+            0xD10 => self.sleep = value,
+            0xD14 => self.configuration = value,
+            0xD88 => self.coprocessors = value,
+            0xDFC => self.debug = value,
             0xD28 => self.faults[0] &= !value,
             0xD2C => self.faults[1] &= !value,
-            0xD88 if value >> 20 & 0xF != 0xF => {
-                return Err(Refused::NotModelled("a floating-point unit that is off"));
-            }
-            0xD88 => self.coprocessors = value,
             0xD94..0xDA4 if self.protection.write(offset - 0xD90, value) => {}
-            0xDFC => self.debug = value,
-            0xF00 => exceptions.pending.put_interrupts(value & 0x60, 1 << (value & 0x1F), true),
-            0xF34 if value >> 31 == 0 => {
-                return Err(Refused::NotModelled("floating-point registers that are not stacked"));
-            }
             0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4] = value,
             _ => return Err(Refused::Unknown),
         }
         Ok(())
+    }
+
+    /// Writes a register of the core's timer, which may be set, and does not count.
+    fn write_tick(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
+        match offset {
+            0x010 => self.tick[0] = value & 6,
+            0x014 => self.tick[1] = value & 0xFF_FFFF,
+            // Any value clears the count, which is zero.
+            0x018 => {}
+            _ => return Err(Refused::Unknown),
+        }
+        Ok(())
+    }
+}
+
+/// What a write of a register asks for that is not modelled.
+const fn unmodelled(offset: u32, value: u32) -> Option<&'static str> {
+    match offset {
+        0x010 if value & 1 != 0 => Some("the core's timer"),
+        0xD0C if value >> 16 != 0x05FA => Some("a wrong key, with which nothing is written"),
+        0xD0C if value & 0x703 != 0 => Some("groups of priorities, or a reset of the core alone"),
+        0xD10 if value & 4 != 0 => Some("deep sleep"),
+        0xD14 if value & !1 != 0x200 => Some("traps, alignment and faults of the configuration"),
+        0xD88 if value >> 20 & 0xF != 0xF => Some("a floating-point unit that is off"),
+        0xDFC if value & 0xF_0000 != 0 => Some("a monitor of debugging"),
+        0xF34 if value >> 31 == 0 => Some("floating-point registers that are not stacked"),
+        _ => None,
+    }
+}
+
+/// Writes a register of the interrupt controller.
+fn write_interrupts(
+    exceptions: &mut Exceptions,
+    offset: u32,
+    value: u32,
+    size: u32,
+) -> Result<(), Refused> {
+    let set = |set: &mut Set, are_in: bool| set.put_interrupts(offset % 0x80 * 8, value, are_in);
+    match offset {
+        0x100..0x10C => set(&mut exceptions.enabled, true),
+        0x180..0x18C => set(&mut exceptions.enabled, false),
+        0x200..0x20C => set(&mut exceptions.pending, true),
+        0x280..0x28C => set(&mut exceptions.pending, false),
+        0x400..0x454 => set_priorities(exceptions, FIRST_INTERRUPT + offset - 0x400, value, size),
+        0xF00 => exceptions.pending.put_interrupts(value & 0x60, 1 << (value & 0x1F), true),
+        _ => return Err(Refused::Unknown),
+    }
+    Ok(())
+}
+
+/// Makes exceptions of the core pending or not, by the bits of `ICSR`.
+fn set_pending(exceptions: &mut Exceptions, value: u32) {
+    for (bit, number, is_set) in PENDING_BITS {
+        if value >> bit & 1 != 0 {
+            exceptions.pending.put(number, is_set);
+        }
     }
 }
 
@@ -198,6 +221,18 @@ fn priorities(exceptions: &Exceptions, first: u32) -> u32 {
 fn set_priorities(exceptions: &mut Exceptions, first: u32, value: u32, size: u32) {
     let all = exceptions.priorities.iter_mut().skip(first as usize).take(size as usize);
     all.zip(value.to_le_bytes()).for_each(|(priority, byte)| *priority = byte & PRIORITY_MASK);
+}
+
+/// Enables faults by the bits of `SHCSR`. The others are to stay as they are.
+fn set_shcsr(exceptions: &mut Exceptions, value: u32) -> Result<(), Refused> {
+    const FAULTS: [(u32, u32); 3] = [(16, MEMORY_FAULT), (17, BUS_FAULT), (18, USAGE_FAULT)];
+    if (value ^ shcsr(exceptions)) & 0xFFFF != 0 {
+        return Err(Refused::NotModelled("exceptions that become active or pending by SHCSR"));
+    }
+    for (bit, number) in FAULTS {
+        exceptions.enabled.put(number, value >> bit & 1 != 0);
+    }
+    Ok(())
 }
 
 /// Which exceptions of the core are enabled, pending and active (`SHCSR`, B3.2.13).

@@ -13,6 +13,11 @@ const ENABLED: u32 = 1;
 const RECEIVES: u32 = 4;
 /// `USART_CR1`: it sends.
 const SENDS: u32 = 8;
+/// `USART_CR1`: frames of other lengths, parity, oversampling by eight; names of receivers and their silence, pins that
+/// enable a driver, interrupts but those by bytes.
+const UNUSUAL: u32 = !(ENABLED | RECEIVES | SENDS | RECEIVED | COMPLETE | EMPTY);
+/// `USART_CR3`: errors interrupt, memory is accessed, one sample decides a bit. No other bit may be set.
+const MODES: u32 = 1 | 1 << 6 | 1 << 7 | 1 << 11;
 /// `USART_ISR`: a byte came before the one before it was read.
 const OVERRUN: u32 = 1 << 3;
 /// `USART_ISR`: a byte has come.
@@ -25,7 +30,7 @@ const EMPTY: u32 = 1 << 7;
 /// The registers.
 #[derive(Clone, Debug, Default)]
 pub struct Usart {
-    /// `USART_CR1`, `CR2`, `CR3`.
+    /// `USART_CR1`, `CR2`, which stays zero, and `CR3`.
     control: [u32; 3],
     /// `USART_BRR`.
     divider: u32,
@@ -84,6 +89,11 @@ impl Usart {
         }
     }
 
+    /// Whether frames are on the wires that it sends, and that it receives.
+    pub const fn uses(&self) -> [bool; 2] {
+        [self.shifting.is_some(), self.incoming.1.is_some()]
+    }
+
     /// When a frame ends.
     pub fn due(&self) -> Time {
         let sending = self.shifting.map_or(Time::NEVER, |(_, end)| end);
@@ -138,7 +148,7 @@ impl Usart {
     /// Whether it interrupts: bits of `USART_CR1` are at the places of their flags; errors by `CR3`.
     pub fn interrupts(&self) -> bool {
         let status = self.status();
-        status & self.control[0] & (RECEIVED | COMPLETE | EMPTY | 0x10) != 0
+        status & self.control[0] & (RECEIVED | COMPLETE | EMPTY) != 0
             || (status & OVERRUN != 0
                 && (self.control[0] & RECEIVED != 0 || self.control[2] & 1 != 0))
     }
@@ -157,15 +167,11 @@ impl Usart {
 
     /// Writes a register.
     pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Refused> {
+        Refused::where_asked(unmodelled(offset, value))?;
         match offset {
-            0x00 if value & 0x1000_9400 != 0 => {
-                return Err(Refused::NotModelled(
-                    "frames of other lengths, parity or oversampling by eight",
-                ));
-            }
             0x00 | 0x04 | 0x08 => self.control[(offset / 4) as usize] = value,
             0x0C => self.divider = value,
-            0x18 if value & 8 != 0 => self.received = None,
+            0x18 if value == 8 => self.received = None,
             0x10 | 0x14 | 0x18 => {}
             0x20 => self.flags &= !value,
             0x28 => {
@@ -175,5 +181,19 @@ impl Usart {
             _ => return Err(Refused::Unknown),
         }
         Ok(())
+    }
+}
+
+/// What a write of a register asks for that is not modelled.
+const fn unmodelled(offset: u32, value: u32) -> Option<&'static str> {
+    match (offset, value) {
+        (0x00, _) if value & UNUSUAL != 0 => {
+            Some("frames of other lengths, parity, oversampling by eight, interrupts but by bytes")
+        }
+        (0x04, 1..) => Some("other stop bits, levels or places of the pins"),
+        (0x08, _) if value & !MODES != 0 => Some("one wire for both ways, or a handshake"),
+        (0x18, 0 | 8) => None,
+        (0x10 | 0x14 | 0x18, 1..) => Some("time-outs, breaks, or a rate that is measured"),
+        _ => None,
     }
 }

@@ -19,17 +19,6 @@ use hal_mock::wires::{Clock, I2cWires, SpiWires};
 use super::{I2cBus, Pin, Wiring};
 use crate::time::Time;
 
-/// Port and number of a pin by its name.
-const fn pin(name: &[u8]) -> Pin {
-    let mut number = 0;
-    let mut place = 2;
-    while place < name.len() {
-        number = 10 * number + (name[place] - b'0') as u32;
-        place += 1;
-    }
-    Pin { port: (name[1] - b'A') as usize, number }
-}
-
 /// Select lines of a carrier: pin, serial bus and chip.
 pub type Selects = &'static [(Pin, usize, Select)];
 /// Data-ready lines of a carrier: pin and chip.
@@ -37,10 +26,10 @@ pub type Lines = &'static [(Pin, Select)];
 
 /// Select lines of a stage or a turntable.
 pub const STAGE: Selects = &[
-    (pin(b"PA2"), 0, Select::Gyro),
-    (pin(b"PA15"), 0, Select::Accelerometer),
-    (pin(b"PD0"), 1, Select::Encoder),
-    (pin(b"PD5"), 1, Select::Actuator),
+    (Pin::named(b"PA2"), 0, Select::Gyro),
+    (Pin::named(b"PA15"), 0, Select::Accelerometer),
+    (Pin::named(b"PD0"), 1, Select::Encoder),
+    (Pin::named(b"PD5"), 1, Select::Actuator),
 ];
 /// Select lines of two frames.
 pub const FRAMES: Selects = &[
@@ -48,34 +37,38 @@ pub const FRAMES: Selects = &[
     STAGE[1],
     STAGE[2],
     STAGE[3],
-    (pin(b"PB2"), 1, Select::InnerEncoder),
-    (pin(b"PA4"), 1, Select::InnerActuator),
+    (Pin::named(b"PB2"), 1, Select::InnerEncoder),
+    (Pin::named(b"PA4"), 1, Select::InnerActuator),
 ];
 /// Select lines in a vehicle.
-pub const VEHICLE: Selects =
-    &[STAGE[0], STAGE[1], (pin(b"PB2"), 0, Select::GyroRight), (pin(b"PA4"), 0, Select::GyroDown)];
+pub const VEHICLE: Selects = &[
+    STAGE[0],
+    STAGE[1],
+    (Pin::named(b"PB2"), 0, Select::GyroRight),
+    (Pin::named(b"PA4"), 0, Select::GyroDown),
+];
 /// Select lines on a spinning body.
 pub const SPIN: Selects = &[
     STAGE[0],
-    (pin(b"PB2"), 0, Select::GyroRight),
-    (pin(b"PA4"), 0, Select::GyroUp),
-    (pin(b"PA3"), 0, Select::ForceUp),
-    (pin(b"PB4"), 0, Select::ForceRight),
+    (Pin::named(b"PB2"), 0, Select::GyroRight),
+    (Pin::named(b"PA4"), 0, Select::GyroUp),
+    (Pin::named(b"PA3"), 0, Select::ForceUp),
+    (Pin::named(b"PB4"), 0, Select::ForceRight),
 ];
 /// The pin that enables the motor drivers, active low.
-const MOTORS: Pin = pin(b"PD2");
+const MOTORS: Pin = Pin::named(b"PD2");
 /// The data-ready line of a single converter.
-pub const ONE_LINE: Lines = &[(pin(b"PD14"), Select::Gyro)];
+pub const ONE_LINE: Lines = &[(Pin::named(b"PD14"), Select::Gyro)];
 /// Data-ready lines in a vehicle.
 pub const VEHICLE_LINES: Lines =
-    &[ONE_LINE[0], (pin(b"PB0"), Select::GyroRight), (pin(b"PB1"), Select::GyroDown)];
+    &[ONE_LINE[0], (Pin::named(b"PB0"), Select::GyroRight), (Pin::named(b"PB1"), Select::GyroDown)];
 /// Data-ready lines on a spinning body.
 pub const SPIN_LINES: Lines = &[
     ONE_LINE[0],
-    (pin(b"PB0"), Select::GyroRight),
-    (pin(b"PB1"), Select::GyroUp),
-    (pin(b"PC4"), Select::ForceUp),
-    (pin(b"PC3"), Select::ForceRight),
+    (Pin::named(b"PB0"), Select::GyroRight),
+    (Pin::named(b"PB1"), Select::GyroUp),
+    (Pin::named(b"PC4"), Select::ForceUp),
+    (Pin::named(b"PC3"), Select::ForceRight),
 ];
 
 /// The chips and the world of a carrier.

@@ -2,6 +2,8 @@
 
 pub mod board;
 
+use std::fmt;
+
 use hal_mock::wires::Clock;
 
 use crate::time::Time;
@@ -13,6 +15,25 @@ pub struct Pin {
     pub port: usize,
     /// Its number, 0 to 15.
     pub number: u32,
+}
+
+impl Pin {
+    /// The pin with a name as in the data sheet: `PA5` is number 5 of port A.
+    pub const fn named(name: &[u8]) -> Self {
+        let mut number = 0;
+        let mut place = 2;
+        while place < name.len() {
+            number = 10 * number + (name[place] - b'0') as u32;
+            place += 1;
+        }
+        Self { port: (name[1] - b'A') as usize, number }
+    }
+}
+
+impl fmt::Display for Pin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "P{}{}", char::from(b'A' + self.port as u8), self.number)
+    }
 }
 
 /// A two-wire bus with its devices.

@@ -1,6 +1,7 @@
 //! Serial buses with direct memory access, and the two-wire bus.
 
 use embedded_hal::spi::{MODE_1, MODE_3};
+use emulated_board::controller::Refused;
 use emulated_board::time::Time;
 
 use super::{Bench, MEMORY};
@@ -40,6 +41,162 @@ fn four_bytes_wait_to_be_read_and_a_fifth_is_lost() {
     }
     assert_eq!(bench.read(SPI[0] + 8) & 0x640, 0x640, "full, and an overrun");
     assert_eq!(bench.controller.spi[0].overruns, 1);
+}
+
+/// An interface SPI1 of 2 MHz in which five bytes came and none was read.
+fn overrun() -> Bench {
+    let mut bench = Bench::new();
+    bench.write(SPI[0] + 4, 0x1700);
+    bench.write(SPI[0], 0x345);
+    for byte in 0..5 {
+        send(&mut bench, byte);
+    }
+    bench
+}
+
+/// Sends a byte by SPI1, and waits for its end.
+fn send(bench: &mut Bench, byte: u32) {
+    bench.try_write(SPI[0] + 0x0C, byte, 1).expect("a byte");
+    bench.pass(Time::microseconds(4));
+}
+
+#[test]
+fn a_read_of_the_data_and_then_one_of_the_status_clear_an_overrun_and_nothing_else_does() {
+    let is_overrun = |bench: &mut Bench| bench.read(SPI[0] + 8) & 0x40 != 0;
+    let mut bench = overrun();
+    assert!(is_overrun(&mut bench) && is_overrun(&mut bench), "the status alone clears it");
+    bench.write(SPI[0] + 8, 0);
+    bench.write(SPI[0], 0x305);
+    bench.write(SPI[0], 0x345);
+    assert!(is_overrun(&mut bench), "a write, or a disabled interface, clears it");
+    assert_eq!(bench.try_read(SPI[0] + 0x0C, 1), Ok(0xFF), "the first byte, inverted");
+    assert!(is_overrun(&mut bench), "the read that clears it still shows it");
+    assert!(!is_overrun(&mut bench));
+}
+
+#[test]
+fn all_that_comes_after_an_overrun_is_lost_until_it_is_cleared() {
+    let mut bench = overrun();
+    for expected in [0xFF, 0xFE, 0xFD, 0xFC] {
+        assert_eq!(bench.try_read(SPI[0] + 0x0C, 1), Ok(expected));
+    }
+    send(&mut bench, 9);
+    assert_eq!(bench.controller.spi[0].overruns, 2);
+    assert_eq!(bench.read(SPI[0] + 8) & 0x641, 0x40, "no byte, and still an overrun");
+    send(&mut bench, 8);
+    assert_eq!(bench.try_read(SPI[0] + 0x0C, 1), Ok(0xF7));
+}
+
+#[test]
+fn a_serial_bus_interrupts_by_room_by_a_byte_and_by_an_overrun() {
+    for (bus, interrupt) in [(0, 35), (1, 36)] {
+        let mut bench = Bench::new();
+        bench.write(SPI[bus], 0x345);
+        // TXEIE alone: there is room.
+        bench.write(SPI[bus] + 4, 0x1780);
+        assert!(bench.interrupts(interrupt));
+        // RXNEIE alone: nothing has come yet.
+        bench.write(SPI[bus] + 4, 0x1740);
+        assert!(!bench.interrupts(interrupt));
+        bench.try_write(SPI[bus] + 0x0C, 1, 1).expect("a byte");
+        bench.pass(Time::microseconds(4));
+        assert!(bench.interrupts(interrupt));
+        // ERRIE alone: nothing is wrong until a fifth byte comes.
+        bench.write(SPI[bus] + 4, 0x1720);
+        assert!(!bench.interrupts(interrupt));
+        for _ in 0..4 {
+            bench.try_write(SPI[bus] + 0x0C, 1, 1).expect("a byte");
+            bench.pass(Time::microseconds(4));
+        }
+        assert!(bench.interrupts(interrupt));
+    }
+}
+
+#[test]
+fn what_a_serial_bus_does_not_do_here_is_refused() {
+    // Reverse order of bits, receive only, checksums, half duplex; a bus that another one masters, a select line of the
+    // hardware; in CR2 pulses of it, TI's frames, odd last items; words of sixteen bits.
+    let first = [0x3C4, 0x744, 0x2344, 0x8344, 0x340, 0x144].map(|value| (0, value));
+    let second = [0x1708, 0x1710, 0x3700, 0x5700, 0xF00].map(|value| (4, value));
+    for (offset, value) in first.into_iter().chain(second) {
+        let refused = Bench::new().try_write(SPI[0] + offset, value, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{value:#x}: {refused:?}");
+    }
+}
+
+/// Has a channel of a controller for direct memory access, from zero, move bytes between memory and SPI1.
+fn arm(bench: &mut Bench, dma: u32, channel: u32, (memory, count): (u32, u32), control: u32) {
+    let registers = dma + 8 + 20 * channel;
+    bench.write(registers + 4, count);
+    bench.write(registers + 8, SPI[0] + 0x0C);
+    bench.write(registers + 12, memory);
+    bench.write(registers, control);
+}
+
+#[test]
+fn the_second_controller_serves_the_first_serial_bus_by_its_channels_3_and_4() {
+    let mut bench = Bench::new();
+    bench.ram.0[..3].copy_from_slice(&[1, 2, 3]);
+    // Request 4 of both channels (table 45).
+    bench.write(DMA + 0x400 + 0xA8, 4 << 8 | 4 << 12);
+    arm(&mut bench, DMA + 0x400, 2, (MEMORY + 64, 3), 0x83);
+    arm(&mut bench, DMA + 0x400, 3, (MEMORY, 3), 0x93);
+    bench.write(SPI[0] + 4, 0x1703);
+    bench.write(SPI[0], 0x345);
+    bench.pass(Time::microseconds(12));
+    assert_eq!(bench.ram.0[64..67], [!1, !2, !3]);
+    assert!(bench.interrupts(58) && bench.interrupts(59));
+}
+
+#[test]
+fn of_two_channels_that_are_due_the_one_with_the_higher_priority_goes_first() {
+    // RM0351, 11.4.3: by priority, and among equals the lower channel.
+    for (priorities, first) in [([0, 0], 3), ([1, 1], 3), ([0, 1], 4), ([2, 3], 4), ([3, 2], 3)] {
+        let mut bench = Bench::new();
+        // Channel 4 receives from SPI2, channel 5 sends to it: a byte that waits, and room for one.
+        bench.write(SPI[1] + 4, 0x1700);
+        bench.write(SPI[1], 0x345);
+        bench.try_write(SPI[1] + 0x0C, 0x0F, 1).expect("a byte");
+        bench.pass(Time::microseconds(4));
+        bench.write(DMA + 0xA8, 1 << 12 | 1 << 16);
+        // Both use the same byte of memory: what is received first is what is sent.
+        bench.ram.0[0] = 0x33;
+        for (channel, direction) in [(3, 0x00), (4, 0x10)] {
+            let registers = DMA + 8 + 20 * channel;
+            bench.write(registers + 4, 1);
+            bench.write(registers + 8, SPI[1] + 0x0C);
+            bench.write(registers + 12, MEMORY);
+            let priority = priorities[channel as usize - 3] << 12;
+            bench.write(registers, priority | direction | 1);
+        }
+        bench.write(SPI[1] + 4, 0x1703);
+        let sent = bench.wires.0.borrow().bytes[1].1;
+        assert_eq!(sent, if first == 3 { 0xF0 } else { 0x33 }, "{priorities:?}");
+    }
+}
+
+#[test]
+fn direct_memory_access_to_a_register_that_holds_no_data_is_refused() {
+    let mut bench = Bench::new();
+    bench.write(DMA + 0xA8, 1 << 8);
+    arm(&mut bench, DMA, 2, (MEMORY, 1), 0x13);
+    bench.write(DMA + 8 + 40, 0x12);
+    bench.write(DMA + 8 + 40 + 8, super::GPIO + 0x18);
+    bench.write(DMA + 8 + 40, 0x13);
+    bench.write(SPI[0] + 4, 0x1702);
+    let refused = bench.try_write(SPI[0], 0x345, 4);
+    assert!(matches!(refused, Err(Refused::NotModelled(_))), "{refused:?}");
+}
+
+#[test]
+fn what_the_two_wire_bus_does_not_do_here_is_refused() {
+    // CR1 with a digital filter, and as a device; CR2 with ten bits, and a checksum; an own address; a time-out.
+    let cases =
+        [(0, 1 << 8), (0, 1 << 17), (4, 1 << 11), (4, 1 << 26), (8, 1 << 15), (20, 1 << 15)];
+    for (offset, value) in cases {
+        let refused = Bench::new().try_write(I2C + offset, value, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{offset}: {refused:?}");
+    }
 }
 
 #[test]

@@ -59,6 +59,72 @@ fn a_divider_that_is_not_modelled_is_refused() {
     assert!(matches!(refused, Err(Refused::NotModelled(_))), "{refused:?}");
 }
 
+#[test]
+fn clocks_begin_as_the_manual_has_them() {
+    let mut bench = Bench::clocked();
+    // 6.4: CR with the oscillator MSI, which is ready; the PLLs; all peripherals clocked in sleep.
+    for (offset, expected) in [
+        (0x00, 0x63),
+        (0x08, 0),
+        (0x0C, 0x1000),
+        (0x10, 0x1000),
+        (0x14, 0x1000),
+        (0x18, 0),
+        (0x1C, 0),
+        (0x68, 0x0001_1303),
+        (0x6C, 0x0005_32FF),
+        (0x70, 0x101),
+        (0x78, 0xF2FE_CA3F),
+        (0x7C, 0x25),
+        (0x80, 0x0167_7C01),
+        (0x88, 0),
+        (0x90, 0),
+        (0x94, 0x0C00_0600),
+    ] {
+        assert_eq!(bench.read(RCC + offset), expected, "{offset:#x}");
+    }
+}
+
+#[test]
+fn what_the_clocks_do_not_do_here_is_refused() {
+    let mut bench = Bench::clocked();
+    bench.write(0x4000_7000, 0x300);
+    // CR: HSE, its guard, a further PLL; ICSCR; CFGR: a pin with a clock; CIER: LSE is ready; SMENR; CCIPR: USART1, I2C2;
+    // BDCR: no oscillator, a guard.
+    for (offset, bits) in [
+        (0x00, 1 << 16),
+        (0x00, 1 << 19),
+        (0x00, 1 << 26),
+        (0x04, 1 << 24),
+        (0x08, 1 << 24),
+        (0x18, 1 << 1),
+        (0x68, 1 << 0),
+        (0x80, 1 << 12),
+        (0x88, 1 << 0),
+        (0x88, 1 << 14),
+        (0x90, 1 << 2),
+        (0x90, 1 << 5),
+    ] {
+        let before = bench.read(RCC + offset);
+        let refused = bench.try_write(RCC + offset, before ^ bits, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{offset:#x}: {refused:?}");
+        assert_eq!(bench.read(RCC + offset), before, "{offset:#x}");
+        bench.write(RCC + offset, before);
+    }
+}
+
+#[test]
+fn a_part_of_a_register_is_not_written() {
+    let mut bench = Bench::clocked();
+    for (address, size) in
+        [(super::GPIO + 0x14, 2), (RCC + 0x4C, 1), (TIMER + 0x2C, 1), (TIMER + 0x2E, 2)]
+    {
+        let refused = bench.try_write(address, 0, size);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{address:#x}: {refused:?}");
+    }
+    assert_eq!(bench.try_write(TIMER + 0x2C, 0xFF, 2), Ok(()), "a register of sixteen bits");
+}
+
 /// A timer that counts microseconds, at 4 MHz.
 fn timer() -> Bench {
     let mut bench = Bench::new();
@@ -78,6 +144,55 @@ fn the_timer_counts_and_wraps() {
     bench.pass(Time::microseconds(65_000));
     assert_eq!(bench.read(TIMER + 0x24), 66_000 - 65_536);
     assert_eq!(bench.read(TIMER + 0x10) & 1, 1, "an overflow sets its flag");
+}
+
+#[test]
+fn a_timer_whose_clock_changes_keeps_its_count_and_goes_on_at_the_new_one() {
+    let mut bench = timer();
+    bench.write(TIMER + 0x38, 1400);
+    bench.write(TIMER + 0x0C, 4);
+    bench.pass(Time::microseconds(1000));
+    // HSI16, four times as fast.
+    let control = bench.read(RCC);
+    bench.write(RCC, control | 1 << 8);
+    bench.write(RCC + 0x08, 1);
+    assert_eq!(bench.controller.hertz(), 16_000_000);
+    assert_eq!(bench.read(TIMER + 0x24), 1000);
+    bench.pass(Time::microseconds(99));
+    assert_eq!((bench.read(TIMER + 0x24), bench.interrupts(24)), (1396, false));
+    bench.pass(Time::microseconds(1));
+    assert_eq!((bench.read(TIMER + 0x24), bench.interrupts(24)), (1400, true));
+}
+
+#[test]
+fn a_prescaler_acts_from_the_update_on() {
+    let mut bench = Bench::clocked();
+    bench.write(TIMER + 0x28, 3);
+    bench.write(TIMER, 1);
+    bench.pass(Time::microseconds(10));
+    assert_eq!(bench.read(TIMER + 0x24), 40, "4 MHz");
+    bench.write(TIMER + 0x14, 1);
+    bench.pass(Time::microseconds(10));
+    assert_eq!(bench.read(TIMER + 0x24), 10, "1 MHz");
+}
+
+#[test]
+fn what_the_timer_does_not_do_here_is_refused() {
+    // CR1: down, one pulse; DIER: memory; EGR: a compare; SMCR: an external clock; CCER: an output; BDTR: its enable.
+    for (offset, value) in [
+        (0x00, 1 << 3),
+        (0x00, 1 << 11),
+        (0x0C, 1 << 8),
+        (0x14, 2),
+        (0x08, 7),
+        (0x20, 1),
+        (0x44, 1 << 15),
+    ] {
+        let refused = timer().try_write(TIMER + offset, value, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{offset:#x}: {refused:?}");
+    }
+    let refused = timer().try_write(TIMER + 0x28, 7, 4);
+    assert!(matches!(refused, Err(Refused::NotModelled(_))), "while it counts: {refused:?}");
 }
 
 #[test]

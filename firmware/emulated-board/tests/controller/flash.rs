@@ -1,5 +1,6 @@
 //! Registers of the flash.
 
+use emulated_board::controller::Refused;
 use emulated_board::controller::flash::STORE;
 use emulated_board::time::Time;
 
@@ -30,7 +31,7 @@ fn store(bench: &mut Bench, words: [u32; 2]) {
 fn without_the_keys_nothing_is_programmed() {
     let mut bench = Bench::new();
     bench.write(FLASH + 0x14, 1);
-    assert_eq!(bench.read(FLASH + 0x14), 1 << 31, "the lock holds");
+    assert_eq!(bench.read(FLASH + 0x14), 3 << 30, "the locks hold");
     store(&mut bench, [1, 2]);
     assert_eq!(bench.read(FLASH + 0x10), 1 << 7, "an error of the sequence");
     assert_eq!(bench.controller.flash.load(ROW, 4, bench.now), Ok(0xFFFF_FFFF));
@@ -53,6 +54,31 @@ fn two_words_program_a_row_in_82_microseconds_while_its_bank_cannot_be_read() {
     // A second time it is refused.
     store(&mut bench, [0, 1]);
     assert_eq!(bench.read(FLASH + 0x10) & 0xFFFF, 1 << 3);
+}
+
+#[test]
+fn a_store_of_less_than_a_word_is_an_error_of_its_size_and_the_next_one_of_the_sequence() {
+    for size in [1, 2] {
+        let mut bench = open();
+        bench.write(FLASH + 0x14, 1);
+        assert_eq!(bench.controller.flash.store(ROW, 0, size, bench.now), None);
+        assert_eq!(bench.read(FLASH + 0x10), 1 << 6, "SIZERR (3.7.5)");
+        store(&mut bench, [1, 2]);
+        assert_eq!(bench.read(FLASH + 0x10), 1 << 6 | 1 << 7, "PGSERR, too");
+        assert_eq!(bench.controller.flash.used.rows, 0);
+        bench.write(FLASH + 0x10, 1 << 6 | 1 << 7);
+        store(&mut bench, [1, 2]);
+        assert_eq!(bench.controller.flash.used.rows, 1);
+    }
+}
+
+#[test]
+fn what_the_flash_does_not_do_here_is_refused() {
+    // ACR without power; CR with option bytes, fast programming, protected areas.
+    for (offset, value) in [(0, 1 << 13), (0x14, 1 << 17), (0x14, 1 << 18), (0x14, 1 << 26)] {
+        let refused = open().try_write(FLASH + offset, value, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{value:#x}: {refused:?}");
+    }
 }
 
 #[test]

@@ -3,7 +3,11 @@
 
 mod bus;
 mod clocks;
+mod core;
+mod edges;
 mod flash;
+mod pins;
+mod power;
 mod serial;
 
 use std::cell::RefCell;
@@ -18,6 +22,24 @@ use hal_mock::wires::Clock;
 
 /// Reset and clock control.
 const RCC: u32 = 0x4002_1000;
+
+/// Port A; the others follow it.
+const GPIO: u32 = 0x4800_0000;
+
+/// Signals of the peripherals, the pins at which the board has their wires, and the alternate functions that connect them
+/// (DS10969, tables of alternate functions).
+const SIGNALS: [(&str, &[u8], u32); 10] = [
+    ("SPI1_SCK", b"PA5", 5),
+    ("SPI1_MISO", b"PA6", 5),
+    ("SPI1_MOSI", b"PA7", 5),
+    ("SPI2_SCK", b"PD1", 5),
+    ("SPI2_MISO", b"PD3", 5),
+    ("SPI2_MOSI", b"PD4", 5),
+    ("I2C2_SCL", b"PB10", 4),
+    ("I2C2_SDA", b"PB11", 4),
+    ("USART1_TX", b"PB6", 7),
+    ("USART1_RX", b"PB7", 7),
+];
 
 /// Where the memory begins.
 const MEMORY: u32 = 0x2000_0000;
@@ -39,13 +61,19 @@ impl Memory for Ram {
     }
 }
 
-/// Wires on which each byte comes back inverted, and on which a device answers at address 0x6A.
+/// Wires on which each byte comes back inverted, and on which a device answers at address 0x6A. All others are high.
 #[derive(Default)]
 struct Wires {
     /// Bytes that were begun: bus, byte, clock and time.
     bytes: Vec<(usize, u8, Clock, Time)>,
     /// Bytes on the two-wire bus, and its conditions.
     conditions: Vec<String>,
+    /// To which levels pins were driven, as often as that was told.
+    driven: Vec<(Pin, Option<bool>)>,
+    /// Wires that are low.
+    low: Vec<Pin>,
+    /// The next edge of a wire: when, at which pin, whether it rises.
+    edge: Option<(Time, Pin, bool)>,
 }
 
 /// The wires, which a test looks at too.
@@ -80,10 +108,12 @@ impl Wiring for Shared {
         Served::default()
     }
 
-    fn drive(&mut self, _: Pin, _: Option<bool>, _: Time) {}
+    fn drive(&mut self, pin: Pin, level: Option<bool>, _: Time) {
+        self.0.borrow_mut().driven.push((pin, level));
+    }
 
-    fn level(&mut self, _: Pin, _: Time) -> bool {
-        true
+    fn level(&mut self, pin: Pin, _: Time) -> bool {
+        !self.0.borrow().low.contains(&pin)
     }
 
     fn begin(&mut self, bus: usize, byte: u8, clock: Clock, now: Time) {
@@ -101,12 +131,18 @@ impl Wiring for Shared {
     }
 
     fn due(&self) -> Time {
-        Time::NEVER
+        self.0.borrow().edge.map_or(Time::NEVER, |(at, ..)| at)
     }
 
     fn edges(&mut self, _: Time) -> Vec<(Pin, bool)> {
-        Vec::new()
+        let edge = self.0.borrow_mut().edge.take();
+        edge.map(|(_, pin, rises)| (pin, rises)).into_iter().collect()
     }
+}
+
+/// Where the registers of a pin's port begin.
+fn registers(pin: Pin) -> u32 {
+    GPIO + 0x400 * pin.port as u32
 }
 
 /// A controller with memory and wires, and the time.
@@ -118,8 +154,19 @@ struct Bench {
 }
 
 impl Bench {
-    /// A controller after the supply came up, at 4 MHz, with all peripherals clocked.
+    /// A controller at 4 MHz with all peripherals clocked, and connected to the wires.
     fn new() -> Self {
+        let mut bench = Self::clocked();
+        for (_, pin, function) in SIGNALS {
+            bench.connect(Pin::named(pin), function);
+        }
+        // The wires of I2C2 are pulled down by the devices, too: open drains.
+        bench.write(GPIO + 0x400 + 4, 3 << 10);
+        bench
+    }
+
+    /// A controller after the supply came up, at 4 MHz, with all peripherals clocked.
+    fn clocked() -> Self {
         let wires = Shared::default();
         let oscillators = Oscillators { has_crystal: true, msi_error: 0.0 };
         let controller = Controller::new(oscillators, 1, Box::new(wires.clone()));
@@ -128,6 +175,20 @@ impl Bench {
             bench.write(RCC + offset, 0xFFFF_FFFF);
         }
         bench
+    }
+
+    /// Gives a pin to an alternate function.
+    fn connect(&mut self, pin: Pin, function: u32) {
+        self.set_mode(pin, 2);
+        let functions = registers(pin) + 0x20 + 4 * (pin.number / 8);
+        let (held, place) = (self.read(functions), 4 * (pin.number % 8));
+        self.write(functions, held & !(0xF << place) | function << place);
+    }
+
+    /// Sets the mode of a pin: input, output, alternate function, analogue.
+    fn set_mode(&mut self, pin: Pin, mode: u32) {
+        let held = self.read(registers(pin));
+        self.write(registers(pin), held & !(3 << (2 * pin.number)) | mode << (2 * pin.number));
     }
 
     /// Reads a word.

@@ -1,5 +1,6 @@
 //! The serial port, both ways.
 
+use emulated_board::controller::Refused;
 use emulated_board::time::Time;
 
 use super::Bench;
@@ -58,4 +59,21 @@ fn a_byte_that_is_not_read_in_time_costs_the_next_one() {
     assert_eq!(bench.read(PORT + 0x1C) & 8, 8, "the overrun is told");
     assert_eq!(bench.read(PORT + 0x24), u32::from(b'x'));
     assert_eq!(bench.controller.usart.overruns, 2);
+}
+
+#[test]
+fn what_the_serial_port_does_not_do_here_is_refused() {
+    // CR1: nine bits, parity, oversampling, an idle line that interrupts; CR2: two stop bits; CR3: a handshake; RQR: a break.
+    for (offset, value) in [
+        (0x00, 1 << 12),
+        (0x00, 1 << 10),
+        (0x00, 1 << 15),
+        (0x00, 1 << 4),
+        (0x04, 2 << 12),
+        (0x08, 1 << 8),
+        (0x18, 2),
+    ] {
+        let refused = port().try_write(PORT + offset, value, 4);
+        assert!(matches!(refused, Err(Refused::NotModelled(_))), "{offset:#x}: {refused:?}");
+    }
 }
