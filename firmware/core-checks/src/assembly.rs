@@ -20,8 +20,10 @@ global_asm!(
     "mrseq r1, msp",
     "mrsne r1, psp",
     "push {{r4, lr}}",
+    // It says how the handler returns.
     "bl handle",
-    "pop {{r4, pc}}",
+    "pop {{r4, lr}}",
+    "bx r0",
     ".section .text.checks, \"ax\"",
     // Each of these breaks at its first instruction.
     ".macro breaks name, instruction:vararg",
@@ -38,10 +40,25 @@ global_asm!(
     "breaks store_byte, strb r1, [r0]",
     "breaks load_pair, ldrd r0, r1, [r0]",
     "breaks load_many, ldm r0, {{r0, r1}}",
+    "breaks store_pair, strd r1, r1, [r0, #8]",
+    "breaks store_many, stm r0, {{r1, r2}}",
+    "breaks load_exclusive, ldrex r0, [r0, #4]",
+    "breaks load_float, vldr s0, [r0, #4]",
+    "breaks load_floats, vldm r0, {{s0, s1}}",
     "breaks load_and_move, ldr r1, [r0], #4",
     "breaks jump, bx r0",
     "breaks divide, sdiv r0, r0, r1",
     "breaks call, svc #0x5a",
+    // A fault after other instructions.
+    ".global load_pair_late",
+    ".type load_pair_late, %function",
+    ".thumb_func",
+    "load_pair_late:",
+    "adds r1, #1",
+    "add.w r2, r1, r0",
+    "ldrd r2, r3, [r0, #-4]",
+    "mov r0, r2",
+    "bx lr",
     // A fault within conditional instructions: the second of three.
     ".global load_if",
     ".type load_if, %function",
@@ -213,6 +230,12 @@ unsafe extern "C" {
     pub safe fn store_byte(address: u32, value: u32) -> u32;
     pub safe fn load_pair(address: u32) -> u32;
     pub safe fn load_many(address: u32) -> u32;
+    pub safe fn store_pair(address: u32) -> u32;
+    pub safe fn store_many(address: u32) -> u32;
+    pub safe fn load_exclusive(address: u32) -> u32;
+    pub safe fn load_float(address: u32) -> u32;
+    pub safe fn load_floats(address: u32) -> u32;
+    pub safe fn load_pair_late(address: u32, addend: u32) -> u32;
     pub safe fn load_and_move(address: u32) -> u32;
     pub safe fn jump(address: u32) -> u32;
     pub safe fn divide(dividend: u32, divisor: u32) -> u32;

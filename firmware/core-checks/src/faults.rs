@@ -2,8 +2,10 @@
 
 use crate::Step;
 use crate::assembly::{
-    call, divide, jump, load, load_and_move, load_if, load_many, load_pair, store, undefined,
+    call, divide, jump, load, load_and_move, load_exclusive, load_float, load_floats, load_if,
+    load_many, load_pair, load_pair_late, store, store_many, store_pair, undefined,
 };
+use crate::floats::end_use;
 use crate::handlers::{Entry, on, read, write};
 use crate::interrupts::{FIRST, PEND, enable, unmask};
 use crate::line::say;
@@ -35,7 +37,9 @@ pub const STEPS: &[Step] = &[
     ("code from peripherals", code_peripherals),
     ("code without Thumb", no_thumb),
     ("load in conditional instructions", load_conditional),
-    ("loads not aligned", not_aligned),
+    ("accesses not aligned", not_aligned),
+    ("access not aligned after others", not_aligned_late),
+    ("registers not aligned", registers_not_aligned),
     ("division by zero", by_zero),
     ("call in a hard fault", in_hard_fault),
 ];
@@ -165,12 +169,37 @@ fn load_conditional() {
 
 fn not_aligned() {
     on_faults(tell);
-    let words = [0x0102_0304_u32, 0x0506_0708, 0];
+    let words = [0x0102_0304_u32, 0x0506_0708, 0, 0];
     say!(" {:x}", load(words.as_ptr() as u32 + 1));
-    on_faults(|entry| say_at(entry, load_pair as *const () as u32));
-    load_pair(words.as_ptr() as u32 + 2);
-    on_faults(|entry| say_at(entry, load_many as *const () as u32));
-    load_many(words.as_ptr() as u32 + 2);
+    for access in
+        [load_pair, load_many, store_pair, store_many, load_exclusive, load_float, load_floats]
+    {
+        on_faults(|entry| {
+            say_faults();
+            entry.skip();
+        });
+        access(words.as_ptr() as u32 + 2);
+    }
+    say!(" {:x} {:x}", words[0], words[2]);
+    end_use();
+}
+
+fn not_aligned_late() {
+    on_faults(|entry| {
+        say!(" {:x}", entry.frame().general[1]);
+        say_at(entry, load_pair_late as *const () as u32);
+    });
+    let words = [0x0102_0304_u32, 0x0506_0708, 0];
+    say!(" {:x}", load_pair_late(words.as_ptr() as u32 + 4, 7));
+    load_pair_late(words.as_ptr() as u32 + 5, 7);
+}
+
+fn registers_not_aligned() {
+    on_faults(tell_load);
+    load(HANDLERS + 1);
+    on_faults(|entry| say_at(entry, store as *const () as u32));
+    store(PRIORITIES + 2, 0);
+    say!(" {:x}", read(PRIORITIES));
 }
 
 fn by_zero() {

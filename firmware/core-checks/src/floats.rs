@@ -24,7 +24,7 @@ fn in_use() -> u32 {
 }
 
 /// Ends the use of floating-point registers.
-fn end_use() {
+pub fn end_use() {
     // SAFETY: no register of them is in use.
     unsafe { core::arch::asm!("msr control, {}", "isb", in(reg) 0) };
 }

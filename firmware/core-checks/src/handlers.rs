@@ -16,7 +16,7 @@ pub struct Frame {
     pub status: u32,
 }
 
-/// What a handler is told: where it returns to (`EXC_RETURN`), and what was stacked.
+/// What a handler is told and may change: where it returns to (`EXC_RETURN`), and what was stacked.
 pub struct Entry {
     pub link: u32,
     pub frame: *mut Frame,
@@ -81,18 +81,20 @@ pub fn write(address: u32, value: u32) {
     cortex_m::asm::isb();
 }
 
-/// Handles any exception.
+/// Handles any exception; by what it returns (`EXC_RETURN`).
 #[unsafe(no_mangle)]
-extern "C" fn handle(link: u32, frame: *mut Frame) {
+extern "C" fn handle(link: u32, frame: *mut Frame) -> u32 {
+    let mut entry = Entry { link, frame };
     let number = number();
     if number == QUIET {
         spoil_floats();
-        return;
+        return link;
     }
     say!(" >{number:x}");
     // SAFETY: no step changes it while handlers run.
     if let Some(action) = unsafe { (*addr_of!(ACTIONS))[number as usize] } {
-        action(&mut Entry { link, frame });
+        action(&mut entry);
     }
     say!(" <{number:x}");
+    entry.link
 }

@@ -39,6 +39,7 @@ pub const STEPS: &[Step] = &[
     ("base", base),
     ("base of calls", base_of_calls),
     ("base raised only", base_raised),
+    ("bits of a priority", bits),
     ("faults masked", faults_masked),
     ("fault mask ends with the handler", fault_mask_ends),
     ("disabled", disabled),
@@ -162,6 +163,21 @@ fn base_raised() {
     basepri_max::write(0x80);
     say!(" {:x}", basepri::read());
     set_base(0);
+}
+
+/// Priorities of which the lower bits are not zero.
+fn bits() {
+    enable([0x4F, 0x3F, 0x80, 0x80]);
+    write(CALL_PRIORITY, 0x21 << 24);
+    say!(" {:x} {:x}", read(PRIORITIES), read(CALL_PRIORITY));
+    set_base(0x4F);
+    say!(" {:x}", basepri::read());
+    write(PEND, FIRST | SECOND);
+    say!(" held");
+    set_base(0xF);
+    say!(" {:x}", basepri::read());
+    set_base(0);
+    write(CALL_PRIORITY, 0);
 }
 
 /// Masks faults too, or no longer.

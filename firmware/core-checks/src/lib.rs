@@ -13,6 +13,7 @@ mod handlers;
 mod interrupts;
 mod line;
 mod protection;
+mod returns;
 mod stacks;
 mod waits;
 
@@ -25,6 +26,7 @@ pub fn run(mut show: impl FnMut(&str)) -> ! {
         waits::STEPS,
         faults::STEPS,
         protection::STEPS,
+        returns::STEPS,
     ];
     for (name, step) in steps.into_iter().flatten() {
         line::begin(name);

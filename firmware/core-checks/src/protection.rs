@@ -14,18 +14,18 @@ use crate::stacks::set_control;
 
 /// `MPU_TYPE`, `MPU_CTRL`, `MPU_RNR`, `MPU_RBAR`, `MPU_RASR`.
 const TYPE: u32 = 0xE000_ED90;
-const CONTROL: u32 = 0xE000_ED94;
+pub const CONTROL: u32 = 0xE000_ED94;
 const NUMBER: u32 = 0xE000_ED98;
 const BASE: u32 = 0xE000_ED9C;
 const ATTRIBUTES: u32 = 0xE000_EDA0;
 
 /// Enabled, with the default map for privileged code.
-const ON: u32 = 0b101;
+pub const ON: u32 = 0b101;
 /// Attributes of RAM (normal memory, not shared), with the bit that enables the region.
 const RAM: u32 = 0b1011 << 16 | 1;
 /// Accesses: none, privileged read and write, read only, all; and execute never.
 const NONE: u32 = 0;
-const PRIVILEGED: u32 = 1 << 24;
+pub const PRIVILEGED: u32 = 1 << 24;
 const READ_ONLY: u32 = 6 << 24;
 const FULL: u32 = 3 << 24;
 const NEVER: u32 = 1 << 28;
@@ -59,14 +59,14 @@ fn address() -> u32 {
 }
 
 /// Sets a region of 2 to this power of bytes.
-fn region(number: u32, base: u32, power: u32, attributes: u32) {
+pub fn region(number: u32, base: u32, power: u32, attributes: u32) {
     write(NUMBER, number);
     write(BASE, base);
     write(ATTRIBUTES, RAM | attributes | (power - 1) << 1);
 }
 
 /// Ends the protection, of all regions.
-fn end() {
+pub fn end() {
     write(CONTROL, 0);
     for number in 0..8 {
         write(NUMBER, number);

@@ -12,6 +12,8 @@
 #![allow(clippy::must_use_candidate, reason = "nothing here is reckoned only to be looked at")]
 
 pub mod controller;
+pub mod exceptions;
+pub mod faults;
 pub mod image;
 pub mod measure;
 pub mod probe;

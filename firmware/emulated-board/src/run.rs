@@ -9,7 +9,8 @@ use crate::controller::rcc::Oscillators;
 use crate::controller::{Controller, ResetReason};
 use crate::image::Image;
 use crate::probe::{Line, Probe};
-use crate::processor::{PAINT, Processor, Unknown};
+use crate::processor::memory::RAM_FILL;
+use crate::processor::{Processor, Unknown};
 use crate::report::{Observation, Report};
 use crate::time::Time;
 use crate::world::World;
@@ -66,8 +67,7 @@ impl Execution {
         let mut controller = Controller::new(oscillators, order.seed, Box::new(world.board()));
         controller.flash.array.burn(STORE.start, &world.store);
         let processor = Processor::new(Rc::clone(image), controller, order.cycles);
-        let mut processor = processor.map_err(|error| format!("Unicorn: {error:?}"))?;
-        processor.poke(crate::RAM, &vec![PAINT; crate::RAM_BYTES]);
+        let processor = processor.map_err(|error| format!("Unicorn: {error:?}"))?;
         Ok(Self { processor, world, image: Rc::clone(image), probe })
     }
 
@@ -100,7 +100,7 @@ impl Execution {
         let Image { stack_start, stack_end, .. } = *self.image;
         let mut stack = vec![0; (stack_start - stack_end) as usize];
         self.processor.peek(stack_end, &mut stack);
-        let untouched = stack.iter().take_while(|byte| **byte == PAINT).count();
+        let untouched = stack.iter().take_while(|byte| **byte == RAM_FILL).count();
         stack_start - stack_end - untouched as u32
     }
 

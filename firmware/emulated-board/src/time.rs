@@ -7,6 +7,9 @@ use embassy_time::Instant;
 /// Fractions of a nanosecond that time is counted in, as a power of two.
 const FRACTION_BITS: u32 = 16;
 
+/// Nanoseconds of a second.
+const SECOND: u64 = 1_000_000_000;
+
 /// A moment since the supply came up, or a span of time: nanoseconds with a fraction of 2⁻¹⁶; wraps after three days.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Time(u64);
@@ -32,15 +35,20 @@ impl Time {
         Self((seconds * 1e9 * f64::from(1 << FRACTION_BITS)).round() as u64)
     }
 
-    /// So many periods of a frequency in hertz (> 0), to the nearest fraction.
-    pub fn periods(count: u64, hertz: u64) -> Self {
-        let exact = (u128::from(count) * 1_000_000_000) << FRACTION_BITS;
-        Self(((exact + u128::from(hertz / 2)) / u128::from(hertz)) as u64)
+    /// So many periods of a frequency in hertz (> 0, below 2³³), to the nearest fraction.
+    pub const fn periods(count: u64, hertz: u64) -> Self {
+        let (seconds, rest) = (count / hertz, count % hertz * SECOND);
+        let fraction = ((rest % hertz << FRACTION_BITS) + hertz / 2) / hertz;
+        Self((seconds * SECOND + rest / hertz << FRACTION_BITS) + fraction)
     }
 
-    /// How many whole periods of a frequency in hertz it holds; a period that ends within a fraction counts.
-    pub fn count(self, hertz: u64) -> u64 {
-        ((u128::from(self.0 + 1) * u128::from(hertz)) / (1_000_000_000 << FRACTION_BITS)) as u64
+    /// How many whole periods of a frequency in hertz (below 2³³) it holds; a period that ends within a fraction counts.
+    pub const fn count(self, hertz: u64) -> u64 {
+        let (nanoseconds, fraction) =
+            (self.0 + 1 >> FRACTION_BITS, (self.0 + 1) % (1 << FRACTION_BITS));
+        let (seconds, rest) = (nanoseconds / SECOND, nanoseconds % SECOND * hertz);
+        let rest_fraction = (rest % SECOND << FRACTION_BITS) + fraction * hertz;
+        seconds * hertz + rest / SECOND + rest_fraction / (SECOND << FRACTION_BITS)
     }
 
     /// Whole nanoseconds.

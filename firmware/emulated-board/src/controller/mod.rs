@@ -37,7 +37,7 @@ use self::system::System;
 use self::timer::Timer;
 use self::usart::Usart;
 use self::watchdog::Watchdog;
-use crate::processor::exceptions::{Exceptions, FIRST_INTERRUPT, NOT_MASKABLE};
+use crate::exceptions::{Exceptions, FIRST_INTERRUPT, NOT_MASKABLE};
 use crate::time::Time;
 use crate::wiring::{Pin, Wiring};
 

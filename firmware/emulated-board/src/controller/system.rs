@@ -3,11 +3,11 @@
 
 use super::Refused;
 use super::protection::Protection;
-use crate::processor::exceptions::{
+use crate::exceptions::{
     BUS_FAULT, EXCEPTIONS, Exceptions, FIRST_INTERRUPT, HARD_FAULT, MEMORY_FAULT, NOT_MASKABLE,
     PENDABLE_SERVICE, PRIORITY_MASK, SUPERVISOR_CALL, SYSTEM_TICK, Set, USAGE_FAULT,
 };
-use crate::processor::faults::Fault;
+use crate::faults::Fault;
 
 /// The core's identity: Cortex-M4, r0p1.
 const IDENTITY: u32 = 0x410F_C241;
@@ -56,6 +56,12 @@ impl System {
     #[must_use]
     pub const fn returns_to_thread_at_any_time(&self) -> bool {
         self.configuration & 1 != 0
+    }
+
+    /// Whether the floating-point unit is on.
+    #[must_use]
+    pub const fn is_float_unit_on(&self) -> bool {
+        self.coprocessors >> 20 & 0xF == 0xF
     }
 
     /// Whether an exception that becomes pending is an event (`SEVONPEND`).

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use super::checks::Checks;
+
 /// Instructions that follow each other up to a branch.
 #[derive(Clone, Debug)]
 pub struct Block {
@@ -15,35 +17,51 @@ pub struct Block {
     pub signals: bool,
     /// Whether it is a branch to itself, which an exception or a reset alone ends.
     pub is_endless: bool,
+    /// What is to be checked before it is executed.
+    pub checks: Checks,
     /// How often it was executed.
     pub count: u64,
 }
 
 impl Block {
-    /// Reads the instructions of a block from its bytes (ARMv7-M Architecture Reference Manual, A5.1).
+    /// Reads the instructions of a block from its bytes.
     pub fn decode(address: u32, bytes: &[u8]) -> Self {
-        let halves: Vec<u16> =
-            bytes.chunks_exact(2).map(|half| u16::from_le_bytes([half[0], half[1]])).collect();
         let mut block = Self {
             address,
             offsets: Vec::new(),
             masks: false,
             signals: false,
             is_endless: bytes == [0xFE, 0xE7],
+            checks: Checks::of(bytes),
             count: 0,
         };
-        let mut place = 0;
-        while let Some(first) = halves.get(place) {
-            block.offsets.push(2 * place as u16);
-            let is_wide = first >> 11 >= 0b11101;
+        for (offset, first, second) in instructions(bytes) {
+            block.offsets.push(offset);
             // CPS; MSR.
-            block.masks |= first & 0xFFE8 == 0xB660 || (is_wide && first & 0xFFE0 == 0xF380);
+            block.masks |=
+                first & 0xFFE8 == 0xB660 || (second.is_some() && first & 0xFFE0 == 0xF380);
             // SEV.
-            block.signals |= *first == 0xBF40;
-            place += if is_wide { 2 } else { 1 };
+            block.signals |= first == 0xBF40;
         }
         block
     }
+}
+
+/// The instructions of a block (ARMv7-M Architecture Reference Manual, A5.1): distance of each from the beginning,
+/// bytes, its first half-word, and the second of a wide one.
+pub(super) fn instructions(bytes: &[u8]) -> impl Iterator<Item = (u16, u16, Option<u16>)> {
+    let half = |place: usize| {
+        let half = bytes.get(place..place + 2)?;
+        Some(u16::from_le_bytes([half[0], half[1]]))
+    };
+    let mut place = 0;
+    std::iter::from_fn(move || {
+        let first = half(place)?;
+        let second = if first >> 11 >= 0b11101 { half(place + 2) } else { None };
+        let offset = place as u16;
+        place += if second.is_some() { 4 } else { 2 };
+        Some((offset, first, second))
+    })
 }
 
 /// The blocks that were executed.

@@ -8,10 +8,12 @@ use std::rc::Rc;
 
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
-use super::faults::Fault;
-use super::{Halt, Processor, Ram, State};
+use super::Processor;
+use super::memory::Ram;
+use super::state::{Halt, State};
 use crate::controller::Memory;
 use crate::controller::protection::Access;
+use crate::faults::Fault;
 
 /// Registers that an instruction which faults leaves as they are.
 const KEPT: [RegisterARM; 17] = [
@@ -43,16 +45,16 @@ pub(super) fn forget_conditions(uc: &mut Unicorn<'_, ()>) {
     }
 }
 
-/// What an access that faults must leave as it was.
-pub(super) struct Undone {
+/// Registers, and memory that is written, before an access that faults: it leaves them as they are.
+pub(super) struct Checkpoint {
     registers: [u64; KEPT.len()],
     /// Address and bytes.
     memory: Option<(u32, Vec<u8>)>,
 }
 
 impl State {
-    /// Stops the core for a fault of an access, which is undone; a write has so many bytes at an address.
-    pub(super) fn undo(
+    /// Stops the core for a fault of an access, which is rolled back; a write has so many bytes at an address.
+    pub(super) fn abort(
         &mut self,
         uc: &mut Unicorn<'_, ()>,
         fault: Fault,
@@ -66,7 +68,7 @@ impl State {
             let _ = uc.mem_read(address.into(), &mut bytes);
             (address, bytes)
         });
-        self.undone = Some(Undone {
+        self.checkpoint = Some(Checkpoint {
             registers: KEPT.map(|register| uc.reg_read(register).unwrap_or(0)),
             memory,
         });
@@ -88,7 +90,7 @@ impl State {
         let protection = &self.controller.system.protection;
         if let Some(refused) = protection.refuses(address, size as u32, access, self.level) {
             let written = (access == Access::Write).then_some((address, size));
-            self.undo(uc, Fault::protected(refused), written);
+            self.abort(uc, Fault::protected(refused), written);
         }
         forget_conditions(uc);
     }
@@ -96,12 +98,12 @@ impl State {
 
 impl Processor {
     /// Puts back what an access that faulted has changed.
-    pub(super) fn put_back(&mut self) {
-        let Some(undone) = self.state.borrow_mut().undone.take() else { return };
-        if let Some((address, bytes)) = undone.memory {
+    pub(super) fn roll_back(&mut self) {
+        let Some(before) = self.state.borrow_mut().checkpoint.take() else { return };
+        if let Some((address, bytes)) = before.memory {
             Ram(&mut self.uc).write(address, &bytes);
         }
-        for (register, value) in KEPT.iter().zip(undone.registers) {
+        for (register, value) in KEPT.iter().zip(before.registers) {
             // Writing the address also says that it is Thumb code, as all of it is.
             self.set(*register, if *register == RegisterARM::PC { value | 1 } else { value });
         }

@@ -2,7 +2,9 @@
 
 use unicorn_engine::{RegisterARM, Unicorn};
 
-use super::{Halt, Processor, Ram, State, masks};
+use super::Processor;
+use super::memory::Ram;
+use super::state::{Halt, State, masks};
 use crate::time::Time;
 
 impl State {

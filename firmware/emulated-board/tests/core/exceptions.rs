@@ -1,6 +1,6 @@
 //! Which exception goes before which, against the manual's rules (ARMv7-M Architecture Reference Manual, B1.5).
 
-use emulated_board::processor::exceptions::{
+use emulated_board::exceptions::{
     BUS_FAULT, Exceptions, FIRST_INTERRUPT, HARD_FAULT, Masks, NOT_MASKABLE, SUPERVISOR_CALL, Set,
 };
 

@@ -7,7 +7,7 @@
 //! As it should be: the reason, and where it was, outlast the reset in RAM; the next start logs it and sends it, and a
 //! reset follows a fault at once, with the motors off.
 
-use emulated_board::processor::exceptions::HARD_FAULT;
+use emulated_board::exceptions::HARD_FAULT;
 use firmware::platform::Platform;
 
 use crate::board::{Board, TurningBoard};

@@ -56,7 +56,7 @@ impl Set {
     /// Whether an exception is one of them.
     #[must_use]
     pub const fn has(self, number: u32) -> bool {
-        self.0 >> number & 1 != 0
+        number < u128::BITS && self.0 >> number & 1 != 0
     }
 
     /// Puts an exception in, or takes it out.
@@ -205,7 +205,7 @@ impl Exceptions {
         !self.enabled.has(number) || self.priority(number) >= self.executing(masks)
     }
 
-    /// Whether no exception but this one is active.
+    /// Whether no exception is active but this one, if it is.
     #[must_use]
     pub const fn is_base(&self, number: u32) -> bool {
         self.active.0 & !(1 << number) == 0
@@ -217,9 +217,11 @@ impl Exceptions {
         self.active.put(number, true);
     }
 
-    /// Returns from an exception.
+    /// Returns from an exception; one that is not active stays so.
     pub const fn leave(&mut self, number: u32) {
-        self.active.put(number, false);
+        if self.active.has(number) {
+            self.active.put(number, false);
+        }
     }
 
     /// Whether the core is in a handler that hard faults cannot interrupt.

@@ -1,7 +1,7 @@
 //! Faults of the core: which there are, what they tell, what becomes of one that cannot be taken (ARMv7-M
 //! Architecture Reference Manual, B1.5.14, B3.2.15).
 
-use super::exceptions::{BUS_FAULT, HARD_FAULT, MEMORY_FAULT, USAGE_FAULT};
+use crate::exceptions::{BUS_FAULT, HARD_FAULT, MEMORY_FAULT, USAGE_FAULT};
 
 /// A fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,10 +19,12 @@ impl Fault {
     pub const BREAKPOINT: Self = Self { number: HARD_FAULT, status: 0, address: None };
     /// An instruction that there is not.
     pub const UNDEFINED: Self = Self::usage(16);
-    /// An instruction that is not of Thumb.
+    /// An instruction while the state is not that of Thumb (`INVSTATE`).
     pub const NO_THUMB: Self = Self::usage(17);
-    /// A return from an exception that there is not.
-    pub const NO_RETURN: Self = Self::usage(18);
+    /// A return from an exception that fails an integrity check (`INVPC`).
+    pub const INVALID_RETURN: Self = Self::usage(18);
+    /// An instruction for the floating-point unit while it is off (`NOCP`).
+    pub const NO_COPROCESSOR: Self = Self::usage(19);
     /// An access that is not aligned where it must be.
     pub const UNALIGNED: Self = Self::usage(24);
 
