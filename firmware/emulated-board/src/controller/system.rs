@@ -8,6 +8,7 @@ use crate::exceptions::{
     PENDABLE_SERVICE, PRIORITY_MASK, SUPERVISOR_CALL, SYSTEM_TICK, Set, USAGE_FAULT,
 };
 use crate::faults::Fault;
+use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
 
 /// The core's identity: Cortex-M4, r0p1.
 const IDENTITY: u32 = 0x410F_C241;
@@ -27,8 +28,8 @@ pub struct System {
     pub faults: [u32; 4],
     /// `CPACR`.
     pub coprocessors: u32,
-    /// `FPCCR`, `FPCAR`, `FPDSCR`.
-    float: [u32; 3],
+    /// `FPCCR`.
+    float: u32,
     /// `DEMCR`.
     debug: u32,
     /// The memory protection unit.
@@ -72,7 +73,7 @@ impl System {
 
     /// The registers after a reset; the vectors are at the beginning of the flash.
     pub fn new() -> Self {
-        Self { configuration: 0x200, float: [0xC000_0000, 0, 0], ..Self::default() }
+        Self { configuration: 0x200, float: 0xC000_0000, ..Self::default() }
     }
 
     /// Reads a register by its distance from 0xE000 E000; `active` is the exception that is being handled.
@@ -100,7 +101,8 @@ impl System {
             0xD88 => self.coprocessors,
             0xD90..0xDA4 => self.protection.read(offset - 0xD90).ok_or(Refused::Unknown)?,
             0xDFC => self.debug,
-            0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4],
+            0xF34 => self.float,
+            0xF3C => 0,
             _ => return Err(Refused::Unknown),
         })
     }
@@ -120,7 +122,7 @@ impl System {
             0xD04 => set_pending(exceptions, value),
             0xD18..0xD24 => set_priorities(exceptions, 4 + offset - 0xD18, value, size),
             0xD24 => set_shcsr(exceptions, value)?,
-            0xD08 => self.vectors = value,
+            0xD08 => self.vectors = value & !0x7F,
             0xD0C => self.wants_reset |= value & 4 != 0,
             0xD10 => self.sleep = value,
             0xD14 => self.configuration = value,
@@ -129,7 +131,8 @@ impl System {
             0xD28 => self.faults[0] &= !value,
             0xD2C => self.faults[1] &= !value,
             0xD94..0xDA4 if self.protection.write(offset - 0xD90, value) => {}
-            0xF34..0xF40 => self.float[(offset as usize - 0xF34) / 4] = value,
+            0xF34 => self.float = value,
+            0xF3C => {}
             _ => return Err(Refused::Unknown),
         }
         Ok(())
@@ -149,16 +152,23 @@ impl System {
 }
 
 /// What a write of a register asks for that is not modelled.
-const fn unmodelled(offset: u32, value: u32) -> Option<&'static str> {
+fn unmodelled(offset: u32, value: u32) -> Option<&'static str> {
     match offset {
         0x010 if value & 1 != 0 => Some("the core's timer"),
+        0xD08 if !is_table(value) => Some("vectors outside of flash and RAM"),
         0xD0C if value >> 16 != 0x05FA => Some("a wrong key, with which nothing is written"),
-        0xD0C if value & 0x703 != 0 => Some("groups of priorities, or a reset of the core alone"),
-        0xD10 if value & 4 != 0 => Some("deep sleep"),
-        0xD14 if value & !1 != 0x200 => Some("traps, alignment and faults of the configuration"),
+        0xD0C if value & 0x703 != 0 => Some("groups of priorities, or a reset by a debugger"),
+        0xD10 if value & 6 != 0 => Some("deep sleep, or sleep at a return"),
+        // Returns to a thread at any time, and frames that are aligned, are all that there is.
+        0xD14 if value & !1 != 0x200 => Some("traps and alignment of the configuration"),
         0xD88 if value >> 20 & 0xF != 0xF => Some("a floating-point unit that is off"),
-        0xDFC if value & 0xF_0000 != 0 => Some("a monitor of debugging"),
-        0xF34 if value >> 31 == 0 => Some("floating-point registers that are not stacked"),
+        // TRCENA: the units that it enables are not there.
+        0xDFC if value & !(1 << 24) != 0 => Some("debug events"),
+        // LSPEN: whether they are stacked at once or when they are needed shows nowhere.
+        0xF34 if value & !(1 << 30) != 1 << 31 => {
+            Some("floating-point registers that are not stacked")
+        }
+        0xF3C if value != 0 => Some("a default status of floating-point arithmetic"),
         _ => None,
     }
 }
@@ -190,6 +200,13 @@ fn set_pending(exceptions: &mut Exceptions, value: u32) {
             exceptions.pending.put(number, is_set);
         }
     }
+}
+
+/// Whether a table of vectors is where the model has memory: at the beginning, where the flash is too, or in flash or
+/// RAM.
+fn is_table(address: u32) -> bool {
+    let memory = [(FLASH, FLASH_BYTES), (RAM, RAM_BYTES), (RAM2, RAM2_BYTES)];
+    address == 0 || memory.iter().any(|(start, bytes)| address.wrapping_sub(*start) < *bytes as u32)
 }
 
 /// Bits of `ICSR` that make exceptions of the core pending or not: the bit, the exception, which of both.

@@ -5,6 +5,7 @@ mod images;
 mod memory;
 mod protection;
 mod returns;
+mod system;
 mod time;
 
 use emulated_board::processor::blocks::Blocks;
