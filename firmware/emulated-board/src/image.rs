@@ -28,12 +28,17 @@ impl Image {
     /// Reads an ELF file.
     ///
     /// # Errors
-    /// Where it is no image of this controller: no ELF file, without a segment in flash, or without the symbols of
-    /// cortex-m-rt's stack and of the log's buffer.
+    /// The file, and why it is no image of this controller: no ELF file, without a segment in flash, or without the
+    /// symbols of cortex-m-rt's stack and of the log's buffer.
     pub fn read(path: &Path) -> Result<Self, String> {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let elf = std::fs::read(path).map_err(|error| named(&error))?;
         let sources = Loader::new(path).map_err(|error| named(&error))?;
+        Self::of(elf, sources).map_err(|error| named(&error))
+    }
+
+    /// The image in an ELF file, beside the places of its sources.
+    fn of(elf: Vec<u8>, sources: Loader) -> Result<Self, String> {
         let file: ElfFile32 =
             ElfFile32::parse(&*elf).map_err(|error| format!("no image: {error}"))?;
         let symbol = |name: &str| {

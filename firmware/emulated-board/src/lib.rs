@@ -15,6 +15,7 @@ pub mod controller;
 pub mod exceptions;
 pub mod faults;
 pub mod image;
+pub mod link;
 pub mod measure;
 pub mod probe;
 pub mod processor;

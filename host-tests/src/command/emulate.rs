@@ -2,12 +2,13 @@
 //! microcontroller.
 
 use clap::Args;
+use execution::options;
 use firmware::platform::Platform;
 use host::emulate::emulate;
 use host::emulate::executed::{Executed, Options, execute};
 use host::output::{emulation, executed, say};
 
-use super::Answer;
+use super::{Answer, Failure};
 
 /// What to emulate.
 #[derive(Args)]
@@ -20,30 +21,14 @@ pub struct EmulateOptions {
     #[arg(long, value_name = "CARRIER", value_parser = carriers)]
     board: Option<Carriers>,
     /// With --board: cycles of the core for an instruction, wait states of the flash included.
-    #[arg(long, default_value_t = 1.4, requires = "board", value_parser = cycles)]
+    #[arg(long, default_value_t = 1.4, requires = "board", value_parser = options::cycles)]
     cycles: f64,
     /// With --board: how long it goes on after its result, s; 10 unless stated.
-    #[arg(long, value_name = "SECONDS", requires = "board", value_parser = afterwards)]
+    #[arg(long, value_name = "SECONDS", requires = "board", value_parser = options::afterwards)]
     afterwards: Option<f64>,
     /// With --board and one carrier: the link as a byte stream for one client, which is waited for.
-    #[arg(long, value_name = "tcp:PORT", requires = "board")]
-    link: Option<String>,
-}
-
-/// A number within a range.
-fn within(text: &str, [least, most]: [f64; 2]) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| (least..=most).contains(number));
-    number.ok_or_else(|| format!("{least} to {most} are meant"))
-}
-
-/// Cycles of an instruction.
-fn cycles(text: &str) -> Result<f64, String> {
-    within(text, [0.5, 20.0])
-}
-
-/// Time after the result, s.
-fn afterwards(text: &str) -> Result<f64, String> {
-    within(text, [0.0, 3600.0])
+    #[arg(long, value_name = "tcp:PORT", requires = "board", value_parser = options::port)]
+    link: Option<u16>,
 }
 
 /// Carriers whose images are executed.
@@ -55,22 +40,19 @@ fn carriers(name: &str) -> Result<Carriers, String> {
     if name == "all" {
         return Ok(Carriers(Platform::ALL.to_vec()));
     }
-    let names = || Platform::ALL.map(Platform::name).join(", ");
-    let found = Platform::ALL.into_iter().find(|platform| platform.name() == name);
-    found
-        .map(|platform| Carriers(vec![platform]))
-        .ok_or_else(|| format!("{} or all are meant", names()))
+    let found = options::carrier(name).map(|carrier| Carriers(vec![carrier]));
+    found.map_err(|names| format!("{names} or all are meant"))
 }
 
 /// Runs the firmware's images; whether all is as it must be.
-pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
+pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, Failure> {
     if let Some(Carriers(carriers)) = &options.board {
         return run_boards(carriers, options, as_json);
     }
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
-    Answer::of(refusal, as_json, &object, || emulation::report(&found).text())
+    Ok(Answer::of(refusal, as_json, &object, || emulation::report(&found).text())?)
 }
 
 /// Executes the images of boards; whether no azimuth is wrong.
@@ -78,17 +60,16 @@ fn run_boards(
     carriers: &[Platform],
     options: &EmulateOptions,
     as_json: bool,
-) -> Result<Answer, String> {
+) -> Result<Answer, Failure> {
     if options.link.is_some() && carriers.len() > 1 {
-        return Err("--link: one carrier has one link, and --board names several".to_owned());
+        let wrong = "--link: one carrier has one link, and --board names several";
+        return Err(Failure::misuse(wrong.to_owned()));
     }
-    let link = options.link.clone();
-    let EmulateOptions { seed, cycles, afterwards, .. } = *options;
+    let EmulateOptions { seed, cycles, afterwards, link, .. } = *options;
     let options = Options { seed, cycles, afterwards, link };
     let found = execute(carriers, &options)?;
     let is_right = found.iter().flat_map(Executed::complaints).next().is_none();
     let refusal = (!is_right).then(|| "not all is as it must be".to_owned());
-    Answer::of(refusal, as_json, &executed::object(&found), || {
-        executed::report(&found, &options).text()
-    })
+    let object = executed::object(&found);
+    Ok(Answer::of(refusal, as_json, &object, || executed::report(&found, &options).text())?)
 }

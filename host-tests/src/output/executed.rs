@@ -42,6 +42,7 @@ fn of_results(all: &[Executed]) -> Part {
         })
         .column("off truth", distance(0))
         .column("off host", distance(1))
+        .column("lost measuring", |executed| executed.report.lost_measuring())
         .column("after", |executed| format!("{:.1} s", executed.report.seconds))
         .column("", |executed| &executed.report.outcome)
         .into()

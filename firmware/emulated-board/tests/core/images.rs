@@ -12,6 +12,7 @@ use emulated_board::processor::Processor;
 use emulated_board::time::Time;
 use emulated_board::wiring::board::Served;
 use emulated_board::wiring::{I2cBus, Pin, Wiring};
+use execution::built::{executable, of_firmware};
 use hal_mock::wires::Clock;
 
 /// Less time than fills the buffer of the lines.
@@ -19,18 +20,7 @@ pub const LOOK: Time = Time::microseconds(500);
 
 /// Builds both images; the path of one of them.
 fn image(name: &str) -> Result<PathBuf, String> {
-    let build = "build --locked --quiet --package core-checks --profile firmware --target thumbv7em-none-eabihf";
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(build.split(' ')).args(["--message-format", "json-render-diagnostics"]);
-    cargo.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    let output = cargo.output().map_err(|error| format!("cargo: {error}"))?;
-    let messages = String::from_utf8_lossy(&output.stdout);
-    let artifacts =
-        messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-    let mut paths =
-        artifacts.filter_map(|artifact| artifact["executable"].as_str().map(PathBuf::from));
-    let errors = || format!("no image {name}: {}", String::from_utf8_lossy(&output.stderr));
-    paths.find(|path| path.ends_with(name)).ok_or_else(errors)
+    executable(&of_firmware(&["--package", "core-checks"])?, name)
 }
 
 /// Executes the checks in QEMU: what it prints. The machine has flash and RAM where the board has them.

@@ -2,10 +2,10 @@
 
 use emulated_board::report::Report;
 use emulated_board::run::Order;
+use execution::built::root;
 use firmware::platform::Platform;
 
 use super::support::executed::{Executed, execute_anew, executed, executed_by};
-use super::support::images::root;
 
 /// Carriers whose alignment ends with an azimuth.
 const ALIGNED: [Platform; 3] = [Platform::Stage, Platform::Turntable, Platform::Vehicle];

@@ -4,12 +4,12 @@ use std::fs;
 
 use emulated_board::run::Order;
 use emulated_board::world::World;
+use execution::built::root;
 use firmware::platform::Platform;
 
 use super::support::bench::Bench;
 use super::support::defect::hold;
 use super::support::executed::executed;
-use super::support::images::root;
 
 /// The start waits for the crystal in a critical section.
 #[test]

@@ -78,6 +78,12 @@ impl Report {
         self.service.iter().map(|service| service.longest_wait_seconds).fold(0.0, f64::max)
     }
 
+    /// Conversions that were lost until the last step of the measurement: the azimuth is made without them.
+    #[must_use]
+    pub fn lost_measuring(&self) -> u64 {
+        self.service[0].lost
+    }
+
     /// Notices of the log although nothing is wrong.
     #[must_use]
     pub fn false_notices(&self) -> u64 {

@@ -2,6 +2,7 @@
 //! The emulator itself runs in `.ci/run`.
 
 mod cores;
+mod executed;
 mod handmade;
 mod limits;
 mod log;

@@ -4,7 +4,8 @@ use std::fs;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use host::emulate::images::{Images, artifacts, root};
+use execution::built::root;
+use host::emulate::images::{Images, artifacts};
 use host::emulate::qemu;
 use serde_json::Value;
 

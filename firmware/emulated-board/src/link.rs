@@ -1,0 +1,103 @@
+//! The link as a byte stream for a client, which may be slow and may go.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::time::Duration;
+
+/// Bytes that wait for a slow client at most: some ten minutes of status lines.
+pub const WAITING: usize = 1 << 16;
+/// How long the client may take for some of the bytes that wait at the end.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The client of a link.
+pub struct Client {
+    stream: TcpStream,
+    /// Bytes that it has not taken yet.
+    waiting: VecDeque<u8>,
+}
+
+impl Client {
+    /// A client at the other end of a connection.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nonblocking(true)?;
+        Ok(Self { stream, waiting: VecDeque::new() })
+    }
+
+    /// Waits for a client at a port of this computer; 0 is any that is free. Standard error says which.
+    ///
+    /// # Errors
+    /// What the system says, as where the port is taken.
+    pub fn wait(port: u16) -> Result<Self, String> {
+        let failed = |error: io::Error| format!("--link tcp:{port}: {error}");
+        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
+        eprintln!("waiting for a client at {}", listener.local_addr().map_err(failed)?);
+        let (stream, _) = listener.accept().map_err(failed)?;
+        Self::new(stream).map_err(failed)
+    }
+
+    /// Hands over bytes of the link, and takes what the client sends, without waiting for it.
+    ///
+    /// # Errors
+    /// Why the client hears nothing any more: it has gone, or more than [`WAITING`] bytes wait for it.
+    pub fn exchange(&mut self, sent: &[u8]) -> Result<Vec<u8>, String> {
+        self.waiting.extend(sent);
+        self.hand_over().map_err(gone)?;
+        if self.waiting.len() > WAITING {
+            return Err(format!(
+                "the client is too slow: {} bytes wait for it",
+                self.waiting.len()
+            ));
+        }
+        let mut received = [0; 256];
+        let count = no_wait(self.stream.read(&mut received)).map_err(gone)?;
+        Ok(received[..count.unwrap_or(0)].to_vec())
+    }
+
+    /// How many bytes the client has not taken yet.
+    pub fn waits(&self) -> usize {
+        self.waiting.len()
+    }
+
+    /// Hands over as many of the bytes that wait as the connection takes.
+    fn hand_over(&mut self) -> io::Result<()> {
+        while !self.waiting.is_empty()
+            && let Some(count) = no_wait(self.stream.write(self.waiting.make_contiguous()))?
+        {
+            self.waiting.drain(..count);
+        }
+        Ok(())
+    }
+
+    /// Waits until the client has what is left for it.
+    ///
+    /// # Errors
+    /// It has gone, or takes nothing for five seconds.
+    pub fn finish(mut self) -> Result<(), String> {
+        let settle = |stream: &TcpStream| {
+            stream.set_nonblocking(false)?;
+            stream.set_write_timeout(Some(PATIENCE))
+        };
+        let handed = settle(&self.stream)
+            .and_then(|()| self.stream.write_all(self.waiting.make_contiguous()));
+        handed.map_err(gone)
+    }
+}
+
+/// What came of something that does not wait; none where it would have to.
+fn no_wait(result: io::Result<usize>) -> io::Result<Option<usize>> {
+    match result {
+        Ok(count) => Ok(Some(count)),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// Why a client hears nothing any more.
+#[expect(clippy::needless_pass_by_value, reason = "as what errors are mapped by")]
+fn gone(error: io::Error) -> String {
+    format!("the client is gone: {error}")
+}

@@ -1,0 +1,58 @@
+//! The program, started.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, ChildStderr, Command, Output, Stdio};
+
+use firmware::platform::Platform;
+
+use crate::images::path;
+
+/// The program with an image of a carrier, and further arguments.
+pub fn program(image: &str, carrier: Platform, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_emulated-board"));
+    command.arg(image).args(["--carrier", carrier.name()]).args(arguments);
+    command
+}
+
+/// What the program does with an image of a carrier, and further arguments.
+pub fn output(image: &str, carrier: Platform, arguments: &[&str]) -> Output {
+    program(image, carrier, arguments).output().expect("it starts")
+}
+
+/// Text that a program has printed.
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("it prints UTF-8")
+}
+
+/// The program, which waits for a client of a spinning body's link; its port is free.
+pub struct Waiting {
+    /// The process.
+    pub child: Child,
+    /// Where it waits, as "127.0.0.1:5000".
+    pub address: String,
+    /// What it says from then on.
+    pub log: BufReader<ChildStderr>,
+}
+
+impl Waiting {
+    /// Starts it, with further arguments.
+    pub fn new(arguments: &[&str]) -> Self {
+        let image = path(Platform::Spin).to_str().expect("a name in UTF-8");
+        let mut command = program(image, Platform::Spin, &["--link", "tcp:0"]);
+        let piped = command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = piped.stderr(Stdio::piped()).spawn().expect("it starts");
+        let mut log = BufReader::new(child.stderr.take().expect("it is piped"));
+        let mut line = String::new();
+        log.read_line(&mut line).expect("it says where it waits");
+        let address = line.trim().rsplit(' ').next().expect("the line has words").to_owned();
+        Self { child, address, log }
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        // Both fail only where it has ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
