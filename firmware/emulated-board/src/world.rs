@@ -30,6 +30,8 @@ pub struct World {
     wires: (Selects, Lines),
     /// The IMU on the base under a platform.
     base: Option<BaseImu>,
+    /// Whether the base does not move.
+    pub is_at_rest: bool,
     /// The pages of the store.
     pub store: Vec<u8>,
     /// The true azimuth at a moment, °, or the true roll of a spinning body.
@@ -97,12 +99,14 @@ impl World {
     ) -> Result<Self, String> {
         let store = store(&settings.ok_or("the latitude is none")?)?;
         let carrier = Rc::new(RefCell::new(carrier));
-        Ok(Self { carrier, wires, base: None, store, truth_deg: Box::new(|_| 0.0) })
+        let truth_deg = Box::new(|_| 0.0);
+        Ok(Self { carrier, wires, base: None, is_at_rest: false, store, truth_deg })
     }
 
     /// The world with a base at rest, on which an IMU stands, facing this azimuth, °.
     fn at_rest(self, base: BaseImu, azimuth_deg: f64) -> Self {
-        Self { base: Some(base), truth_deg: Box::new(move |_| azimuth_deg), ..self }
+        let truth_deg = Box::new(move |_| azimuth_deg);
+        Self { base: Some(base), is_at_rest: true, truth_deg, ..self }
     }
 
     /// The world with other pages in its store.

@@ -97,13 +97,21 @@ fn of_instructions(all: &[Executed]) -> Part {
     .column("carrier", |executed| &executed.report.carrier)
     .column("samples", |executed| executed.report.samples)
     .column("idle", |executed| format!("{:.0} %", 100.0 * executed.report.idle))
-    .column("all in", |executed| format!("{:.0}", executed.report.instructions_per_sample));
+    .column("all in", |executed| instructions(executed.report.instructions_per_sample));
     let columns = ORIGINS.into_iter().fold(columns, |columns, origin| {
         columns.column(origin, move |executed| {
-            format!("{:.0}", executed.report.instructions_by_origin.get(origin).unwrap_or(&0.0))
+            let Execution { instructions_per_sample, instructions_by_origin, .. } =
+                &executed.report;
+            let some = instructions_by_origin.get(origin).copied().unwrap_or(0.0);
+            instructions(instructions_per_sample.map(|_| some))
         })
     });
     columns.into()
+}
+
+/// Instructions of a sample, where there is one.
+fn instructions(count: Option<f64>) -> String {
+    count.map_or_else(|| "-".to_owned(), |count| format!("{count:.0}"))
 }
 
 /// Memory, and what the flash was used for.
@@ -114,6 +122,7 @@ fn of_memory(all: &[Executed]) -> Part {
         .column("static RAM", |executed| executed.report.static_bytes)
         .column("stack at its deepest", |executed| executed.report.stack_bytes)
         .column("rows programmed", |executed| executed.report.flash_use[0])
+        .column("with the data cache on", |executed| executed.report.flash_use[2])
         .column("pages erased", |executed| executed.report.flash_use[1])
         .into()
 }

@@ -156,7 +156,8 @@ struct Line {
 pub struct Served {
     /// Conversions that were read.
     pub read: u64,
-    /// The longest time for which one waited, and when it was read.
+    /// The longest time for which a converter waited to be read, from the end of the first conversion that waited, and
+    /// when it was read; or now, where it waits.
     pub longest: (Time, Time),
 }
 
@@ -240,12 +241,15 @@ impl I2cBus for Board {
 }
 
 impl Wiring for Board {
-    fn served(&mut self) -> Served {
-        let all = self.lines.iter_mut().map(|line| std::mem::take(&mut line.served));
-        all.fold(Served::default(), |sum, served| Served {
-            read: sum.read + served.read,
-            longest: sum.longest.max(served.longest),
-        })
+    fn served(&mut self, now: Time) -> Served {
+        let mut sum = Served::default();
+        for line in &mut self.lines {
+            let Served { read, longest } = std::mem::take(&mut line.served);
+            let waits = line.waits.map_or(longest, |since| (now - since, now));
+            sum.read += read;
+            sum.longest = sum.longest.max(longest).max(waits);
+        }
+        sum
     }
 
     fn drive(&mut self, pin: Pin, level: Option<bool>, now: Time) {

@@ -58,7 +58,7 @@ pub trait Wiring: I2cBus {
     fn drive(&mut self, pin: Pin, level: Option<bool>, now: Time);
 
     /// How conversions were served since the last time that was asked.
-    fn served(&mut self) -> board::Served;
+    fn served(&mut self, now: Time) -> board::Served;
 
     /// The level of a pin that the microcontroller does not drive.
     fn level(&mut self, pin: Pin, now: Time) -> bool;

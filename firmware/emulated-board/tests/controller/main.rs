@@ -104,7 +104,7 @@ impl I2cBus for Shared {
 }
 
 impl Wiring for Shared {
-    fn served(&mut self) -> Served {
+    fn served(&mut self, _: Time) -> Served {
         Served::default()
     }
 

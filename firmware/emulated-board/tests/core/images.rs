@@ -102,7 +102,7 @@ impl I2cBus for Nothing {
 impl Wiring for Nothing {
     fn drive(&mut self, _: Pin, _: Option<bool>, _: Time) {}
 
-    fn served(&mut self) -> Served {
+    fn served(&mut self, _: Time) -> Served {
         Served::default()
     }
 

@@ -1,29 +1,23 @@
 //! A spinning body, whose five converters are more than the controller can read.
 
+use emulated_board::report::Service;
 use emulated_board::run::Order;
 use firmware::platform::Platform;
 
 use super::support::defect::hold;
 use super::support::executed::executed_by;
 
-/// Conversions of a converter in a second.
-const HERTZ: f64 = 14_400.0;
+/// Converters, each of which has one conversion in a sample.
+const CONVERTERS: f64 = 5.0;
 
 /// The part of the conversions that is lost once all converters run, and the instructions for one that
 /// is read, at so many cycles an instruction.
 fn shown(cycles: f64) -> (f64, f64) {
-    let shown = executed_by(&Order { cycles, ..Order::usual(Platform::Spin, 1) });
-    let report = &shown.report;
-    let starts = shown.lines("identity and self-test passed").map(|entry| entry.seconds);
-    let starts: Vec<_> = starts.collect();
-    let last = starts.iter().copied().fold(0.0, f64::max);
-    let made = starts.len() as f64 * HERTZ * (report.seconds - report.start_seconds - last);
-    // What came before the last converter ran, nothing wanted.
-    let unwanted: f64 = starts.iter().map(|start| HERTZ * (last - start)).sum();
-    let lost: u64 = report.service.iter().map(|service| service.lost).sum();
-    let lost = lost as f64 - unwanted;
-    let instructions = report.instructions_per_sample * report.samples as f64;
-    (lost / made, instructions / (made - lost))
+    let report = &executed_by(&Order { cycles, ..Order::usual(Platform::Spin, 1) }).report;
+    let [Service { read, lost, .. }, concluding, after] = report.service;
+    assert_eq!([concluding, after], [Service::default(); 2], "all of it is the measurement");
+    let sample = report.instructions_per_sample.expect("it has measured");
+    (lost as f64 / (read + lost) as f64, sample / CONVERTERS)
 }
 
 #[test]

@@ -5,6 +5,7 @@ use firmware::platform::Platform;
 
 use super::support::bench::Bench;
 use super::support::defect::hold;
+use super::support::executed::executed;
 use super::support::worlds::short_stage;
 
 /// Headings that fill the page which has the settings.
@@ -50,4 +51,17 @@ fn acquisition_waits_for_a_page_that_is_erased_for_less_than_a_period() {
         80.0..=100.0,
         "ms acquisition waits while the store makes room in another page",
     );
+}
+
+/// The core runs from one bank and programs the other, with the data cache on: the controller's erratum may then corrupt
+/// the cache (`hal_mock::flash::data_cache`). The driver does not know of it.
+#[test]
+#[should_panic(
+    expected = "exactly 11 rows of a heading that is saved are programmed while the data cache is on"
+)]
+fn no_row_is_programmed_while_the_data_cache_is_on() {
+    let [rows, _, with_cache_on] = executed(Platform::Stage, 1).report.flash_use;
+    assert_eq!(rows, ROWS[1], "one heading is saved");
+    let words = "rows of a heading that is saved are programmed while the data cache is on";
+    hold(with_cache_on as f64, 0.0..=0.0, 11.0..=11.0, words);
 }

@@ -11,7 +11,7 @@ pub struct Service {
     pub read: u64,
     /// Conversions that a newer one replaced before they were read.
     pub lost: u64,
-    /// The longest time for which one waited to be read, s.
+    /// The longest time for which a converter waited to be read, s, whatever it converted meanwhile.
     pub longest_wait_seconds: f64,
 }
 
@@ -36,15 +36,16 @@ pub struct Report {
     pub start_seconds: f64,
     /// Samples, of all converters together, between the first and the last step of the measurement.
     pub samples: u64,
-    /// Instructions for each of these samples, all in.
-    pub instructions_per_sample: f64,
-    /// Where they go, for each sample.
+    /// Instructions for each of these samples, all in; none where there is no sample.
+    pub instructions_per_sample: Option<f64>,
+    /// Where they go, for each sample; empty where there is none.
     pub instructions_by_origin: BTreeMap<String, f64>,
     /// Part of the time between these steps that the core was asleep.
     pub idle: f64,
-    /// How conversions were served until the last step of the measurement, from there to the result, and after it.
+    /// How conversions were served until the last step of the measurement, or to its end where it has no steps; from
+    /// there to the result; after it.
     pub service: [Service; 3],
-    /// Notices of the log although nothing is wrong, by their words.
+    /// Notices of the log that are false, by their words.
     pub false_notices: BTreeMap<String, u64>,
     /// Faults that the link counts at the end.
     pub faults: u64,
@@ -58,8 +59,9 @@ pub struct Report {
     pub masked_seconds: [f64; 2],
     /// What was done to chips and buses that data sheets forbid.
     pub violations: Vec<String>,
-    /// Rows of flash that were programmed, and pages that were erased.
-    pub flash_use: [u64; 2],
+    /// Rows of flash that were programmed, pages that were erased, and those of the rows that were programmed with the
+    /// data cache on.
+    pub flash_use: [u64; 3],
 }
 
 impl Report {
@@ -72,7 +74,7 @@ impl Report {
             .map_err(|error| format!("the report of an executed image: {error}"))
     }
 
-    /// The longest time for which a conversion waited to be read, s.
+    /// The longest time for which a converter waited to be read, s.
     #[must_use]
     pub fn longest_wait_seconds(&self) -> f64 {
         self.service.iter().map(|service| service.longest_wait_seconds).fold(0.0, f64::max)
@@ -84,7 +86,7 @@ impl Report {
         self.service[0].lost
     }
 
-    /// Notices of the log although nothing is wrong.
+    /// Notices of the log that are false.
     #[must_use]
     pub fn false_notices(&self) -> u64 {
         self.false_notices.values().sum()

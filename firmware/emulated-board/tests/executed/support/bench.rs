@@ -68,8 +68,9 @@ impl Bench {
 
     /// How long conversions waited at most to be read since this was asked for the last time, s.
     pub fn longest_wait(&self) -> f64 {
+        let now = self.execution.processor.now();
         let served =
-            self.execution.processor.with_controller(|controller| controller.wiring.served());
+            self.execution.processor.with_controller(|controller| controller.wiring.served(now));
         Time::as_seconds(served.longest.0)
     }
 
