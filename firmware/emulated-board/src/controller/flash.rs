@@ -27,6 +27,11 @@ const LOCK: u32 = 1 << 31;
 const LOCK_OPTIONS: u32 = 1 << 30;
 /// `FLASH_CR`: option bytes, fast programming, interrupts of protected areas.
 const UNUSUAL: u32 = 1 << 17 | 1 << 18 | 1 << 26 | 1 << 27;
+/// The fastest clock of the core for each wait state and for none, Hz (RM0351, 3.3.3: 16 MHz in range 1 of the voltage,
+/// with 5 % for an oscillator that no crystal holds).
+const HERTZ_A_WAIT_STATE: u64 = 16_800_000;
+/// The most wait states that serve it: `FLASH_ACR`, LATENCY.
+const WAIT_STATES: u32 = 4;
 /// `FLASH_ACR`: powers the flash down while the core runs or sleeps.
 const POWER_DOWN: u32 = 3 << 13;
 /// `FLASH_SR`: an operation has ended.
@@ -144,6 +149,11 @@ impl Flash {
         (self.is_half_open, self.half, self.is_running, self.is_broken) =
             (false, None, false, false);
         (self.cut, self.cut_at) = (None, Time::NEVER);
+    }
+
+    /// Whether it is set to enough wait states for a clock of the core, Hz.
+    pub fn keeps_up(&self, hertz: u64) -> bool {
+        hertz <= HERTZ_A_WAIT_STATE * u64::from((self.access & 7).min(WAIT_STATES) + 1)
     }
 
     /// Whether an operation is under way.

@@ -1,7 +1,7 @@
 //! The microcontroller STM32L475VG around its core: those of its peripherals that an image of this project uses.
 //!
 //! Register facts are those of the reference manual RM0351. A register that is not listed, a peripheral without its
-//! clock and a function that is not modelled are errors, never a value.
+//! clock or its pins and a function that is not modelled are errors, never a value.
 
 mod dma;
 mod exti;
@@ -467,6 +467,9 @@ impl Controller {
             return Err(Refused::NotModelled("a write of a part of a register"));
         }
         self.write_to(peripheral, address, (value, size), now)?;
+        if !self.flash.keeps_up(self.hertz) {
+            return Err(Refused::NotModelled("too few wait states of the flash for the clock"));
+        }
         if self.system.wants_reset {
             self.reset = Some(ResetReason::Software);
         }

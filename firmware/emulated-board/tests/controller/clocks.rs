@@ -9,6 +9,10 @@ use super::{Bench, RCC};
 const TIMER: u32 = 0x4001_4000;
 /// The independent watchdog.
 const WATCHDOG: u32 = 0x4000_3000;
+/// Registers of the flash.
+const FLASH: u32 = 0x4002_2000;
+/// `RCC_PLLCFGR` that makes 80 MHz of the 4 MHz of the oscillator MSI.
+const PLL: u32 = 1 | 40 << 8 | 1 << 24;
 /// Power control.
 const POWER: u32 = 0x4000_7000;
 
@@ -46,10 +50,28 @@ fn the_oscillator_follows_the_crystal_when_that_oscillates() {
     assert_eq!(bench.read(RCC + 0x90) & 2, 2);
     // 122 periods of 32 768 Hz.
     assert_eq!(bench.controller.hertz(), 3_997_696);
-    // The PLL makes twenty times that of it.
-    bench.write(RCC + 0x0C, 1 | 40 << 8 | 1 << 24);
+    // With four wait states the PLL makes twenty times that of it.
+    bench.write(FLASH, 0x604);
+    bench.write(RCC + 0x0C, PLL);
     bench.write(RCC + 0x08, 3);
     assert_eq!(bench.controller.hertz(), 79_953_920);
+}
+
+#[test]
+fn a_clock_that_is_too_fast_for_the_wait_states_of_the_flash_is_refused() {
+    // 80 MHz and wait states (RM0351, 3.3.3, range 1): four are enough, three are for 64 MHz.
+    for (wait_states, is_enough) in [(4, true), (3, false), (0, false)] {
+        let mut bench = Bench::clocked();
+        bench.write(RCC + 0x0C, PLL);
+        bench.write(FLASH, 0x600 | wait_states);
+        let switched = bench.try_write(RCC + 0x08, 3, 4);
+        assert_eq!(switched.is_ok(), is_enough, "{wait_states}: {switched:?}");
+    }
+    // 16 MHz need none.
+    let mut bench = Bench::clocked();
+    bench.write(RCC, 0x163);
+    bench.write(RCC + 0x08, 1);
+    assert_eq!(bench.controller.hertz(), 16_000_000);
 }
 
 #[test]

@@ -51,17 +51,20 @@ fn a_supervisor_call_that_is_pending_stays_so_when_faults_are_enabled() {
 
 #[test]
 fn what_the_core_does_not_do_here_is_refused() {
-    // AIRCR with groups of priorities, and without its key; SCR with deep sleep; CCR with faults that are ignored, and
-    // interrupts by threads without privilege; CPACR without floats; DEMCR with the monitor; FPCCR without stacking.
+    // AIRCR with groups of priorities, and without its key; SCR with deep sleep, and sleep after handlers; CCR with faults
+    // that are ignored, and interrupts by threads without privilege; CPACR without floats; DEMCR with the monitor; FPCCR
+    // without stacking; FPDSCR.
     for (address, value) in [
         (0xE000_ED0C, 0x05FA_0300),
         (0xE000_ED0C, 4),
         (0xE000_ED10, 4),
+        (0xE000_ED10, 2),
         (0xE000_ED14, 0x300),
         (0xE000_ED14, 0x202),
         (0xE000_ED88, 0),
         (0xE000_EDFC, 1 << 16),
         (0xE000_EF34, 0),
+        (0xE000_EF3C, 1 << 24),
     ] {
         let refused = refusal(address, value);
         assert!(matches!(refused, Some(Refused::NotModelled(_))), "{address:#x}: {refused:?}");
