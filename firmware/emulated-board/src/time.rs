@@ -38,16 +38,16 @@ impl Time {
     /// So many periods of a frequency in hertz (> 0, below 2³³), to the nearest fraction.
     pub const fn periods(count: u64, hertz: u64) -> Self {
         let (seconds, rest) = (count / hertz, count % hertz * SECOND);
-        let fraction = ((rest % hertz << FRACTION_BITS) + hertz / 2) / hertz;
-        Self((seconds * SECOND + rest / hertz << FRACTION_BITS) + fraction)
+        let fraction = (((rest % hertz) << FRACTION_BITS) + hertz / 2) / hertz;
+        Self(((seconds * SECOND + rest / hertz) << FRACTION_BITS) + fraction)
     }
 
     /// How many whole periods of a frequency in hertz (below 2³³) it holds; a period that ends within a fraction counts.
     pub const fn count(self, hertz: u64) -> u64 {
-        let (nanoseconds, fraction) =
-            (self.0 + 1 >> FRACTION_BITS, (self.0 + 1) % (1 << FRACTION_BITS));
+        let end = self.0 + 1;
+        let (nanoseconds, fraction) = (end >> FRACTION_BITS, end % (1 << FRACTION_BITS));
         let (seconds, rest) = (nanoseconds / SECOND, nanoseconds % SECOND * hertz);
-        let rest_fraction = (rest % SECOND << FRACTION_BITS) + fraction * hertz;
+        let rest_fraction = ((rest % SECOND) << FRACTION_BITS) + fraction * hertz;
         seconds * hertz + rest / SECOND + rest_fraction / (SECOND << FRACTION_BITS)
     }
 

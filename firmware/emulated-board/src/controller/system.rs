@@ -81,7 +81,7 @@ impl System {
         let bits = |set: Set| set.interrupts(offset % 0x80 * 8);
         Ok(match offset {
             0x010 | 0x014 => self.tick[(offset as usize - 0x010) / 4],
-            0x018 | 0xDF0 => 0,
+            0x018 | 0xDF0 | 0xF3C => 0,
             0x004 => 2,
             0x100..0x10C | 0x180..0x18C => bits(exceptions.enabled),
             0x200..0x20C | 0x280..0x28C => bits(exceptions.requested()),
@@ -102,7 +102,6 @@ impl System {
             0xD90..0xDA4 => self.protection.read(offset - 0xD90).ok_or(Refused::Unknown)?,
             0xDFC => self.debug,
             0xF34 => self.float,
-            0xF3C => 0,
             _ => return Err(Refused::Unknown),
         })
     }

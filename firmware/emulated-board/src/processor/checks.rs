@@ -33,6 +33,8 @@ const BASES: [RegisterARM; 13] = [
 pub struct Checks {
     /// Registers that must be aligned to a word, as bits.
     bases: u16,
+    /// Registers that may be written, as bits.
+    written: u16,
     /// Whether there are instructions for the floating-point unit.
     has_floats: bool,
 }
@@ -41,18 +43,26 @@ impl Checks {
     /// What is looked at before all instructions of a block.
     pub(super) fn of(bytes: &[u8]) -> Self {
         let mut finder = Finder::default();
-        instructions(bytes).fold(Self::default(), |all, (_, first, second)| {
+        let mut all = Self::default();
+        for (_, first, second) in instructions(bytes) {
             let one = finder.take(first, second);
-            Self { bases: all.bases | one.bases, has_floats: all.has_floats | one.has_floats }
-        })
+            all.bases |= one.bases;
+            all.has_floats |= one.has_floats;
+        }
+        Self { written: finder.written as u16, ..all }
     }
 
-    /// The fault that the instructions would be, as registers and unit are now.
-    pub(super) fn fault(self, uc: &Unicorn<'_, ()>, is_unit_on: bool) -> Option<Fault> {
+    /// The fault that the instructions would be, as registers and unit are now; some registers are known to be aligned.
+    pub(super) fn fault(
+        self,
+        aligned: u16,
+        uc: &Unicorn<'_, ()>,
+        is_unit_on: bool,
+    ) -> Option<Fault> {
         if self.has_floats && !is_unit_on {
             return Some(Fault::NO_COPROCESSOR);
         }
-        let mut bases = self.bases;
+        let mut bases = self.bases & !aligned;
         while bases != 0 {
             let base = uc.reg_read(BASES[bases.trailing_zeros() as usize]).unwrap_or(0);
             if base & 3 != 0 {
@@ -61,6 +71,11 @@ impl Checks {
             bases &= bases - 1;
         }
         None
+    }
+
+    /// The registers that are known to be aligned after the instructions, of which these were before.
+    pub(super) const fn aligned_after(self, aligned: u16) -> u16 {
+        (aligned | self.bases) & !self.written
     }
 }
 
@@ -73,7 +88,7 @@ pub(super) fn first_fault(
 ) -> Option<(u16, Fault)> {
     let mut finder = Finder::default();
     instructions(bytes).find_map(|(offset, first, second)| {
-        Some((offset, finder.take(first, second).fault(uc, is_unit_on)?))
+        Some((offset, finder.take(first, second).fault(0, uc, is_unit_on)?))
     })
 }
 
@@ -95,6 +110,7 @@ impl Finder {
             0 => Checks {
                 bases: base.map_or(0, |base| 1 << base),
                 has_floats: second.is_some_and(|second| is_float(first, second)),
+                ..Checks::default()
             },
             _ => Checks::default(),
         };

@@ -3,7 +3,7 @@
 use unicorn_engine::{RegisterARM, Unicorn};
 
 use super::Processor;
-use super::state::State;
+use super::state::{State, masks};
 use crate::controller::protection::{Access, Level};
 use crate::time::Time;
 
@@ -49,7 +49,7 @@ impl State {
         self.active = number;
         self.event = true;
         self.now = self.now + Time::periods(cycles, self.controller.hertz());
-        self.level = self.level(uc);
+        self.level = self.level(uc, masks(uc));
     }
 }
 

@@ -25,6 +25,14 @@ const REGISTERS: [(u32, u64); 4] = [
 /// Where devices begin in the default map of memory (B3.1): what is mapped from here on are registers.
 const DEVICES: u32 = 0x4000_0000;
 
+/// Has accesses of devices held to their alignment, or no longer: Unicorn takes their registers for protected.
+pub(super) fn watch_devices(uc: &mut Unicorn<'_, ()>, are_watched: bool) {
+    let allowed = if are_watched { Prot::NONE } else { Prot::READ | Prot::WRITE };
+    for (base, size) in REGISTERS.into_iter().filter(|(base, _)| *base >= DEVICES) {
+        let _ = uc.mem_protect(base.into(), size, allowed);
+    }
+}
+
 /// The addresses that are not in RAM, of which every access succeeds. A hook that covers RAM halves the speed: Unicorn
 /// then calls a function for each write.
 const WITHOUT_RAM: [(u32, u32); 3] =
@@ -77,8 +85,8 @@ impl Processor {
         WITHOUT_RAM.into_iter().try_for_each(|(first, last)| self.hook_faults(first, last))
     }
 
-    /// Hooks accesses that fault between two addresses. Registers count as protected for Unicorn, so that an access of
-    /// them comes here before it is split: one that is not aligned is a fault (A3.2.1), the others go on.
+    /// Hooks accesses that fault between two addresses. Where devices are watched, their accesses come here before
+    /// Unicorn splits them: one that is not aligned is a fault (A3.2.1), the others go on.
     fn hook_faults(&mut self, first: u32, last: u32) -> Result<(), uc_error> {
         let state = Rc::clone(&self.state);
         let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, size: usize, _| {
@@ -145,9 +153,6 @@ impl Processor {
     pub(super) fn map_registers(&mut self) -> Result<(), uc_error> {
         for (base, size) in REGISTERS {
             self.map_peripherals(base, size)?;
-            if base >= DEVICES {
-                self.uc.mem_protect(base.into(), size, Prot::NONE)?;
-            }
         }
         Ok(())
     }

@@ -160,7 +160,7 @@ impl Processor {
         }
         {
             let mut state = self.state.borrow_mut();
-            state.until = until;
+            (state.until, state.alignment.known) = (until, 0);
             state.look();
         }
         let pc = self.get(RegisterARM::PC);

@@ -4,6 +4,7 @@ use unicorn_engine::{RegisterARM, Unicorn};
 
 use super::blocks::Blocks;
 use super::checks::first_fault;
+use super::hooks::watch_devices;
 use super::memory::Ram;
 use super::protecting::Checkpoint;
 use crate::controller::protection::{Access, Level};
@@ -11,6 +12,10 @@ use crate::controller::{Controller, Refused};
 use crate::exceptions::{Masks, PRIORITY_MASK, Set};
 use crate::faults::Fault;
 use crate::time::Time;
+
+/// How many executions of each block have their accesses of devices held to alignment. All of them would cost a sixth of
+/// the speed.
+const WATCHED_EXECUTIONS: u64 = 16;
 
 /// Why the core does not go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +56,15 @@ pub struct Counts {
     pub masked: (Time, u32),
 }
 
+/// How accesses are held to their alignment.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Alignment {
+    /// Registers that are known to be aligned to a word, as bits; none where the core begins to execute.
+    pub(super) known: u16,
+    /// Whether accesses of devices are watched.
+    watches_devices: bool,
+}
+
 /// All that the hooks of Unicorn share with the program around it.
 pub(super) struct State {
     /// The controller.
@@ -87,6 +101,8 @@ pub(super) struct State {
     pub(super) is_locked: bool,
     /// Registers and memory before an access that faults.
     pub(super) checkpoint: Option<Checkpoint>,
+    /// How accesses are held to their alignment.
+    pub(super) alignment: Alignment,
     /// Why the core is stopped.
     pub(super) halt: Option<Halt>,
     /// Counts.
@@ -114,6 +130,7 @@ impl State {
             level: Level::default(),
             is_locked: false,
             checkpoint: None,
+            alignment: Alignment::default(),
             halt: None,
             counts: Counts::default(),
         }
@@ -158,8 +175,15 @@ impl State {
         };
         let place = self.blocks.place(address, size, read);
         self.current = Some(place);
+        let is_watched = self.blocks.all[place].count < WATCHED_EXECUTIONS;
+        if is_watched != self.alignment.watches_devices {
+            self.alignment.watches_devices = is_watched;
+            watch_devices(uc, is_watched);
+        }
         let is_unit_on = self.controller.system.is_float_unit_on();
-        if self.blocks.all[place].checks.fault(uc, is_unit_on).is_none() {
+        let checks = self.blocks.all[place].checks;
+        if checks.fault(self.alignment.known, uc, is_unit_on).is_none() {
+            self.alignment.known = checks.aligned_after(self.alignment.known);
             return false;
         }
         self.current = None;
@@ -206,15 +230,16 @@ impl State {
 
     /// Follows whether interrupts are off, and who executes. Of a base priority only the bits that there are stay.
     pub(super) fn watch_masks(&mut self, uc: &mut Unicorn<'_, ()>, address: u32) {
-        let base = uc.reg_read(RegisterARM::BASEPRI).unwrap_or(0);
-        if base & u64::from(!PRIORITY_MASK) != 0 {
-            let _ = uc.reg_write(RegisterARM::BASEPRI, base & u64::from(PRIORITY_MASK));
+        let mut masks = masks(uc);
+        if masks.base & !PRIORITY_MASK != 0 {
+            masks.base &= PRIORITY_MASK;
+            let _ = uc.reg_write(RegisterARM::BASEPRI, masks.base.into());
         }
-        self.level = self.level(uc);
+        self.level = self.level(uc, masks);
         if self.level.is_unprivileged && self.controller.system.protection.is_on() {
             self.halt.get_or_insert(Halt::Protecting);
         }
-        match (masks(uc).all, self.masked_since) {
+        match (masks.all, self.masked_since) {
             (true, None) => self.masked_since = Some(self.now),
             (false, Some(since)) => {
                 self.counts.masked = self.counts.masked.max((self.now - since, address));
@@ -225,11 +250,11 @@ impl State {
     }
 
     /// Who executes.
-    pub(super) fn level(&self, uc: &Unicorn<'_, ()>) -> Level {
+    pub(super) fn level(&self, uc: &Unicorn<'_, ()>, masks: Masks) -> Level {
         let control = uc.reg_read(RegisterARM::CONTROL).unwrap_or(0);
         Level {
             is_unprivileged: self.active == 0 && control & 1 != 0,
-            is_above_faults: self.controller.exceptions.is_locked(masks(uc)),
+            is_above_faults: self.controller.exceptions.is_locked(masks),
         }
     }
 
