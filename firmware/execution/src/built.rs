@@ -1,7 +1,7 @@
 //! Images and programs of the workspace, built by cargo.
 
 use std::env;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -77,16 +77,14 @@ pub fn of_firmware(arguments: &[&str]) -> Result<String, String> {
 /// # Errors
 /// One line: what is missing, or that cargo said what is wrong.
 pub fn of(arguments: &[&str]) -> Result<String, String> {
-    if !root().join("memory.x").is_file() {
-        return Err(format!("the firmware's sources are not at {}", root().display()));
-    }
     cargo(&[&["build", "--message-format", "json-render-diagnostics"], arguments].concat())
 }
 
 /// What a run of cargo's prints: of the one that runs this program, or of the one there is.
 fn cargo(arguments: &[&str]) -> Result<String, String> {
-    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")));
-    command.current_dir(root()).args(arguments).arg("--locked");
+    let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
+    let mut command = in_workspace(&program)?;
+    command.args(arguments).arg("--locked");
     if io::stderr().is_terminal() {
         command.env("CARGO_TERM_COLOR", "always");
     }
@@ -104,6 +102,16 @@ fn cargo(arguments: &[&str]) -> Result<String, String> {
     Err(format!("the firmware does not build: cargo says why{lacking}"))
 }
 
+/// A program that is to run in the folder of the sources.
+fn in_workspace(program: &OsStr) -> Result<Command, String> {
+    if !root().join("memory.x").is_file() {
+        return Err(format!("the firmware's sources are not at {}", root().display()));
+    }
+    let mut command = Command::new(program);
+    command.current_dir(root());
+    Ok(command)
+}
+
 /// Hands what a pipe brings on to standard error, and returns all of it.
 fn shown(mut pipe: impl Read) -> String {
     let (mut all, mut chunk) = (Vec::new(), [0; 4096]);
@@ -117,9 +125,11 @@ fn shown(mut pipe: impl Read) -> String {
 
 /// Makes sure that the compiler has the target's libraries.
 fn require_target() -> Result<(), String> {
-    let mut command = Command::new("rustc");
-    command.current_dir(root()).args(["--print", "target-libdir", "--target", TARGET]);
-    let output = command.output().map_err(|error| format!("rustc: {error}"))?;
+    let mut command = in_workspace("rustc".as_ref())?;
+    let output = command
+        .args(["--print", "target-libdir", "--target", TARGET])
+        .output()
+        .map_err(|error| format!("rustc: {error}"))?;
     let folder = String::from_utf8_lossy(&output.stdout);
     if Path::new(folder.trim()).is_dir() {
         return Ok(());

@@ -42,7 +42,10 @@ fn of_results(all: &[Executed]) -> Part {
         })
         .column("off truth", distance(0))
         .column("off host", distance(1))
-        .column("lost measuring", |executed| executed.report.lost_measuring())
+        .column("lost measuring", |executed| match executed.report.azimuth_deg {
+            Some(_) => executed.report.lost_measuring().to_string(),
+            None => "-".to_owned(),
+        })
         .column("after", |executed| format!("{:.1} s", executed.report.seconds))
         .column("", |executed| &executed.report.outcome)
         .into()

@@ -5,7 +5,8 @@ use host::emulate::executed::{Executed, Options, Report};
 use host::output::executed;
 use serde_json::{Value, json};
 
-use crate::support::program::assert_misuse;
+use crate::support::files::Scratch;
+use crate::support::program::{assert_misuse, code, command, text};
 
 /// The report of a stage of which all is right, as the program prints it.
 fn sound() -> Value {
@@ -183,5 +184,28 @@ fn misuse_of_the_options_is_told_before_anything_is_built() {
     }
     for option in [["--link", "tcp:5000"], ["--cycles", "2"], ["--afterwards", "1"]] {
         assert_misuse(&[&["emulate"], &option[..]].concat(), "--board");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_build_that_fails_says_what_is_missing_where_cargo_does() {
+    let scratch = Scratch::new("failing-build");
+    let cargo = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/program/emulate/cargo.sh");
+    for (says, hint) in [
+        ("is `cmake` not installed?", "; cmake is missing (Debian: apt-get install cmake)"),
+        (
+            "Unable to find libclang: …",
+            "; libclang is missing (Debian: apt-get install libclang-dev)",
+        ),
+        ("error[E0308]: mismatched types", ""),
+    ] {
+        let mut command = command();
+        command.args(["emulate", "--board", "stage"]).env("CARGO", cargo).env("SAYS", says);
+        let output = command.env("FOLDER", scratch.path("target")).output().expect("it starts");
+        assert_eq!(
+            (code(&output), text(&output.stderr)),
+            (1, format!("{says}\nmeridian: the firmware does not build: cargo says why{hint}\n"))
+        );
     }
 }
