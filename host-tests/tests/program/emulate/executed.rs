@@ -32,7 +32,7 @@ fn sound() -> Value {
         "static_bytes": 30_000,
         "masked_seconds": [2.0, 0.0005],
         "violations": [],
-        "flash_use": [11, 0],
+        "flash_use": [11, 0, 11],
     })
 }
 
