@@ -30,6 +30,7 @@ pub mod data_cache;
 mod ecc;
 mod geometry;
 pub mod nor;
+pub mod sequence;
 
 use core::ops::{DerefMut, Range};
 use core::time::Duration;

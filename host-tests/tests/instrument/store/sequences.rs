@@ -2,12 +2,12 @@
 
 use super::{Board, SLOTS, erased};
 use hal_mock::flash::nor::{Interrupt, Loss, Trouble};
-use hal_mock::noise::Generator;
+use hal_mock::flash::sequence::{Step, steps};
 
 /// Sequences of each kind.
 const SEQUENCES: u64 = 1000;
 /// Steps of a sequence.
-const STEPS: u64 = 60;
+const STEPS: usize = 60;
 
 /// What goes wrong in a sequence, which ends with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,46 +24,31 @@ enum Defect {
 struct Sequence {
     flash: Board,
     permitted: [Vec<Option<u64>>; SLOTS.len()],
-    /// Whether the supply is lost within operations, too.
-    is_within: bool,
     cuts: u32,
-    noise: Generator,
 }
 
 impl Sequence {
-    fn new(seed: u64, is_within: bool) -> Self {
+    fn new(seed: u64) -> Self {
         let permitted = core::array::from_fn(|_| vec![None]);
-        let noise = Generator::stream(seed, 3);
-        Self { flash: erased(seed), permitted, is_within, cuts: 0, noise }
+        Self { flash: erased(seed), permitted, cuts: 0 }
     }
 
-    /// A number below this one.
-    fn below(&mut self, limit: u32) -> u32 {
-        (self.noise.next_u64() % u64::from(limit)) as u32
-    }
-
-    /// A step: a save in which the supply may be lost, a load, or a restart.
-    fn step(&mut self, number: u64) -> Result<(), Defect> {
-        let slot = self.below(SLOTS.len() as u32) as usize;
-        match self.below(10) {
-            0..3 => self.cut(slot, number),
-            3..6 => self.save(slot, number),
-            6..9 => self.load(slot),
-            _ => {
+    /// The step of this number, by which the item is known that it saves.
+    fn step(&mut self, step: Step, number: u64) -> Result<(), Defect> {
+        match step {
+            Step::Save(slot) => self.save(slot, number),
+            Step::Cut(slot, loss) => self.cut(slot, number, loss),
+            Step::Load(slot) => self.load(slot),
+            Step::Restart => {
                 self.flash.restart();
                 Ok(())
             }
         }
     }
 
-    /// A save in which the supply is lost, unless it is over before. It has up to 26 operations, or up to
-    /// 86 where pages are changed.
-    fn cut(&mut self, slot: usize, number: u64) -> Result<(), Defect> {
+    /// A save in which the supply is lost, unless it is over before.
+    fn cut(&mut self, slot: usize, number: u64, loss: Loss) -> Result<(), Defect> {
         self.flash.restart();
-        let limit = [28, 96][self.below(2) as usize];
-        let operation = self.below(limit);
-        let is_within = self.is_within && self.below(2) == 0;
-        let loss = if is_within { Loss::Within(operation) } else { Loss::After(operation) };
         self.flash.loss = Some(loss);
         let saved = self.save(slot, number);
         self.flash.loss = None;
@@ -96,9 +81,10 @@ impl Sequence {
 fn played(is_within: bool, prepare: impl Fn(&mut Board)) -> ([u32; 3], u32) {
     let (mut defects, mut cuts) = ([0; 3], 0);
     for seed in 0..SEQUENCES {
-        let mut sequence = Sequence::new(seed, is_within);
+        let mut sequence = Sequence::new(seed);
         prepare(&mut sequence.flash);
-        if let Err(defect) = (1..=STEPS).try_for_each(|number| sequence.step(number)) {
+        let mut steps = (1..).zip(steps(seed, SLOTS.len() as u32, is_within)).take(STEPS);
+        if let Err(defect) = steps.try_for_each(|(number, step)| sequence.step(step, number)) {
             defects[defect as usize] += 1;
         }
         cuts += sequence.cuts;
