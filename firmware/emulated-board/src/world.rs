@@ -10,13 +10,14 @@ use embassy_time::Instant;
 use firmware::platform::Platform;
 use firmware::settings::{CarrierSchedule, Settings, save};
 use firmware::storage::FlashStore;
+use hal_mock::flash::Cells;
 use hal_mock::flash::nor::PoweredFlash;
-use hal_mock::flash::{Cells, Flash};
 use sequential_storage::map::MapConfig;
 use simulated::executed;
 use simulated::fault::Injection;
+use simulated::scenario::Scenario;
 
-use crate::controller::flash::STORE;
+use crate::controller::flash::{Flash, STORE};
 use crate::wiring::board::{
     BaseImu, Board, Carrier, FRAMES, Lines, ONE_LINE, SPIN, SPIN_LINES, STAGE, Selects, VEHICLE,
     VEHICLE_LINES,
@@ -54,23 +55,17 @@ impl World {
             Platform::Stage => {
                 let scenario = executed::stage(seed);
                 let carrier = simulated::board(&scenario, None, injection);
-                let base = simulated::base::rig(&scenario, None);
-                let world = Self::of(carrier, (STAGE, ONE_LINE), scenario.settings());
-                world.map(|world| world.at_rest(base, scenario.azimuth_deg))
+                Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), &scenario)
             }
             Platform::Turntable => {
                 let scenario = executed::turntable(seed);
                 let carrier = scenario.board(None, injection);
-                let base = simulated::base::rig(&scenario.base, None);
-                let world = Self::of(carrier, (STAGE, ONE_LINE), scenario.settings());
-                world.map(|world| world.at_rest(base, scenario.base.azimuth_deg))
+                Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), &scenario.base)
             }
             Platform::TwoFrame => {
                 let scenario = executed::two_frames(seed);
                 let carrier = scenario.board(None, injection);
-                let base = simulated::base::rig(&scenario.base, None);
-                let world = Self::of(carrier, (FRAMES, ONE_LINE), scenario.settings());
-                world.map(|world| world.at_rest(base, scenario.base.azimuth_deg))
+                Self::at_rest(carrier, (FRAMES, ONE_LINE), scenario.settings(), &scenario.base)
             }
             Platform::Vehicle => {
                 let scenario = executed::vehicle(seed);
@@ -83,9 +78,9 @@ impl World {
             Platform::Spin => {
                 let scenario = executed::spin(seed);
                 let course = keep(scenario.course(None));
-                let truth = scenario.board(course, injection).plant;
-                let carrier = scenario.board(course, injection);
-                let world = Self::of(carrier, (SPIN, SPIN_LINES), scenario.settings());
+                let board = || scenario.board(course, injection);
+                let truth = board().plant;
+                let world = Self::of(board(), (SPIN, SPIN_LINES), scenario.settings());
                 world.map(|world| world.with(move |now| truth.truth_at(now).roll_rad))
             }
         }
@@ -97,16 +92,28 @@ impl World {
         wires: (Selects, Lines),
         settings: Option<Settings<C>>,
     ) -> Result<Self, String> {
-        let store = store(&settings.ok_or("the latitude is none")?)?;
+        let settings = settings.ok_or("the latitude is none")?;
+        let store = stored(async |store| {
+            let saved = save(store, &settings).await;
+            saved.map_err(|error| format!("the record of settings: {error}"))
+        })?;
         let carrier = Rc::new(RefCell::new(carrier));
         let truth_deg = Box::new(|_| 0.0);
         Ok(Self { carrier, wires, base: None, is_at_rest: false, store, truth_deg })
     }
 
-    /// The world with a base at rest, on which an IMU stands, facing this azimuth, °.
-    fn at_rest(self, base: BaseImu, azimuth_deg: f64) -> Self {
+    /// As [`Self::of`], on the base at rest of this scenario, on which an IMU stands.
+    fn at_rest<C: CarrierSchedule>(
+        carrier: impl Carrier + 'static,
+        wires: (Selects, Lines),
+        settings: Option<Settings<C>>,
+        base: &Scenario,
+    ) -> Result<Self, String> {
+        let world = Self::of(carrier, wires, settings)?;
+        let azimuth_deg = base.azimuth_deg;
         let truth_deg = Box::new(move |_| azimuth_deg);
-        Self { base: Some(base), is_at_rest: true, truth_deg, ..self }
+        let base = Some(simulated::base::rig(base, None));
+        Ok(Self { base, is_at_rest: true, truth_deg, ..world })
     }
 
     /// The world with other pages in its store.
@@ -139,15 +146,24 @@ impl World {
     }
 }
 
-/// The store of an image in the flash of a controller of its own.
-pub type Store = FlashStore<PoweredFlash<Box<Cells>>>;
+/// The flash of a controller of its own, behind a driver.
+pub type Driver = PoweredFlash<Box<Cells>>;
+/// The store of an image.
+pub type Store = FlashStore<Driver>;
 
-/// The pages of a store that holds the record of these settings alone.
-fn store<C: CarrierSchedule>(settings: &Settings<C>) -> Result<Vec<u8>, String> {
-    stored(async |store| {
-        let saved = save(store, settings).await;
-        saved.map_err(|error| format!("the record of settings: {error}"))
-    })
+/// A flash of which all is erased. The seed decides when within an operation a supply is lost, and what that leaves.
+pub fn erased(seed: u64) -> Driver {
+    PoweredFlash::new(Flash::new(seed).array, seed)
+}
+
+/// The store in a flash.
+pub fn store(flash: Driver) -> Store {
+    FlashStore::new(flash, const { MapConfig::new(STORE) })
+}
+
+/// The pages of the store in a flash.
+pub fn pages(flash: &Driver) -> &[u8] {
+    &flash.flash.bytes()[STORE.start as usize..STORE.end as usize]
 }
 
 /// The pages of a store into which this was written.
@@ -157,18 +173,13 @@ fn store<C: CarrierSchedule>(settings: &Settings<C>) -> Result<Vec<u8>, String> 
 pub fn stored(
     write: impl AsyncFnOnce(&mut Store) -> Result<(), String>,
 ) -> Result<Vec<u8>, String> {
-    let cells: Box<Cells> = vec![0; size_of::<Cells>()]
-        .into_boxed_slice()
-        .try_into()
-        .map_err(|_| "no memory for the flash")?;
-    let flash = Flash::erased(cells, hal_mock::flash::Times::TYPICAL, 0);
-    let mut store = FlashStore::new(PoweredFlash::new(flash, 0), MapConfig::new(STORE));
+    let mut store = store(erased(0));
     at_once(write(&mut store)).ok_or("the store waits")??;
-    Ok(store.into_flash().flash.bytes()[STORE.start as usize..STORE.end as usize].to_vec())
+    Ok(pages(&store.into_flash()).to_vec())
 }
 
 /// The result of a future that never waits; none where it does.
-fn at_once<T>(future: impl Future<Output = T>) -> Option<T> {
+pub fn at_once<T>(future: impl Future<Output = T>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(result) => Some(result),
         Poll::Pending => None,

@@ -142,9 +142,9 @@ impl Flash {
         }
     }
 
-    /// A reset: what is under way is torn.
+    /// A reset: what is under way is torn, where the supply was cut as far as it was then.
     pub fn reset(&mut self, now: Time) {
-        self.array.lose_supply(since_start(now));
+        self.array.lose_supply(since_start(now.min(self.cut_at)));
         (self.access, self.status, self.control, self.ecc) = (0x600, 0, LOCK | LOCK_OPTIONS, 0);
         (self.is_half_open, self.half, self.is_running, self.is_broken) =
             (false, None, false, false);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 /// The sources with tests of defects.
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 13] = [
     include_str!("conclusion.rs"),
     include_str!("cost.rs"),
     include_str!("settings.rs"),
@@ -12,6 +12,11 @@ const SOURCES: [&str; 8] = [
     include_str!("start.rs"),
     include_str!("store.rs"),
     include_str!("two_frames.rs"),
+    include_str!("../faults/hung.rs"),
+    include_str!("../faults/power.rs"),
+    include_str!("../faults/saving.rs"),
+    include_str!("../faults/stopped.rs"),
+    include_str!("../faults/supply.rs"),
 ];
 
 /// The list.

@@ -1,6 +1,7 @@
 //! The images of all carriers, executed: what holds today, and every defect that is known, with its figure.
 //!
-//! `DEFECTS.md` lists the defects; `support::defect` says how a test holds one.
+//! `DEFECTS.md` lists the defects, and those of a board with a fault (`tests/faults`); `support::defect` says how a test
+//! holds one.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 mod conclusion;

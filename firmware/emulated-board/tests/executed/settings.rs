@@ -6,7 +6,7 @@ use firmware::platform::Platform;
 use firmware::ports::Store as _;
 use firmware::settings::{BYTES, SLOT};
 
-use super::support::bench::Bench;
+use super::support::board::Board;
 use super::support::defect::hold;
 use super::support::executed::execute_in;
 use super::support::worlds::{short_stage, usual};
@@ -15,21 +15,15 @@ use super::support::worlds::{short_stage, usual};
 /// must say why.
 #[track_caller]
 fn silence(store: Vec<u8>, reason: &str) -> f64 {
-    let mut bench = Bench::new(
-        &Order::usual(Platform::Turntable, 1),
-        usual(Platform::Turntable).with_store(store),
-    );
-    bench.run_until(&format!("board: no settings: {reason}"), 5.0);
-    let begin = bench.now();
-    while bench.link.is_empty() && bench.now() < begin + 20.0 {
-        bench.step();
+    let mut board =
+        Board::within(Platform::Turntable, usual(Platform::Turntable).with_store(store));
+    let begin = board.until(&format!("board: no settings: {reason}"), 5.0);
+    while board.link.is_empty() && board.seconds() < begin + 20.0 {
+        board.run(0.01);
     }
-    let silent = bench.now() - begin;
-    assert!(
-        bench.feedings() as f64 > silent - 2.0,
-        "the watchdog is fed {} times",
-        bench.feedings()
-    );
+    let silent = board.seconds() - begin;
+    let feedings = board.controller(|controller| controller.watchdog.feedings);
+    assert!(feedings as f64 > silent - 2.0, "the watchdog is fed {feedings} times");
     silent
 }
 
@@ -68,13 +62,10 @@ fn a_board_whose_record_is_lost_in_its_store_does_not_begin_with_other_settings(
     let at =
         store.iter().rposition(|byte| *byte != 0xFF && *byte != 0).expect("the store has a record");
     store[at] ^= 1;
-    let mut bench = Bench::new(
-        &Order::usual(Platform::Turntable, 1),
-        usual(Platform::Turntable).with_store(store),
-    );
-    bench.run(4.0);
-    let begun =
-        bench.log.iter().filter(|entry| entry.words.contains("settings of the image")).count();
+    let mut board =
+        Board::within(Platform::Turntable, usual(Platform::Turntable).with_store(store));
+    board.run(4.0);
+    let begun = board.log.iter().filter(|(_, line)| line.contains("settings of the image")).count();
     let words = "board with a record that its store has lost begins with the image's settings";
     hold(begun as f64, 0.0..=0.0, 1.0..=1.0, words);
 }
@@ -87,16 +78,13 @@ fn a_store_with_another_programs_remains_is_erased() {
     // A table of small numbers, of which both pages count as full.
     let remains = (0..1024_u32).flat_map(u32::to_le_bytes).collect();
     let world = usual(Platform::Turntable).with_store(remains);
-    let mut bench = Bench::new(&Order::usual(Platform::Turntable, 1), world);
-    let mut ended = 0;
+    let mut board = Board::within(Platform::Turntable, world);
     for _ in 0..3 {
-        bench.log.clear();
-        bench.run(4.0);
-        let words =
-            "board: no settings: the store that may have a record cannot be read: bus error";
-        ended += bench.log.iter().filter(|entry| entry.words.contains(words)).count();
-        bench.execution.lose_supply();
+        board.run(4.0);
+        board.execution.lose_supply();
     }
+    let refused = "board: no settings: the store that may have a record cannot be read: bus error";
+    let ended = board.log.iter().filter(|(_, line)| line.contains(refused)).count();
     let words = "of three starts end with a bus error in a store with another program's remains";
     hold(ended as f64, 0.0..=0.0, 3.0..=3.0, words);
 }

@@ -3,13 +3,13 @@
 use std::fs;
 
 use emulated_board::run::Order;
-use emulated_board::world::World;
 use execution::built::root;
 use firmware::platform::Platform;
 
-use super::support::bench::Bench;
+use super::support::board::Board;
 use super::support::defect::hold;
 use super::support::executed::executed;
+use super::support::worlds::usual;
 
 /// The start waits for the crystal in a critical section.
 #[test]
@@ -27,17 +27,13 @@ fn interrupts_are_off_for_a_millisecond_at_most() {
 )]
 fn a_board_with_a_dead_crystal_starts_within_three_seconds() {
     let order = Order { has_crystal: false, ..Order::usual(Platform::Vehicle, 1) };
-    let mut bench = Bench::new(
-        &order,
-        World::new(order.carrier, order.seed).expect("the usual world can be made"),
-    );
+    let mut board = Board::ordered(&order, usual(order.carrier));
     let words = "board: started by Watchdog, clock follows its crystal: false";
     let starts = [0, 1].map(|_| {
-        let supplied = bench.now();
-        bench.run_until(words, 20.0);
-        let took = bench.now() - supplied;
-        bench.execution.lose_supply();
-        took
+        let supplied = board.seconds();
+        let started = board.until(words, 20.0);
+        board.execution.lose_supply();
+        started - supplied
     });
     let words = "s a board with a dead crystal takes to the first line of its log, at each start";
     assert!((starts[0] - starts[1]).abs() < 0.1, "{starts:?}");

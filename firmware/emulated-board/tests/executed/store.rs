@@ -1,9 +1,9 @@
 //! The store at work while samples come. The driver of the flash polls, and no task runs meanwhile.
 
-use emulated_board::run::Order;
+use emulated_board::time::Time;
 use firmware::platform::Platform;
 
-use super::support::bench::Bench;
+use super::support::board::Board;
 use super::support::defect::hold;
 use super::support::executed::executed;
 use super::support::worlds::short_stage;
@@ -13,16 +13,22 @@ const FULL: usize = 20;
 /// Rows of the settings, and of a heading.
 const ROWS: [u64; 2] = [26, 11];
 
+/// How long a converter waited at most to be read since this was asked for the last time.
+fn longest_wait(board: &Board) -> Time {
+    let now = board.execution.processor.now();
+    board.controller(|controller| controller.wiring.served(now)).longest.0
+}
+
 /// The longest time for which a conversion waits when the first heading is saved into a store with so many others, ms;
 /// the rows that are programmed then, and the pages that are erased.
 fn saved(headings: usize) -> (f64, u64, u64) {
-    let mut bench = Bench::new(&Order::usual(Platform::Stage, 1), short_stage(true, headings));
-    bench.run_until("handed over", 90.0);
-    bench.run(0.2);
-    bench.longest_wait();
-    bench.run(5.0);
-    let used = bench.execution.processor.with_controller(|controller| controller.flash.used);
-    (1e3 * bench.longest_wait(), used.rows, used.pages)
+    let mut board = Board::within(Platform::Stage, short_stage(true, headings));
+    board.until("handed over", 90.0);
+    board.run(0.2);
+    longest_wait(&board);
+    board.run(5.0);
+    let used = board.controller(|controller| controller.flash.used);
+    (1e3 * longest_wait(&board).as_seconds(), used.rows, used.pages)
 }
 
 #[test]

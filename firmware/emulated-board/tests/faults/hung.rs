@@ -1,77 +1,86 @@
 //! A transfer on a bus never ends.
+//!
+//! As it should be: a time limit ends every transfer, as on the bus of the base; the bus is started again, and what is
+//! lost is counted, logged and sent with the name of the bus.
 
 use firmware::platform::Platform;
 
-use crate::board::{Board, TurningBoard};
+use crate::board::Board;
+use crate::defect::hold;
+use crate::turning::TurningBoard;
 
-/// As it should be: a time limit ends the transfer, as on the bus of the base; the bus is started again, and the loss is
-/// counted, logged and sent.
+/// How long a transfer may hang until the log says which bus it is, s.
+const TOLD: std::ops::RangeInclusive<f64> = 0.0..=0.1;
+
+/// One line tells of it, which does not name the bus; the link goes on as if nothing were, and the watchdog is fed.
 #[test]
-fn a_hung_transfer_of_the_sensors_in_a_vehicle_ends_the_measurement_and_the_link_goes_on_as_if_nothing_were()
- {
+#[should_panic(
+    expected = "exactly 12 s after a transfer of the sensors in a vehicle hangs no line names their bus"
+)]
+fn a_hung_transfer_of_the_sensors_is_ended_and_told_by_its_bus() {
     let mut board = Board::new(Platform::Vehicle);
     board.until("stop 1: the vehicle stands", 20.0);
     board.run(1.0);
     let hung = board.seconds();
     board.controller(|controller| controller.spi[0].hangs = true);
-    board.run(12.0);
-    // One line tells of it, which does not name the bus; the watchdog is fed.
-    assert_eq!(
-        board.lines(hung, f64::INFINITY),
-        ["keeping: no motion is measured any more"],
-        "{board}"
-    );
+    let silent = board.takes("bus", 12.0);
+    let lines = board.lines(hung, f64::INFINITY);
+    assert_eq!(lines, ["keeping: no motion is measured any more"], "{board}");
     let sent = board.sent(hung, f64::INFINITY);
     assert!(
         sent.len() >= 11 && sent.iter().all(|line| *line == "levelling at stop 1, faults 0"),
         "{board}"
     );
+    let words = "s after a transfer of the sensors in a vehicle hangs no line names their bus";
+    hold(silent, TOLD, 12.0..=12.0, words);
 }
 
-/// The IMU on the base is on a bus of its own, but one task reads all devices, and waits for this one. The platform turns
-/// on for ever.
+/// The IMU on the base is on a bus of its own, but one task reads all devices, and waits for this one. Nothing stops the
+/// platform.
 #[test]
-fn a_hung_transfer_of_the_sensors_on_a_turntable_ends_the_measurement_and_the_platform_turns_on() {
+#[should_panic(
+    expected = "between 57 and 87 °/s a platform turns twelve seconds after a transfer of the sensors hangs"
+)]
+fn a_platform_comes_to_rest_where_a_transfer_of_the_sensors_hangs() {
     let TurningBoard { mut board, turning } = TurningBoard::new();
     let hung = board.seconds();
     board.controller(|controller| controller.spi[0].hangs = true);
     board.run(12.0);
-    assert_eq!(
-        board.lines(hung, f64::INFINITY),
-        ["keeping: no motion is measured any more"],
-        "{board}"
-    );
+    let lines = board.lines(hung, f64::INFINITY);
+    assert_eq!(lines, ["keeping: no motion is measured any more"], "{board}");
     let sent = board.sent(hung, f64::INFINITY);
     assert!(
         sent.len() >= 11 && sent.iter().all(|line| *line == "measuring 0/8, faults 0"),
         "{board}"
     );
-    assert!((turning(&board) - 72.0).abs() < 15.0, "it turns at {} °/s", turning(&board));
+    let words = "°/s a platform turns twelve seconds after a transfer of the sensors hangs";
+    hold(turning(&board).abs(), 0.0..=1.0, 57.0..=87.0, words);
 }
 
-/// Its bytes are polled, so that one task holds the core for ever, and no other is polled: the link is silent, the
+/// Its bytes are polled, so that one task holds the core for ever, and no other is polled: log and link are silent, the
 /// platform turns on, and the watchdog resets. The alignment begins anew, and nothing says which bus hung.
-///
-/// As it should be: a time limit as on the bus of the base, and a line of the log after it.
 #[test]
-fn a_hung_transfer_of_the_motors_holds_the_core_until_the_watchdog_resets_it() {
+#[should_panic(
+    expected = "between 7.1 and 8.3 s a hung transfer of the motors holds the core, which the watchdog resets"
+)]
+fn a_hung_transfer_of_the_motors_is_ended_and_told_by_its_bus() {
     let TurningBoard { mut board, turning } = TurningBoard::new();
     let hung = board.seconds();
     board.controller(|controller| controller.spi[1].hangs = true);
-    board.run(7.0);
+    let silent = board.takes("", 10.0);
+    let first = board.lines(hung, f64::INFINITY)[0];
+    assert!(first.starts_with("board: started by Watchdog"), "{board}");
+    assert!(board.sent(hung, hung + silent).is_empty(), "{board}");
     assert!((turning(&board) - 72.0).abs() < 15.0, "it turns at {} °/s", turning(&board));
-    let start = board.until("board: started by Watchdog", 2.0);
-    assert!((7.1..8.3).contains(&(start - hung)), "{} s", start - hung);
-    assert_eq!((board.lines(hung, start), board.sent(hung, start)), (vec![], vec![]), "{board}");
     board.until("begin: 8 turns", 1.0);
+    let words = "s a hung transfer of the motors holds the core, which the watchdog resets";
+    hold(silent, TOLD, 7.1..=8.3, words);
 }
 
-/// A time limit of five milliseconds ends every transfer. The base is tried twenty times more and given up after 0.83 s,
-/// in which 324 samples of all devices are lost, since one task reads them all. The alignment goes on without it.
-///
-/// As it should be: no sample of another device is lost, since a platform that turns meanwhile has to begin anew.
+/// A time limit of five milliseconds ends every transfer, and the log names the base. It is tried twenty times more, and
+/// given up after 0.83 s; the alignment goes on without it.
 #[test]
-fn a_hung_transfer_of_the_base_costs_the_samples_of_all_devices_until_the_base_is_given_up() {
+fn a_hung_transfer_of_the_base_is_ended_and_told_and_the_base_is_given_up() {
     let TurningBoard { mut board, .. } = TurningBoard::new();
     let hung = board.seconds();
     board.controller(|controller| controller.i2c.hangs = true);
@@ -81,14 +90,28 @@ fn a_hung_transfer_of_the_base_costs_the_samples_of_all_devices_until_the_base_i
     let lines = board.lines(hung, f64::INFINITY);
     let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
     assert_eq!(count("base: bus error: starting it again"), 20, "{board}");
-    let missing = lines
-        .iter()
-        .filter_map(|line| line.strip_suffix(" sample(s) missing")?.parse::<u32>().ok());
-    assert!((320..330).contains(&missing.sum::<u32>()), "{board}");
     assert_eq!(lines.last(), Some(&"keeping: no motion is measured any more"), "{board}");
     let faults = board
         .link
         .last()
         .and_then(|(_, line)| line.strip_prefix("measuring 0/8, faults ")?.parse::<u32>().ok());
     assert!(faults.is_some_and(|faults| (340..360).contains(&faults)), "{board}");
+}
+
+/// One task reads all devices, and waits for each transfer that hangs. A platform that turns meanwhile has to begin anew.
+#[test]
+#[should_panic(
+    expected = "between 320 and 330 samples of all devices are lost until the base's bus is given up"
+)]
+fn a_hung_transfer_of_the_base_costs_no_sample_of_another_device() {
+    let TurningBoard { mut board, .. } = TurningBoard::new();
+    let hung = board.seconds();
+    board.controller(|controller| controller.i2c.hangs = true);
+    board.run(2.0);
+    let lines = board.lines(hung, f64::INFINITY);
+    let missing = lines
+        .iter()
+        .filter_map(|line| line.strip_suffix(" sample(s) missing")?.parse::<u32>().ok());
+    let words = "samples of all devices are lost until the base's bus is given up";
+    hold(missing.sum::<u32>().into(), 0.0..=0.0, 320.0..=330.0, words);
 }

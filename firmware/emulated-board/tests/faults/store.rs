@@ -4,32 +4,27 @@
 //! it believes the heading.
 
 use std::cell::RefCell;
-use std::future::Future;
-use std::pin::pin;
 use std::rc::Rc;
-use std::task::{Context, Poll, Waker};
 
 use drivers::fault::Fault;
-use emulated_board::controller::flash::STORE;
-use emulated_board::world::World;
+use emulated_board::wiring::board::Carrier;
+use emulated_board::world::{Driver, World, at_once, erased, pages, store};
 use firmware::platform::Platform;
-use firmware::ports::Store;
-use firmware::settings::save;
-use firmware::storage::{FlashStore, HEADING};
-use hal_mock::flash::nor::PoweredFlash;
-use hal_mock::flash::{Cells, Flash, Times};
+use firmware::ports::Store as _;
+use firmware::settings::{self, Settings, VehicleSchedule, save};
+use firmware::storage::HEADING;
+use hal_mock::flash::nor::{Loss, PoweredFlash, Trouble};
+use hal_mock::flash::sequence::{Step, steps};
+use hal_mock::flash::{Cells, Flash};
 use hal_mock::vehicle::Stop;
 use hal_mock::vehicle::scenario::Scenario as Day;
+use orientation::alignment::rotating::misalignment;
 use orientation::attitude::restart::Remembered;
 use orientation::units::{Radians, RadiansPerSecond, Seconds};
-use sequential_storage::map::MapConfig;
 use simulated::executed;
 use simulated::fault::Injection;
 use simulated::scenario::{GyroClass, Scenario};
 use simulated::vehicle::VehicleScenario;
-
-/// The flash of a board, behind its driver.
-pub type Driver = PoweredFlash<Box<Cells>>;
 
 /// 1σ of the gyros' biases from start to start, °/h.
 const BIAS_SIGMA_DEG_H: f64 = 0.03;
@@ -53,19 +48,6 @@ pub enum Item {
     Unreadable,
 }
 
-/// What a future gives that never waits.
-fn at_once<T>(future: impl Future<Output = T>) -> T {
-    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
-        Poll::Ready(result) => result,
-        Poll::Pending => panic!("the store waits"),
-    }
-}
-
-/// The store in a flash.
-fn store(flash: Driver) -> FlashStore<Driver> {
-    FlashStore::new(flash, const { MapConfig::new(STORE) })
-}
-
 /// The vehicle.
 fn scenario() -> VehicleScenario {
     let usual = executed::vehicle(1);
@@ -76,32 +58,68 @@ fn scenario() -> VehicleScenario {
 /// The vehicle in its world, whose store holds the record of its settings and so many headings of earlier stops before
 /// the latest one.
 pub fn world(earlier: usize) -> World {
+    let (carrier, items) = standing();
     let mut world = World::new(Platform::Vehicle, 1).expect("its settings are possible");
+    world.store = pages(&items.kept(erased(0), earlier)).to_vec();
+    world.carrier = carrier;
+    world
+}
+
+/// The vehicle, which stands, and what it has in its store.
+fn standing() -> (Rc<RefCell<dyn Carrier>>, Items) {
     let scenario = scenario();
     let Scenario { latitude_deg, azimuth_deg, .. } = scenario.base;
     let stop = Stop { seconds: STANDS_SECONDS, ..Stop::default() };
     // Chips borrow what goes on around them.
     let day: &'static Day = Box::leak(Box::new(Day::standing(latitude_deg, azimuth_deg, stop)));
     let board = scenario.board(&day.legs, &day.events, Box::leak(Box::new(Injection::NONE)));
-    let flash = used(&scenario, board.plant.truth().gyro_bias_rad_s, earlier);
-    world.store = flash.flash.bytes()[STORE.start as usize..STORE.end as usize].to_vec();
-    world.carrier = Rc::new(RefCell::new(board));
-    world
+    let items = Items::of(&scenario, board.plant.truth().gyro_bias_rad_s);
+    (Rc::new(RefCell::new(board)), items)
 }
 
-/// A flash with the record of settings and the headings.
-fn used(scenario: &VehicleScenario, biases: [f64; 3], earlier: usize) -> Driver {
-    let cells: Box<Cells> = vec![0; size_of::<Cells>()].try_into().expect("as long as the cells");
-    let mut store = store(PoweredFlash::new(Flash::erased(cells, Times::TYPICAL, 0), 0));
-    let settings = scenario.settings().expect("the latitude is one");
-    at_once(save(&mut store, &settings)).expect("there is room");
-    let latest = heading(scenario, biases);
-    for _ in 0..earlier {
-        let heading = Remembered { rest: Seconds(EARLIER_SECONDS), ..latest };
-        at_once(store.save(HEADING, &heading.to_bytes())).expect("there is room");
+/// What the vehicle has in its store.
+struct Items {
+    settings: Settings<VehicleSchedule>,
+    heading: Remembered,
+}
+
+impl Items {
+    /// Those of a vehicle, whose gyros have these biases, rad/s.
+    fn of(scenario: &VehicleScenario, biases: [f64; 3]) -> Self {
+        let settings = scenario.settings().expect("the latitude is one");
+        Self { settings, heading: heading(scenario, biases) }
     }
-    at_once(store.save(HEADING, &latest.to_bytes())).expect("there is room");
-    store.into_flash()
+
+    /// These with another heading.
+    fn with(&self, heading: Remembered) -> Self {
+        Self { settings: self.settings.clone(), heading }
+    }
+
+    /// A flash with the record of settings and the headings.
+    fn kept(&self, flash: Driver, earlier: usize) -> Driver {
+        let mut flash = self.saved(flash, RECORD);
+        let before = self.with(Remembered { rest: Seconds(EARLIER_SECONDS), ..self.heading });
+        for _ in 0..earlier {
+            flash = before.saved(flash, 0);
+        }
+        self.saved(flash, 0)
+    }
+
+    /// The flash after an item was saved into the slot of this place. The supply may be lost meanwhile.
+    fn saved(&self, flash: Driver, place: usize) -> Driver {
+        let mut store = store(flash);
+        let saved = at_once(async {
+            match place {
+                0 => store.save(HEADING, &self.heading.to_bytes()).await,
+                RECORD => save(&mut store, &self.settings).await.map_err(|_| Fault::Bus),
+                // The vehicle never reads them.
+                _ => store.save(place as u8 - 1, &[1; misalignment::BYTES]).await,
+            }
+        });
+        let flash = store.into_flash();
+        assert!(saved == Some(Ok(())) || flash.stopped().is_some(), "{saved:?}");
+        flash
+    }
 }
 
 /// The heading of the vehicle, which stands level.
@@ -120,19 +138,15 @@ fn heading(scenario: &VehicleScenario, biases: [f64; 3]) -> Remembered {
     }
 }
 
-/// How many headings are to be stored before the latest one, so that the next save changes pages, which erases one; and
-/// how many rows and pages that save writes and erases.
-pub fn nearly_full() -> (usize, u32) {
-    let (scenario, biases) = (scenario(), [0.0; 3]);
-    let effort = |earlier: usize| {
-        let mut flash = used(&scenario, biases, earlier);
+/// How many headings are to be stored before the latest one, so that the next save changes pages, which erases one.
+pub fn nearly_full() -> usize {
+    let items = Items::of(&scenario(), [0.0; 3]);
+    let operations = |earlier: usize| {
+        let mut flash = items.kept(erased(0), earlier);
         flash.restart();
-        let mut store = store(flash);
-        at_once(store.save(HEADING, &heading(&scenario, biases).to_bytes()))
-            .expect("there is room");
-        (earlier, store.into_flash().operations)
+        items.saved(flash, 0).operations
     };
-    (0..60).map(effort).find(|(_, effort)| *effort > ROWS).expect("a page is full at some time")
+    (0..60).find(|earlier| operations(*earlier) > ROWS).expect("a page is full at some time")
 }
 
 /// Rows that a save of a heading writes where no page is changed.
@@ -144,7 +158,8 @@ pub const ROWS: u32 = 11;
 /// The store cannot be read.
 pub fn stored(flash: &Flash<Box<Cells>>) -> Result<Option<Remembered>, Fault> {
     let flash = PoweredFlash::new(flash.clone(), 0);
-    let found = at_once(store(flash).load::<{ Remembered::BYTES }>(HEADING))?;
+    let found =
+        at_once(store(flash).load::<{ Remembered::BYTES }>(HEADING)).expect("it does not wait")?;
     Ok(found.as_ref().and_then(|bytes| Remembered::from_bytes(bytes)))
 }
 
@@ -156,4 +171,91 @@ pub fn item(flash: &Flash<Box<Cells>>) -> Item {
         Ok(_) => Item::Lost,
         Err(_) => Item::Unreadable,
     }
+}
+
+/// The places of the store's slots in a sequence: the heading, two axis misalignments, the record of settings.
+const SLOTS: u32 = 4;
+/// The place of the record.
+const RECORD: usize = 3;
+
+/// A flash after a random sequence of saves and losses of supply, before the next save of a heading, in which it is lost.
+pub struct Interrupted {
+    /// The flash before the save, as it starts.
+    pub flash: Driver,
+    /// The operation of the save in which the supply is lost.
+    pub operation: u32,
+    /// Which part of that operation is over then.
+    pub reached: f64,
+    /// What the loss leaves on the host.
+    pub left: Driver,
+    /// Whether what a board reads at its start can be read there.
+    pub starts: bool,
+}
+
+impl Interrupted {
+    /// That of a seed, with this heading saved at last. The steps are those of the host's tests, on a store that has the
+    /// vehicle's record and heading; a loss without which the board could not start now is left out.
+    pub fn new(seed: u64, saved: &Remembered) -> Self {
+        let (_, items) = standing();
+        let last = items.with(*saved);
+        let mut flash = items.kept(erased(seed), 0);
+        // The core reads its flash through the data cache.
+        flash.is_cached = true;
+        for step in steps(seed, SLOTS, true) {
+            flash = match step {
+                Step::Save(place) => items.saved(flash, place),
+                Step::Load(_) => flash,
+                Step::Restart => restarted(flash).0,
+                Step::Cut(place, loss) => {
+                    let start = restarted(flash).0;
+                    let by = if place == 0 { &last } else { &items };
+                    let lost = by.interrupted(&start, place, loss);
+                    let is_lost = lost.stopped() == Some(Trouble::Supply);
+                    if place == 0 && is_lost {
+                        return last.cut(start, loss, lost);
+                    }
+                    let (after, starts) = restarted(lost);
+                    if starts && place != 0 { after } else { items.saved(start, place) }
+                }
+            }
+        }
+        unreachable!("a sequence has no end")
+    }
+}
+
+impl Items {
+    /// The flash after a save into the slot of this place in which the supply may be lost.
+    fn interrupted(&self, start: &Driver, place: usize, loss: Loss) -> Driver {
+        let mut flash = start.clone();
+        flash.loss = Some(loss);
+        self.saved(flash, place)
+    }
+
+    /// The save of the heading in which the supply is lost, with what that leaves.
+    fn cut(&self, flash: Driver, loss: Loss, lost: Driver) -> Interrupted {
+        let at = |loss| self.interrupted(&flash, 0, loss).now();
+        let (operation, reached) = match loss {
+            Loss::After(0) => (0, 0.0),
+            Loss::After(count) => (count - 1, 1.0),
+            Loss::Within(operation) => {
+                let begin = at(Loss::After(operation));
+                let span = at(Loss::After(operation + 1)).saturating_sub(begin);
+                (operation, lost.now().saturating_sub(begin).div_duration_f64(span))
+            }
+        };
+        let starts = restarted(lost.clone()).1;
+        Interrupted { flash, operation, reached, left: lost, starts }
+    }
+}
+
+/// The flash after a start, which reads the record and the heading, and whether it can.
+fn restarted(mut flash: Driver) -> (Driver, bool) {
+    flash.restart();
+    let mut store = store(flash);
+    let record = at_once(store.load::<{ settings::BYTES }>(settings::SLOT));
+    let heading = at_once(store.load::<{ Remembered::BYTES }>(HEADING));
+    let starts = matches!((record, heading), (Some(Ok(_)), Some(Ok(_))));
+    let mut flash = store.into_flash();
+    flash.operations = 0;
+    (flash, starts)
 }

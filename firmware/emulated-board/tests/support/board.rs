@@ -1,17 +1,12 @@
 //! A board that is executed step by step, with its log, its link and its faults.
-
-use std::cell::RefCell;
-use std::rc::Rc;
+#![allow(dead_code, reason = "each program of tests uses a part of it")]
 
 use emulated_board::controller::Controller;
 use emulated_board::run::{Execution, Order};
-use emulated_board::wiring::board::Carrier;
 use emulated_board::world::World;
 use firmware::platform::Platform;
-use simulated::executed;
-use simulated::fault::Injection;
 
-use crate::images::image;
+use super::images::image;
 
 /// A board that is executed.
 pub struct Board {
@@ -35,7 +30,12 @@ impl Board {
 
     /// The board of a carrier in this world.
     pub fn within(carrier: Platform, world: World) -> Self {
-        let execution = Execution::new(&image(carrier), &Order::usual(carrier, 1), world);
+        Self::ordered(&Order::usual(carrier, 1), world)
+    }
+
+    /// The board of an order in this world.
+    pub fn ordered(order: &Order, world: World) -> Self {
+        let execution = Execution::new(&image(order.carrier), order, world);
         let execution = execution.expect("the image has a log");
         Self {
             execution,
@@ -65,8 +65,7 @@ impl Board {
             format!("{seconds:6.1} {} {}", line.level.unwrap_or("-"), line.words)
         }));
         self.log.extend(lines.into_iter().map(|line| (now, line.words)));
-        let sent = self.controller(|controller| std::mem::take(&mut controller.usart.sent));
-        for byte in sent {
+        for byte in self.execution.take_sent() {
             if byte == b'\n' {
                 let line =
                     String::from_utf8_lossy(&std::mem::take(&mut self.begun)).trim().to_owned();
@@ -89,16 +88,29 @@ impl Board {
     ///
     /// # Panics
     /// Where none comes within so many seconds.
+    #[track_caller]
     pub fn until(&mut self, words: &str, longest: f64) -> f64 {
+        let came = self.awaited(words, longest);
+        came.unwrap_or_else(|| panic!("no {words:?} within {longest} s:\n{self}"))
+    }
+
+    /// As [`Self::until`]; none where no such line comes.
+    pub fn awaited(&mut self, words: &str, longest: f64) -> Option<f64> {
         let (end, mut seen) = (self.seconds() + longest, self.log.len());
         while self.seconds() < end {
             self.step();
             if let Some((at, _)) = self.log[seen..].iter().find(|(_, line)| line.contains(words)) {
-                return *at;
+                return Some(*at);
             }
             seen = self.log.len();
         }
-        panic!("no {words:?} within {longest} s:\n{self}");
+        None
+    }
+
+    /// How long it takes from now to a line of the log that contains these words, s; so many seconds where none comes.
+    pub fn takes(&mut self, words: &str, longest: f64) -> f64 {
+        let now = self.seconds();
+        self.awaited(words, longest).map_or(longest, |came| came - now)
     }
 
     /// Lines of the log from a moment on, s, until another.
@@ -118,32 +130,5 @@ impl std::fmt::Display for Board {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.log.iter().try_for_each(|(at, line)| writeln!(f, "{at:11.6} {line}"))?;
         self.link.iter().try_for_each(|(at, line)| writeln!(f, "{at:11.6} link: {line}"))
-    }
-}
-
-/// A turntable amid its rate-modulated turns, of 72 °/s in the mean.
-pub struct TurningBoard {
-    /// The board, four seconds after the platform began to turn.
-    pub board: Board,
-    /// The rate of the platform, °/s.
-    pub turning: Box<dyn Fn(&Board) -> f64>,
-}
-
-impl TurningBoard {
-    /// Has a turntable begin.
-    pub fn new() -> Self {
-        let mut world = World::new(Platform::Turntable, 1).expect("its settings are possible");
-        let chips = executed::turntable(1).board(None, Box::leak(Box::new(Injection::NONE)));
-        let chips = Rc::new(RefCell::new(chips));
-        world.carrier = Rc::clone(&chips) as Rc<RefCell<dyn Carrier>>;
-        let mut board = Board::within(Platform::Turntable, world);
-        board.until("stage: turns at 72.0 °/s", 10.0);
-        board.run(4.0);
-        let turning = move |board: &Board| {
-            let mut chips = chips.borrow_mut();
-            chips.advance(board.execution.processor.now().instant());
-            chips.plant.truth().stage.rate_rad_s.to_degrees()
-        };
-        Self { board, turning: Box::new(turning) }
     }
 }

@@ -1,6 +1,9 @@
-//! What the tests share: images that are built once, executions that are made once, and defects that are known.
+//! What the tests share: images that are built once, executions that are made once, boards that are stepped, and defects
+//! that are known.
 
-pub mod bench;
+#[path = "../../support/board.rs"]
+pub mod board;
+#[path = "../../support/defect.rs"]
 pub mod defect;
 pub mod executed;
 #[path = "../../support/images.rs"]
