@@ -40,36 +40,46 @@ impl Probe {
         Ok(Self { control, decoder })
     }
 
-    #[expect(
-        clippy::redundant_closure_for_method_calls,
-        reason = "the method's type has no name here"
-    )]
     /// Takes what the buffer holds, and hands over the lines that it completes.
-    pub fn poll(&mut self, processor: &mut Processor, mut on_line: impl FnMut(Line)) {
-        let word = |processor: &Processor, place: u32| {
+    pub fn poll(&mut self, processor: &mut Processor, on_line: impl FnMut(Line)) {
+        let bytes = self.take(processor);
+        if !bytes.is_empty() {
+            self.decoder.received(&bytes);
+            self.decode(on_line);
+        }
+    }
+
+    /// Takes the bytes out of the buffer; none before the image has made it.
+    fn take(&self, processor: &mut Processor) -> Vec<u8> {
+        let word = |place: u32| {
             let mut bytes = [0; 4];
             processor.peek(self.control + BUFFER + 4 * place, &mut bytes);
             u32::from_le_bytes(bytes)
         };
         let mut mark = [0; 10];
         processor.peek(self.control, &mut mark);
-        if &mark != b"SEGGER RTT" {
-            return;
+        let [start, size, written, read] = [1, 2, 3, 4].map(word);
+        if &mark != b"SEGGER RTT" || size == 0 || written >= size || read >= size {
+            return Vec::new();
         }
-        let [start, size, written, read] = [1, 2, 3, 4].map(|place| word(processor, place));
-        if size == 0 || written >= size || read >= size || written == read {
-            return;
+        let byte = |place| {
+            let mut byte = [0];
+            processor.peek(start + (read + place) % size, &mut byte);
+            byte[0]
+        };
+        let bytes: Vec<u8> = (0..(written + size - read) % size).map(byte).collect();
+        if !bytes.is_empty() {
+            processor.poke(self.control + BUFFER + 16, &written.to_le_bytes());
         }
-        let count = (written + size - read) % size;
-        let bytes: Vec<u8> = (0..count)
-            .map(|place| {
-                let mut byte = [0];
-                processor.peek(start + (read + place) % size, &mut byte);
-                byte[0]
-            })
-            .collect();
-        processor.poke(self.control + BUFFER + 16, &written.to_le_bytes());
-        self.decoder.received(&bytes);
+        bytes
+    }
+
+    /// Decodes what was taken.
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the method's type has no name here"
+    )]
+    fn decode(&mut self, mut on_line: impl FnMut(Line)) {
         loop {
             match self.decoder.decode() {
                 Ok(frame) => on_line(Line {

@@ -8,7 +8,7 @@
 
 use unicorn_engine::{RegisterARM, Unicorn};
 
-use super::blocks::instructions;
+use super::instructions::instructions;
 use crate::faults::Fault;
 
 /// Registers that can be the base of an access that is not aligned: the stack pointer and the program counter cannot.

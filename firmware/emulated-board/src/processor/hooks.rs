@@ -6,32 +6,12 @@ use std::rc::Rc;
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
 use super::Processor;
-use super::memory::Ram;
+use super::memory::{DEVICES, REGISTERS, Ram};
 use super::protecting::forget_conditions;
 use super::state::Halt;
 use crate::exceptions::NOT_MASKABLE;
 use crate::faults::Fault;
 use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
-
-/// Where this controller has registers, modelled or not (RM0351, 2.2.2), with the size, bytes: system memory with the
-/// unique identity, peripherals, external memories' controllers, the core's own. Accesses elsewhere are bus faults.
-const REGISTERS: [(u32, u64); 4] = [
-    (0x1FFF_0000, 0x0001_0000),
-    (0x4000_0000, 0x2000_0000),
-    (0xA000_0000, 0x0000_2000),
-    (0xE000_0000, 0x0010_0000),
-];
-
-/// Where devices begin in the default map of memory (B3.1): what is mapped from here on are registers.
-const DEVICES: u32 = 0x4000_0000;
-
-/// Has accesses of devices held to their alignment, or no longer: Unicorn takes their registers for protected.
-pub(super) fn watch_devices(uc: &mut Unicorn<'_, ()>, are_watched: bool) {
-    let allowed = if are_watched { Prot::NONE } else { Prot::READ | Prot::WRITE };
-    for (base, size) in REGISTERS.into_iter().filter(|(base, _)| *base >= DEVICES) {
-        let _ = uc.mem_protect(base.into(), size, allowed);
-    }
-}
 
 /// The addresses that are not in RAM, of which every access succeeds. A hook that covers RAM halves the speed: Unicorn
 /// then calls a function for each write.

@@ -1,6 +1,6 @@
-//! The memory that Unicorn has: flash with the image, both parts of RAM, and what is in RAM before a program writes it.
+//! The map of memory: both parts of RAM, what is in them before a program writes it, and where registers are.
 
-use unicorn_engine::Unicorn;
+use unicorn_engine::{Prot, Unicorn};
 
 use crate::controller::Memory;
 use crate::{RAM, RAM_BYTES, RAM2, RAM2_BYTES};
@@ -11,6 +11,26 @@ pub const RAM_FILL: u8 = 0xA5;
 
 /// Both parts of RAM: where each begins, and its size in bytes.
 pub(super) const RAMS: [(u32, usize); 2] = [(RAM, RAM_BYTES), (RAM2, RAM2_BYTES)];
+
+/// Where this controller has registers, modelled or not (RM0351, 2.2.2), with the size, bytes: system memory with the
+/// unique identity, peripherals, external memories' controllers, the core's own. Accesses elsewhere are bus faults.
+pub(super) const REGISTERS: [(u32, u64); 4] = [
+    (0x1FFF_0000, 0x0001_0000),
+    (0x4000_0000, 0x2000_0000),
+    (0xA000_0000, 0x0000_2000),
+    (0xE000_0000, 0x0010_0000),
+];
+
+/// Where devices begin in the default map of memory (B3.1): what is mapped from here on are registers.
+pub(super) const DEVICES: u32 = 0x4000_0000;
+
+/// Has accesses of devices held to their alignment, or no longer: Unicorn takes their registers for protected.
+pub(super) fn watch_devices(uc: &mut Unicorn<'_, ()>, are_watched: bool) {
+    let allowed = if are_watched { Prot::NONE } else { Prot::READ | Prot::WRITE };
+    for (base, size) in REGISTERS.into_iter().filter(|(base, _)| *base >= DEVICES) {
+        let _ = uc.mem_protect(base.into(), size, allowed);
+    }
+}
 
 /// The memory behind Unicorn.
 pub(super) struct Ram<'u, 'a>(pub(super) &'u mut Unicorn<'a, ()>);

@@ -11,6 +11,7 @@ mod debugging;
 mod entry;
 mod frame;
 mod hooks;
+mod instructions;
 pub mod memory;
 mod protecting;
 mod returning;

@@ -4,8 +4,7 @@ use unicorn_engine::{RegisterARM, Unicorn};
 
 use super::blocks::Blocks;
 use super::checks::first_fault;
-use super::hooks::watch_devices;
-use super::memory::Ram;
+use super::memory::{Ram, watch_devices};
 use super::protecting::Checkpoint;
 use crate::controller::protection::{Access, Level};
 use crate::controller::{Controller, Refused};
@@ -175,6 +174,16 @@ impl State {
         };
         let place = self.blocks.place(address, size, read);
         self.current = Some(place);
+        self.faults(place, (address, size), uc)
+    }
+
+    /// Checks what Unicorn does not check of a block, at an address and of so many bytes; whether it faults.
+    fn faults(
+        &mut self,
+        place: usize,
+        (address, size): (u32, u32),
+        uc: &mut Unicorn<'_, ()>,
+    ) -> bool {
         let is_watched = self.blocks.all[place].count < WATCHED_EXECUTIONS;
         if is_watched != self.alignment.watches_devices {
             self.alignment.watches_devices = is_watched;
