@@ -12,10 +12,10 @@ use clap::Parser;
 use emulated_board::image::Image;
 use emulated_board::link::Client;
 use emulated_board::probe::Line;
-use emulated_board::report::Report;
 use emulated_board::run::{Order, execute};
 use emulated_board::world::World;
 use execution::options::{afterwards, carrier, cycles, port};
+use execution::report::Report;
 use firmware::platform::Platform;
 
 /// Executes an image of a board behind a model of its microcontroller, with simulated chips on its pins.

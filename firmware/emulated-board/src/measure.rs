@@ -2,38 +2,10 @@
 
 use std::collections::HashMap;
 
-use serde::Serialize;
+use execution::report::Origin;
 
 use crate::image::Image;
 use crate::processor::blocks::Blocks;
-
-/// Where instructions go, by the source that they come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Origin {
-    /// The methods: what is done with a sample.
-    Methods,
-    /// The instrument around them.
-    Instrument,
-    /// The drivers of the chips.
-    Drivers,
-    /// The peripherals' drivers, interrupts included.
-    Peripherals,
-    /// Channels, locks, tasks and wakers.
-    Channels,
-    /// Time and alarms.
-    Time,
-    /// Memory that is copied and cleared.
-    Memory,
-    /// Arithmetic that the core has no instructions for.
-    Arithmetic,
-    /// The log.
-    Log,
-    /// The store in flash.
-    Store,
-    /// What no line tells.
-    Other,
-}
 
 /// Parts of paths of sources, with what they belong to; the first that is found holds.
 const PATHS: [(&str, Origin); 24] = [

@@ -11,7 +11,9 @@ use crate::image::Image;
 use crate::probe::{Line, Probe};
 use crate::processor::memory::RAM_FILL;
 use crate::processor::{Processor, Unknown};
-use crate::report::{Observation, Report};
+use execution::report::Report;
+
+use crate::observation::Observation;
 use crate::time::Time;
 use crate::world::World;
 

@@ -1,9 +1,10 @@
 //! What `meridian emulate` and the program `emulated-board` share, since nothing links that program.
 //!
-//! Both have images [`built`] by cargo, and hold an image to its [`carrier`]; [`options`] are those that one hands on to
-//! the other.
+//! Both have images [`built`] by cargo, and hold an image to its [`carrier`]; one hands [`options`] on to the other, and
+//! reads its [`report`].
 #![forbid(unsafe_code)]
 
 pub mod built;
 pub mod carrier;
 pub mod options;
+pub mod report;

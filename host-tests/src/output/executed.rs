@@ -1,8 +1,9 @@
 //! The table of the images that were executed.
 
+use execution::report::{Origin, Report as Execution};
 use serde_json::{Value, json};
 
-use crate::emulate::executed::{Executed, Options, Report as Execution};
+use crate::emulate::executed::{Executed, Options};
 use crate::report::{Columns, Lines, Part, Report};
 
 /// What the images found, and what they took.
@@ -80,19 +81,6 @@ fn milliseconds(seconds: f64) -> String {
 
 /// Instructions of a sample, by where they go.
 fn of_instructions(all: &[Executed]) -> Part {
-    const ORIGINS: [&str; 11] = [
-        "peripherals",
-        "channels",
-        "time",
-        "instrument",
-        "arithmetic",
-        "methods",
-        "drivers",
-        "memory",
-        "store",
-        "log",
-        "other",
-    ];
     let columns = Columns::of(
         "INSTRUCTIONS (not cycles) a sample while measuring, all in, by where they go",
         all,
@@ -101,11 +89,11 @@ fn of_instructions(all: &[Executed]) -> Part {
     .column("samples", |executed| executed.report.samples)
     .column("idle", |executed| format!("{:.0} %", 100.0 * executed.report.idle))
     .column("all in", |executed| instructions(executed.report.instructions_per_sample));
-    let columns = ORIGINS.into_iter().fold(columns, |columns, origin| {
-        columns.column(origin, move |executed| {
+    let columns = Origin::ALL.into_iter().fold(columns, |columns, origin| {
+        columns.column(origin.name(), move |executed| {
             let Execution { instructions_per_sample, instructions_by_origin, .. } =
                 &executed.report;
-            let some = instructions_by_origin.get(origin).copied().unwrap_or(0.0);
+            let some = instructions_by_origin.get(&origin).copied().unwrap_or(0.0);
             instructions(instructions_per_sample.map(|_| some))
         })
     });
@@ -124,9 +112,9 @@ fn of_memory(all: &[Executed]) -> Part {
         .column("flash", |executed| executed.report.flash_bytes)
         .column("static RAM", |executed| executed.report.static_bytes)
         .column("stack at its deepest", |executed| executed.report.stack_bytes)
-        .column("rows programmed", |executed| executed.report.flash_use[0])
-        .column("with the data cache on", |executed| executed.report.flash_use[2])
-        .column("pages erased", |executed| executed.report.flash_use[1])
+        .column("rows programmed", |executed| executed.report.flash_use.rows)
+        .column("with the data cache on", |executed| executed.report.flash_use.rows_with_cache_on)
+        .column("pages erased", |executed| executed.report.flash_use.pages)
         .into()
 }
 

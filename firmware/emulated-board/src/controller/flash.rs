@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use execution::report::FlashUse;
 use hal_mock::flash::{
     Bank, Cells, Ecc, Flash as Array, PAGE, ROW, Refused as NotProgrammed, SIZE, Times,
 };
@@ -62,19 +63,6 @@ const TELLS_ERROR: u32 = 1 << 25;
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// The option bytes as delivered (RM0351, 3.4.1), brown-out level 0.
 const OPTIONS: u32 = 0xFFEF_F8AA;
-
-/// What the program does to its flash.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FlashUse {
-    /// Rows that were programmed.
-    pub rows: u64,
-    /// Those whose programming began with the data cache on. The core runs from one bank and programs the other, which
-    /// may then corrupt the cache: an erratum of this controller, described in [`hal_mock::flash::data_cache`], whose
-    /// remedy is to switch the cache off before a write and to reset it after it.
-    pub rows_with_cache_on: u64,
-    /// Pages that were erased.
-    pub pages: u64,
-}
 
 /// A loss of supply that is injected: within an operation, at its beginning or at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -120,7 +120,7 @@ fn the_keeper_has_forces_all_the_time() {
     expected = "between 3 and 7 times the heading of a vehicle at rest is written within ten seconds"
 )]
 fn the_heading_of_a_body_at_rest_is_saved_once_a_minute_at_most() {
-    let [rows, ..] = executed(Platform::Vehicle, 1).report.flash_use;
+    let rows = executed(Platform::Vehicle, 1).report.flash_use.rows;
     let words = "times the heading of a vehicle at rest is written within ten seconds";
     hold(f64::from(rows as u32) / 11.0, 0.0..=1.0, 3.0..=7.0, words);
 }

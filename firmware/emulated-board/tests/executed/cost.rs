@@ -1,6 +1,6 @@
 //! What the images need of the controller's time and memory.
 
-use emulated_board::report::Report;
+use execution::report::Report;
 use firmware::platform::Platform;
 
 use super::support::defect::hold;

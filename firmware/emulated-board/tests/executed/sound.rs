@@ -1,8 +1,8 @@
 //! What holds today.
 
-use emulated_board::report::Report;
 use emulated_board::run::Order;
 use execution::built::root;
+use execution::report::{FlashUse, Report};
 use firmware::platform::Platform;
 
 use super::support::executed::{Executed, execute_anew, executed, executed_by};
@@ -108,7 +108,7 @@ fn flash_and_static_ram_of_every_image_are_within_the_budget() {
     for carrier in Platform::ALL {
         let Report { flash_bytes, static_bytes, .. } = executed(carrier, 1).report;
         assert!(
-            flash_bytes as f64 <= budget("board_flash_bytes"),
+            f64::from(flash_bytes) <= budget("board_flash_bytes"),
             "{carrier}: {flash_bytes} bytes of flash"
         );
         assert!(
@@ -167,7 +167,7 @@ fn instructions_and_sleep_together_are_the_time_of_the_measurement() {
 #[test]
 fn a_heading_in_flash_takes_eleven_rows() {
     for carrier in [Platform::Stage, Platform::Vehicle] {
-        let [rows, pages, _] = executed(carrier, 1).report.flash_use;
+        let FlashUse { rows, pages, .. } = executed(carrier, 1).report.flash_use;
         assert!(rows > 0 && rows % 11 == 0 && pages == 0, "{carrier}: {rows} rows, {pages} pages");
     }
 }

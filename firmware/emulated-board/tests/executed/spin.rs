@@ -1,7 +1,7 @@
 //! A spinning body, whose five converters are more than the controller can read.
 
-use emulated_board::report::Service;
 use emulated_board::run::Order;
+use execution::report::Service;
 use firmware::platform::Platform;
 
 use super::support::defect::hold;

@@ -1,6 +1,7 @@
 //! The store at work while samples come. The driver of the flash polls, and no task runs meanwhile.
 
 use emulated_board::time::Time;
+use execution::report::FlashUse;
 use firmware::platform::Platform;
 
 use super::support::board::Board;
@@ -66,7 +67,8 @@ fn acquisition_waits_for_a_page_that_is_erased_for_less_than_a_period() {
     expected = "exactly 11 rows of a heading that is saved are programmed while the data cache is on"
 )]
 fn no_row_is_programmed_while_the_data_cache_is_on() {
-    let [rows, _, with_cache_on] = executed(Platform::Stage, 1).report.flash_use;
+    let FlashUse { rows, rows_with_cache_on: with_cache_on, .. } =
+        executed(Platform::Stage, 1).report.flash_use;
     assert_eq!(rows, ROWS[1], "one heading is saved");
     let words = "rows of a heading that is saved are programmed while the data cache is on";
     hold(with_cache_on as f64, 0.0..=0.0, 11.0..=11.0, words);

@@ -8,17 +8,15 @@
 //! The program links Unicorn, whose licence is the GPL-2.0: it is built and started, and talked to by a pipe.
 
 mod host;
-mod report;
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use execution::built::{self, executable, image, root};
+use execution::report::Report;
 use firmware::platform::Platform;
 use rayon::prelude::*;
-
-pub use report::{Report, Service};
 
 /// Greatest distance of an azimuth from the truth, in its own σ.
 const FROM_TRUTH: f64 = 3.0;

@@ -1,7 +1,8 @@
 //! Images that are executed: reports, what is complained of, the options of the program, misuse.
 
+use execution::report::Report;
 use firmware::platform::Platform;
-use host::emulate::executed::{Executed, Options, Report};
+use host::emulate::executed::{Executed, Options};
 use host::output::executed;
 use serde_json::{Value, json};
 
@@ -32,7 +33,7 @@ fn sound() -> Value {
         "static_bytes": 30_000,
         "masked_seconds": [2.0, 0.0005],
         "violations": [],
-        "flash_use": [11, 0, 11],
+        "flash_use": { "rows": 11, "rows_with_cache_on": 11, "pages": 0 },
     })
 }
 

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use emulated_board::probe::Line;
-use emulated_board::report::Report;
 use emulated_board::run::{Order, execute};
 use emulated_board::world::World;
+use execution::report::Report;
 use firmware::platform::Platform;
 
 use super::images::image;

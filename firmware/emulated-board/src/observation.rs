@@ -1,85 +1,13 @@
-//! What an execution shows: observed while it goes on, and told as one object.
+//! What is observed of an image while it is executed, up to the report of it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
+use execution::report::{Origin, Report, Service};
 
-use crate::measure::{Origin, Origins, Snapshot};
+use crate::measure::{Origins, Snapshot};
 use crate::probe::Line;
 use crate::run::{Execution, Order};
 use crate::time::Time;
-
-/// What an execution showed.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// The carrier.
-    pub carrier: &'static str,
-    /// Seed of the world.
-    pub seed: u64,
-    /// Cycles that an instruction takes.
-    pub cycles_per_instruction: f64,
-    /// The azimuth with its 1σ and limit, °; none where there is none.
-    pub azimuth_deg: Option<[f64; 3]>,
-    /// The true azimuth at its time, °.
-    pub truth_deg: f64,
-    /// The last line of the log that says how the alignment ended, or else the last line.
-    pub outcome: String,
-    /// Time from power-on to the result, s.
-    pub seconds: f64,
-    /// Time from power-on to the first line of the log, s.
-    pub start_seconds: f64,
-    /// Samples, of all converters together, between the first and the last step of the measurement; where it has not
-    /// two of them, from when all chips were configured to the end.
-    pub samples: u64,
-    /// Instructions for each of these samples, all in; none where there is no sample.
-    pub instructions_per_sample: Option<f64>,
-    /// Where they go, for each sample; empty where there is none.
-    pub instructions_by_origin: BTreeMap<Origin, f64>,
-    /// Part of the time of these samples that the core was asleep.
-    pub idle: f64,
-    /// How conversions were served: from when all chips were configured to the last step of the measurement, or to its
-    /// end where it has no steps; from there to the result; after it.
-    pub service: [Service; 3],
-    /// Notices of the log that are false, by their words: chips and world are sound. Of samples that are said to be
-    /// missing, those beyond the conversions that each converter lost.
-    pub false_notices: BTreeMap<String, u64>,
-    /// Faults that the link counts at the end.
-    pub faults: u64,
-    /// Bytes that the stack took at its deepest.
-    pub stack_bytes: u32,
-    /// Bytes of flash.
-    pub flash_bytes: usize,
-    /// Bytes of static RAM.
-    pub static_bytes: u32,
-    /// The longest time with interrupts off: at the start, and after it, s.
-    pub masked_seconds: [f64; 2],
-    /// What was done to chips and buses that data sheets forbid.
-    pub violations: Vec<String>,
-    /// Rows of flash that were programmed, pages that were erased, and those of the rows that were programmed with the
-    /// data cache on.
-    pub flash_use: [u64; 3],
-}
-
-/// How conversions were served for some time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Service {
-    /// Conversions that were read.
-    pub read: u64,
-    /// Conversions that a newer one replaced before they were read.
-    pub lost: u64,
-    /// The longest time for which a converter waited to be read, s: from the end of the first conversion that was not
-    /// read at once, whatever replaced it meanwhile, to the next reading, or to now, where it still waits.
-    pub longest_wait_seconds: f64,
-}
-
-impl Service {
-    /// Adds what came later.
-    fn add(&mut self, later: Self) {
-        self.read += later.read;
-        self.lost += later.lost;
-        self.longest_wait_seconds = self.longest_wait_seconds.max(later.longest_wait_seconds);
-    }
-}
 
 /// Words of lines that blame chips, buses, the store or the clocks of converters, which are all sound. Lines that a
 /// sound world gives reason for, or samples that the image has lost, are none: "coasting", "without forces" and the like.
@@ -228,9 +156,8 @@ impl Observation {
         let ended = self.ended.unwrap_or(now.time);
         let (first_line, masked_at_start) = self.first.unwrap_or((now.time, Time::ZERO));
         let masked = [masked_at_start, execution.processor.counts().masked.0];
-        let used = execution.processor.with_controller(|controller| controller.flash.used);
         Report {
-            carrier: order.carrier.name(),
+            carrier: order.carrier.name().to_owned(),
             seed: order.seed,
             cycles_per_instruction: order.cycles,
             azimuth_deg: self.azimuth_deg,
@@ -246,11 +173,11 @@ impl Observation {
             outcome: self.outcome,
             false_notices: self.notices,
             stack_bytes: execution.stack_bytes(),
-            flash_bytes: execution.image.flash.len(),
+            flash_bytes: execution.image.flash.len() as u32,
             static_bytes: execution.image.static_bytes,
             masked_seconds: masked.map(Time::as_seconds),
             violations: violations(execution),
-            flash_use: [used.rows, used.pages, used.rows_with_cache_on],
+            flash_use: execution.processor.with_controller(|controller| controller.flash.used),
         }
     }
 }
