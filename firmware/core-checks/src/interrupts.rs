@@ -7,11 +7,15 @@ use crate::assembly::{call, call_if, pend_if};
 use crate::handlers::{on, read, write};
 use crate::line::say;
 
-/// `ISER1`, `ICER1`, `ISPR1`, `ICPR1`, `IABR1`: interrupts 32 to 63.
+/// `ISER1`: interrupts 32 to 63 that are enabled.
 const ENABLE: u32 = 0xE000_E104;
+/// `ICER1`: those that are disabled.
 const DISABLE: u32 = 0xE000_E184;
+/// `ISPR1`: those that become pending.
 pub const PEND: u32 = 0xE000_E204;
+/// `ICPR1`: those that are pending no longer.
 const UNPEND: u32 = 0xE000_E284;
+/// `IABR1`: those that are active.
 const ACTIVE: u32 = 0xE000_E304;
 /// `IPR11`: priorities of interrupts 44 to 47.
 const PRIORITIES: u32 = 0xE000_E42C;
@@ -23,11 +27,14 @@ const SERVICE_PRIORITY: u32 = 0xE000_ED20;
 /// `STIR`.
 const TRIGGER: u32 = 0xE000_EF00;
 
-/// Four interrupts that no peripheral of the board uses here: 44 to 47, exceptions 3c to 3f. Their bits in the
-/// registers of interrupts 32 to 63.
+/// Interrupt 44, exception 3c, in the registers of interrupts 32 to 63. No peripheral of the board uses it here, nor the
+/// next three.
 pub const FIRST: u32 = 1 << 12;
+/// Interrupt 45, exception 3d.
 pub const SECOND: u32 = 1 << 13;
+/// Interrupt 46, exception 3e.
 const THIRD: u32 = 1 << 14;
+/// Interrupt 47, exception 3f.
 const FOURTH: u32 = 1 << 15;
 
 /// The steps.

@@ -12,22 +12,30 @@ use crate::interrupts::unmask;
 use crate::line::say;
 use crate::stacks::set_control;
 
-/// `MPU_TYPE`, `MPU_CTRL`, `MPU_RNR`, `MPU_RBAR`, `MPU_RASR`.
+/// `MPU_TYPE`: how many regions there are.
 const TYPE: u32 = 0xE000_ED90;
+/// `MPU_CTRL`: whether the unit is on.
 pub const CONTROL: u32 = 0xE000_ED94;
+/// `MPU_RNR`: the region that is set.
 const NUMBER: u32 = 0xE000_ED98;
+/// `MPU_RBAR`: where it begins.
 const BASE: u32 = 0xE000_ED9C;
+/// `MPU_RASR`: its size, and who may do what there.
 const ATTRIBUTES: u32 = 0xE000_EDA0;
 
 /// Enabled, with the default map for privileged code.
 pub const ON: u32 = 0b101;
 /// Attributes of RAM (normal memory, not shared), with the bit that enables the region.
 const RAM: u32 = 0b1011 << 16 | 1;
-/// Accesses: none, privileged read and write, read only, all; and execute never.
+/// No access.
 const NONE: u32 = 0;
+/// Reads and writes by privileged code.
 pub const PRIVILEGED: u32 = 1 << 24;
+/// Reads by all code.
 const READ_ONLY: u32 = 6 << 24;
+/// Reads and writes by all code.
 const FULL: u32 = 3 << 24;
+/// No execution.
 const NEVER: u32 = 1 << 28;
 
 /// The steps.

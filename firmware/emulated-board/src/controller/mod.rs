@@ -13,22 +13,22 @@ mod pins;
 mod power;
 pub mod protection;
 pub mod rcc;
+mod registers;
 mod spi;
 pub mod system;
 mod timer;
+mod transfers;
 mod usart;
 mod watchdog;
 
-use std::cmp::Reverse;
-
 use thiserror::Error;
 
-use self::dma::{Dma, Item};
+use self::dma::Dma;
 use self::exti::Exti;
 use self::flash::Flash;
 use self::gpio::Port;
 use self::i2c::I2c;
-use self::map::{DMA_INTERRUPTS, Peripheral, REQUESTS, Request, peripheral};
+use self::map::DMA_INTERRUPTS;
 use self::pins::Signal;
 use self::power::Power;
 use self::rcc::{Oscillators, Rcc};
@@ -43,10 +43,6 @@ use crate::wiring::{Pin, Wiring};
 
 /// Ports A to H.
 const PORTS: usize = 8;
-/// What a channel meets whose address in the peripheral is that of another register.
-const NO_DATA_REGISTER: Refused =
-    Refused::NotModelled("direct memory access to another register than one of data");
-
 /// Why an access is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Refused {
@@ -283,83 +279,6 @@ impl Controller {
         signals.find(|signal| !signal.is_connected(&self.ports)).copied()
     }
 
-    /// Transfers one item of a channel whose peripheral asks for it; whether there was one. Of several channels of a
-    /// controller the one with the highest priority goes first, among equals that with the lowest number (11.4.3).
-    fn transfer(&mut self, memory: &mut dyn Memory) -> bool {
-        let due = REQUESTS.into_iter().filter(|(controller, channel, selection, request)| {
-            let dma = &self.dma[*controller];
-            dma.channels[*channel].is_armed()
-                && dma.selection(*channel) == *selection
-                && self.asks(*request)
-        });
-        let first = due.max_by_key(|(controller, channel, ..)| {
-            (Reverse(*controller), self.dma[*controller].priority(*channel), Reverse(*channel))
-        });
-        let Some((controller, channel, ..)) = first else { return false };
-        if let Some(item) = self.dma[controller].take(channel)
-            && !self.carry(memory, item)
-        {
-            self.dma[controller].fail(channel);
-        }
-        true
-    }
-
-    /// Whether a peripheral asks for an item.
-    fn asks(&self, request: Request) -> bool {
-        match request {
-            Request::FromSpi(bus) => self.spi[bus].has_byte(),
-            Request::ToSpi(bus) => self.spi[bus].wants_byte(),
-            Request::FromI2c => self.i2c.has_byte(),
-            Request::ToI2c => self.i2c.wants_byte(),
-            Request::FromUsart => self.usart.has_byte(),
-            Request::ToUsart => self.usart.wants_byte(),
-        }
-    }
-
-    /// Carries an item between memory and a register; whether there is memory.
-    fn carry(&mut self, memory: &mut dyn Memory, item: Item) -> bool {
-        let mut bytes = [0; 4];
-        let held = &mut bytes[..item.memory_size as usize];
-        if item.is_to_peripheral {
-            let is_there = memory.read(item.memory, held);
-            if is_there && self.put(item, u32::from_le_bytes(bytes)).is_none() {
-                self.refused = Some(NO_DATA_REGISTER);
-            }
-            return is_there;
-        }
-        let Some(value) = self.get(item) else {
-            self.refused = Some(NO_DATA_REGISTER);
-            return true;
-        };
-        memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize])
-    }
-
-    /// Writes an item into the register of a peripheral that sends; none where it is no such register.
-    fn put(&mut self, item: Item, value: u32) -> Option<()> {
-        let offset = item.peripheral & 0x3FF;
-        match (peripheral(item.peripheral)?.0, offset) {
-            (Peripheral::Spi(bus), 0x0C) => {
-                self.spi[bus].write(offset, value, item.peripheral_size)
-            }
-            (Peripheral::I2c, 0x28) => self.i2c.write(offset, value),
-            (Peripheral::Usart, 0x28) => self.usart.write(offset, value),
-            _ => return None,
-        }
-        .ok()
-    }
-
-    /// Reads an item from the register of a peripheral that receives; none where it is no such register.
-    fn get(&mut self, item: Item) -> Option<u32> {
-        let offset = item.peripheral & 0x3FF;
-        match (peripheral(item.peripheral)?.0, offset) {
-            (Peripheral::Spi(bus), 0x0C) => self.spi[bus].read(offset, item.peripheral_size),
-            (Peripheral::I2c, 0x24) => self.i2c.read(offset),
-            (Peripheral::Usart, 0x24) => self.usart.read(offset),
-            _ => return None,
-        }
-        .ok()
-    }
-
     /// Sets the lines of the interrupts.
     fn raise(&mut self) {
         let lines = &mut self.exceptions.lines;
@@ -412,148 +331,5 @@ impl Controller {
             let level = driven.unwrap_or_else(|| self.wiring.level(Pin { port, number }, now));
             levels | u16::from(level) << number
         })
-    }
-
-    /// Reads a register by an access of so many bytes; `active` is the exception that is being handled.
-    ///
-    /// # Errors
-    /// What the model does not know.
-    pub fn read(
-        &mut self,
-        memory: &mut dyn Memory,
-        address: u32,
-        size: u32,
-        (now, active): (Time, u32),
-    ) -> Result<u32, Refused> {
-        self.advance(memory, now);
-        let offset = address & 0x3FC;
-        let word = match self.clocked(address)? {
-            Peripheral::Spi(bus) => self.spi[bus].read(offset, size),
-            Peripheral::I2c => self.i2c.read(offset),
-            Peripheral::Power => self.power.read(offset),
-            Peripheral::Watchdog => self.watchdog.read(offset),
-            Peripheral::System => self.system.read(address & 0xFFC, &self.exceptions, active),
-            Peripheral::Configuration => self.exti.read_ports(offset),
-            Peripheral::Exti => self.exti.read(offset),
-            Peripheral::Usart => self.usart.read(offset),
-            Peripheral::Timer => self.timer.read(offset, now),
-            Peripheral::Dma(controller) => self.dma[controller].read(offset),
-            Peripheral::Rcc => self.rcc.read(offset, now),
-            Peripheral::Flash => self.flash.read(offset, now),
-            Peripheral::Gpio(port) => {
-                let levels = if offset == 0x10 { self.levels(port, now) } else { 0 };
-                self.ports[port].read(offset, levels)
-            }
-            Peripheral::Debug => self.debug_word(address).copied(),
-        }?;
-        self.settle(memory, now);
-        self.refused.take().map_or(Ok(word >> (8 * (address & 3))), Err)
-    }
-
-    /// Writes a register by an access of so many bytes.
-    ///
-    /// # Errors
-    /// What the model does not know.
-    pub fn write(
-        &mut self,
-        memory: &mut dyn Memory,
-        address: u32,
-        (value, size): (u32, u32),
-        now: Time,
-    ) -> Result<(), Refused> {
-        self.advance(memory, now);
-        let peripheral = self.clocked(address)?;
-        if !peripheral.takes(address, size) {
-            return Err(Refused::NotModelled("a write of a part of a register"));
-        }
-        self.write_to(peripheral, address, (value, size), now)?;
-        if !self.flash.keeps_up(self.hertz) {
-            return Err(Refused::NotModelled("too few wait states of the flash for the clock"));
-        }
-        if self.system.wants_reset {
-            self.reset = Some(ResetReason::Software);
-        }
-        self.settle(memory, now);
-        self.refused.take().map_or(Ok(()), Err)
-    }
-
-    /// The peripheral at an address, which has its clock.
-    fn clocked(&self, address: u32) -> Result<Peripheral, Refused> {
-        let (peripheral, gate) = peripheral(address).ok_or(Refused::Unknown)?;
-        if gate.is_some_and(|(offset, bit)| !self.rcc.has_clock(offset, bit)) {
-            return Err(Refused::NoClock);
-        }
-        Ok(peripheral)
-    }
-
-    /// Writes a register of a peripheral.
-    fn write_to(
-        &mut self,
-        peripheral: Peripheral,
-        address: u32,
-        (value, size): (u32, u32),
-        now: Time,
-    ) -> Result<(), Refused> {
-        let offset = address & 0x3FF;
-        match peripheral {
-            Peripheral::Spi(bus) => self.spi[bus].write(offset, value, size),
-            Peripheral::I2c => self.i2c.write(offset, value),
-            Peripheral::Power => self.power.write(offset, value),
-            Peripheral::Watchdog => self.watchdog.write(offset, value, now),
-            Peripheral::System => {
-                self.system.write(address & 0xFFF, value, size, &mut self.exceptions)
-            }
-            Peripheral::Configuration => self.exti.write_ports(offset, value),
-            Peripheral::Exti => self.exti.write(offset, value),
-            Peripheral::Usart => self.usart.write(offset, value),
-            Peripheral::Timer => self.timer.write(offset, value, now),
-            Peripheral::Dma(controller) => self.dma[controller].write(offset, value),
-            Peripheral::Rcc => self.write_clocks(offset, value, now),
-            Peripheral::Flash => self.flash.write(offset, value, now),
-            Peripheral::Gpio(port) => {
-                let written = self.ports[port].write(offset, value);
-                self.drive(port, now);
-                written
-            }
-            Peripheral::Debug => self.debug_word(address).map(|word| *word = value),
-        }
-    }
-
-    /// A register of the debug unit: what stops while a debugger halts the core, which none does.
-    fn debug_word(&mut self, address: u32) -> Result<&mut u32, Refused> {
-        let place = (address & 0x3FF).checked_sub(4).ok_or(Refused::Unknown)? / 4;
-        self.debug.get_mut(place as usize).ok_or(Refused::Unknown)
-    }
-
-    /// Writes a register of the clocks, with what follows from it.
-    fn write_clocks(&mut self, offset: u32, value: u32, now: Time) -> Result<(), Refused> {
-        if offset == 0x90 && !self.power.is_backup_open() {
-            return Ok(());
-        }
-        self.rcc.write(offset, value, now)?;
-        self.reset_peripherals(offset, value, now);
-        self.reclock(now);
-        self.rcc.hertz(now).map(|_| ())
-    }
-
-    /// Puts peripherals into reset, by a reset register and its bits. The flash is only reset without its power (6.4.10).
-    fn reset_peripherals(&mut self, offset: u32, bits: u32, now: Time) {
-        for bit in (0..32).filter(|bit| bits >> bit & 1 != 0) {
-            match (offset, bit) {
-                (0x28, 0 | 1) => self.dma[bit as usize] = Dma::default(),
-                (0x2C, 0..8) => {
-                    self.ports[bit as usize] = Port::new(bit as usize);
-                    self.drive(bit as usize, now);
-                }
-                (0x38, 14) => self.spi[1] = Spi::new(),
-                (0x38, 22) => self.i2c = I2c::new(),
-                (0x38, 28) => self.power = Power::default(),
-                (0x40, 0) => self.exti.reset_ports(),
-                (0x40, 12) => self.spi[0] = Spi::new(),
-                (0x40, 14) => self.usart.reset(),
-                (0x40, 16) => self.timer = Timer::new(self.hertz),
-                _ => {}
-            }
-        }
     }
 }
