@@ -6,27 +6,14 @@
 //! their base register, so the registers are looked at where a block begins. An access whose base the block itself
 //! computes, and what is conditional, are not checked.
 
-use unicorn_engine::{RegisterARM, Unicorn};
+use unicorn_engine::Unicorn;
 
 use super::instructions::instructions;
+use super::registers::KEPT;
 use crate::faults::Fault;
 
-/// Registers that can be the base of an access that is not aligned: the stack pointer and the program counter cannot.
-const BASES: [RegisterARM; 13] = [
-    RegisterARM::R0,
-    RegisterARM::R1,
-    RegisterARM::R2,
-    RegisterARM::R3,
-    RegisterARM::R4,
-    RegisterARM::R5,
-    RegisterARM::R6,
-    RegisterARM::R7,
-    RegisterARM::R8,
-    RegisterARM::R9,
-    RegisterARM::R10,
-    RegisterARM::R11,
-    RegisterARM::R12,
-];
+/// How many registers can be the base of an access that is not aligned: stack pointer and program counter cannot.
+const BASES: usize = 13;
 
 /// What is looked at before instructions are executed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,7 +51,7 @@ impl Checks {
         }
         let mut bases = self.bases & !aligned;
         while bases != 0 {
-            let base = uc.reg_read(BASES[bases.trailing_zeros() as usize]).unwrap_or(0);
+            let base = uc.reg_read(KEPT[bases.trailing_zeros() as usize]).unwrap_or(0);
             if base & 3 != 0 {
                 return Some(Fault::UNALIGNED);
             }
@@ -105,7 +92,7 @@ impl Finder {
     /// What is looked at before the next instruction: its first half-word, and the second of a wide one.
     fn take(&mut self, first: u16, second: Option<u16>) -> Checks {
         let base = base(first, second)
-            .filter(|base| usize::from(*base) < BASES.len() && self.written >> base & 1 == 0);
+            .filter(|base| usize::from(*base) < BASES && self.written >> base & 1 == 0);
         let checks = match self.conditional {
             0 => Checks {
                 bases: base.map_or(0, |base| 1 << base),

@@ -14,6 +14,7 @@ mod hooks;
 mod instructions;
 pub mod memory;
 mod protecting;
+mod registers;
 mod returning;
 mod sleeping;
 mod state;

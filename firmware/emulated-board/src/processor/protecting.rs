@@ -10,31 +10,11 @@ use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
 use super::Processor;
 use super::memory::Ram;
+use super::registers::KEPT;
 use super::state::{Halt, State};
 use crate::controller::Memory;
 use crate::controller::protection::Access;
 use crate::faults::Fault;
-
-/// Registers that an instruction which faults leaves as they are.
-const KEPT: [RegisterARM; 17] = [
-    RegisterARM::R0,
-    RegisterARM::R1,
-    RegisterARM::R2,
-    RegisterARM::R3,
-    RegisterARM::R4,
-    RegisterARM::R5,
-    RegisterARM::R6,
-    RegisterARM::R7,
-    RegisterARM::R8,
-    RegisterARM::R9,
-    RegisterARM::R10,
-    RegisterARM::R11,
-    RegisterARM::R12,
-    RegisterARM::SP,
-    RegisterARM::LR,
-    RegisterARM::XPSR,
-    RegisterARM::PC,
-];
 
 /// Puts right what Unicorn leaves behind where it calls a hook for an access of data among conditional instructions:
 /// their state, which would hold for the next block too.
