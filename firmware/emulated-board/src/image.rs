@@ -60,12 +60,21 @@ impl Image {
         })
     }
 
-    /// The function at an address, and the file and line where its code comes from.
+    /// The function at an address, and the file and line where its code comes from: of functions that were put into each
+    /// other the innermost one that is not of Rust's own library.
     #[must_use]
     pub fn place(&self, address: u32) -> String {
         let function = self.function(address).unwrap_or_else(|| "no function".to_owned());
-        let line = self.sources.find_location(address.into()).ok().flatten();
-        match line.and_then(|line| Some((line.file?, line.line?))) {
+        let mut line = None;
+        if let Ok(mut frames) = self.sources.find_frames(address.into()) {
+            while line.is_none()
+                && let Ok(Some(frame)) = frames.next()
+            {
+                let place = frame.location.and_then(|line| Some((line.file?, line.line?)));
+                line = place.filter(|(file, _)| !file.starts_with("/rustc/"));
+            }
+        }
+        match line {
             Some((file, line)) => format!("{function} ({file}:{line})"),
             None => format!("{function} ({address:#010x})"),
         }

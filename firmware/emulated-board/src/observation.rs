@@ -164,6 +164,7 @@ impl Observation {
             truth_deg: (execution.world.truth_deg)(ended.instant()),
             seconds: ended.as_seconds(),
             start_seconds: first_line.as_seconds(),
+            resets: resets(execution),
             samples,
             instructions_per_sample: (samples > 0).then(|| by_origin.values().sum()),
             instructions_by_origin: by_origin,
@@ -232,9 +233,19 @@ fn faults(link: &str) -> u64 {
     counts.next_back().unwrap_or(0)
 }
 
-/// What was done to chips and buses that data sheets forbid.
+/// Why the board was reset, each time.
+fn resets(execution: &Execution) -> Vec<String> {
+    let resets = execution.processor.with_controller(|controller| controller.resets.clone());
+    resets.into_iter().map(|reason| format!("{reason:?}")).collect()
+}
+
+/// What was done to chips and buses that data sheets forbid, and a stack that ran into the statics.
 fn violations(execution: &Execution) -> Vec<String> {
     let mut violations = execution.world.carrier.borrow_mut().violations();
     violations.extend(execution.processor.with_controller(|controller| controller.wiring.faults()));
+    let end = execution.image.stack_end;
+    if execution.processor.counts().lowest_stack.is_some_and(|lowest| lowest < end) {
+        violations.push("the stack reached the statics".to_owned());
+    }
     violations
 }

@@ -122,6 +122,12 @@ impl World {
         Self { store, ..self }
     }
 
+    /// The world with the select lines of its chips at other pins.
+    #[must_use]
+    pub fn with_selects(self, selects: Selects) -> Self {
+        Self { wires: (selects, self.wires.1), ..self }
+    }
+
     /// The world with another IMU on its base.
     #[must_use]
     pub fn with_base(self, base: BaseImu) -> Self {

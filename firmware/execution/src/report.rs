@@ -23,7 +23,9 @@ pub struct Report {
     pub seconds: f64,
     /// Time from power-on to the first line of the log, s.
     pub start_seconds: f64,
-    /// Samples, of all converters together, between the first and the last step of the measurement; where it has not
+    /// Why the board was reset after its power-on, each time.
+    pub resets: Vec<String>,
+    /// Samples, of which each has a conversion of every converter, between the first and the last step of the measurement; where it has not
     /// two of them, from when all chips were configured to the end.
     pub samples: u64,
     /// Instructions for each of these samples, all in; none where there is no sample.
@@ -48,7 +50,7 @@ pub struct Report {
     pub static_bytes: u32,
     /// The longest time with interrupts off: at the start, and after it, s.
     pub masked_seconds: [f64; 2],
-    /// What was done to chips and buses that data sheets forbid.
+    /// What was done to chips and buses that data sheets forbid, and a stack that reached the statics.
     pub violations: Vec<String>,
     /// What was done to the flash.
     pub flash_use: FlashUse,

@@ -93,6 +93,9 @@ pub struct Flash {
     is_running: bool,
     /// Whether a row was read that cannot be corrected, which interrupts.
     pub is_broken: bool,
+    /// The bank that the core executes its program from. The core would wait for its instructions while that bank is
+    /// erased or programmed, which is not modelled.
+    pub program: Option<Bank>,
     /// What was done to it.
     pub used: FlashUse,
     /// When the supply is to be lost: a fault that is injected. It is over with the reset that follows.
@@ -124,6 +127,7 @@ impl Flash {
             half: None,
             is_running: false,
             is_broken: false,
+            program: None,
             used: FlashUse::default(),
             cut: None,
             cut_at: Time::NEVER,
@@ -259,23 +263,45 @@ impl Flash {
         }
         self.control = value & !START | LOCK_OPTIONS;
         if value & START != 0 {
-            self.erase(now);
+            self.erase(now)?;
         }
         Ok(())
     }
 
+    /// Refuses an operation in a bank that the core executes its program from.
+    ///
+    /// # Errors
+    /// It is that bank.
+    pub fn leave_program(&self, bank: Bank) -> Result<(), Refused> {
+        let is_program = self.program == Some(bank);
+        let reason =
+            "an erasure or a row in the bank of the program, which the core would wait for";
+        Refused::where_asked(is_program.then_some(reason))
+    }
+
     /// Erases what the control register says.
-    fn erase(&mut self, now: Time) {
+    fn erase(&mut self, now: Time) -> Result<(), Refused> {
         let bank = |upper: bool| if upper { Bank::Upper } else { Bank::Lower };
         let time = since_start(now);
         let begun = match self.control & (ERASE_PAGE | ERASE_LOWER | ERASE_UPPER | PROGRAM) {
             ERASE_PAGE => {
                 let page = (self.control >> 3 & 0xFF) as u8;
-                self.array.erase_page(bank(self.control & 1 << 11 != 0), page, time)
+                let bank = bank(self.control & 1 << 11 != 0);
+                self.leave_program(bank)?;
+                self.array.erase_page(bank, page, time)
             }
-            ERASE_LOWER => self.array.erase_bank(Bank::Lower, time),
-            ERASE_UPPER => self.array.erase_bank(Bank::Upper, time),
-            _ => return self.status |= SEQUENCE,
+            ERASE_LOWER => {
+                self.leave_program(Bank::Lower)?;
+                self.array.erase_bank(Bank::Lower, time)
+            }
+            ERASE_UPPER => {
+                self.leave_program(Bank::Upper)?;
+                self.array.erase_bank(Bank::Upper, time)
+            }
+            _ => {
+                self.status |= SEQUENCE;
+                return Ok(());
+            }
         };
         match begun {
             Ok(()) => {
@@ -284,6 +310,7 @@ impl Flash {
             }
             Err(_) => self.status |= SEQUENCE,
         }
+        Ok(())
     }
 
     /// A store into the flash: the second word of a row programs it. Meanwhile the core waits where the store

@@ -122,6 +122,8 @@ pub struct Controller {
     pub wiring: Box<dyn Wiring>,
     /// A reset that is due.
     pub reset: Option<ResetReason>,
+    /// The resets that there were.
+    pub resets: Vec<ResetReason>,
     /// When the crystal begins to oscillate, where the clock then changes.
     crystal: Time,
     /// What happened of itself that the model does not carry out: the next access tells it.
@@ -149,6 +151,7 @@ impl Controller {
             hertz: 4_000_000,
             wiring,
             reset: None,
+            resets: Vec::new(),
             crystal: Time::NEVER,
             refused: None,
         }
@@ -156,6 +159,7 @@ impl Controller {
 
     /// Starts again: all registers but those of the backup domain have their reset values.
     pub fn restart(&mut self, reason: ResetReason, now: Time) {
+        self.resets.push(reason);
         self.rcc.reset(reason);
         self.flash.reset(now);
         (self.exceptions, self.system, self.power) = Default::default();

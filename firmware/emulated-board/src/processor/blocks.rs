@@ -12,10 +12,8 @@ pub struct Block {
     pub address: u32,
     /// Addresses of all, as distances in bytes from the first.
     pub offsets: Vec<u16>,
-    /// Whether one of them changes whether interrupts are taken.
-    pub masks: bool,
-    /// Whether one of them sends an event, which the next wait for an event takes.
-    pub signals: bool,
+    /// What they may do beside what they compute.
+    pub effects: Effects,
     /// Whether it is a branch to itself, which an exception or a reset alone ends.
     pub is_endless: bool,
     /// What is to be checked before it is executed.
@@ -24,27 +22,51 @@ pub struct Block {
     pub count: u64,
 }
 
+/// What instructions may do beside what they compute.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Effects {
+    /// Whether interrupts are taken may change.
+    pub masks: bool,
+    /// An event is sent, which the next wait for an event takes.
+    pub signals: bool,
+    /// The stack grows.
+    pub grows_stack: bool,
+}
+
 impl Block {
     /// Reads the instructions of a block from its bytes.
     pub fn decode(address: u32, bytes: &[u8]) -> Self {
         let mut block = Self {
             address,
             offsets: Vec::new(),
-            masks: false,
-            signals: false,
+            effects: Effects::default(),
             is_endless: bytes == [0xFE, 0xE7],
             checks: Checks::of(bytes),
             count: 0,
         };
+        let effects = &mut block.effects;
         for (offset, first, second) in instructions(bytes) {
             block.offsets.push(offset);
             // CPS; MSR.
-            block.masks |=
+            effects.masks |=
                 first & 0xFFE8 == 0xB660 || (second.is_some() && first & 0xFFE0 == 0xF380);
             // SEV.
-            block.signals |= first == 0xBF40;
+            effects.signals |= first == 0xBF40;
+            effects.grows_stack |= grows_stack(first, second);
         }
         block
+    }
+}
+
+/// Whether an instruction makes the stack grow (A7.7): PUSH, VPUSH, a store that moves the stack pointer, SUB.
+const fn grows_stack(first: u16, second: Option<u16>) -> bool {
+    match second {
+        None => first & 0xFE00 == 0xB400 || first & 0xFF80 == 0xB080,
+        Some(_) => {
+            matches!(first, 0xE96D | 0xF84D)
+                || first & 0xFFBF == 0xED2D
+                || matches!(first & 0xFBEF, 0xE92D | 0xEBAD | 0xF1AD | 0xF2AD)
+        }
     }
 }
 

@@ -133,6 +133,7 @@ impl Processor {
         }
         let bytes: Vec<u8> = stacked.into_iter().flat_map(u32::to_le_bytes).collect();
         self.set(RegisterARM::SP, frame.into());
+        self.state.borrow_mut().watch_stack(&self.uc);
         let level = self.state.borrow().level;
         if !self.may_access(frame, bytes.len(), Access::Write, level) {
             return Err(Fault::stacking(true));

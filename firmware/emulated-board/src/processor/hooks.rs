@@ -3,12 +3,14 @@
 
 use std::rc::Rc;
 
+use hal_mock::flash::Bank;
 use unicorn_engine::{HookType, MemType, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error};
 
 use super::Processor;
 use super::memory::{DEVICES, REGISTERS, Ram};
 use super::protecting::forget_conditions;
 use super::state::Halt;
+use crate::controller::Refused;
 use crate::exceptions::NOT_MASKABLE;
 use crate::faults::Fault;
 use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
@@ -17,6 +19,19 @@ use crate::{FLASH, FLASH_BYTES, RAM, RAM_BYTES, RAM2, RAM2_BYTES};
 /// then calls a function for each write.
 const WITHOUT_RAM: [(u32, u32); 3] =
     [(0, RAM2 - 1), (RAM2 + RAM2_BYTES as u32, RAM - 1), (RAM + RAM_BYTES as u32, u32::MAX)];
+
+/// Why an access is refused that no register and no memory of the model answers, and the chip does.
+fn unmodelled(kind: MemType, address: u32) -> Option<Refused> {
+    match kind {
+        MemType::READ_UNMAPPED | MemType::WRITE_UNMAPPED if address < FLASH_BYTES as u32 => Some(
+            Refused::NotModelled("the flash from the address 0 on, where a null pointer leads"),
+        ),
+        MemType::WRITE_PROT if address.wrapping_sub(FLASH) < FLASH_BYTES as u32 => {
+            Some(Refused::NotModelled("a store into the program"))
+        }
+        _ => None,
+    }
+}
 
 /// Has Unicorn tell pages of code from those of data. Each write to a page that may hold code looks for code that it
 /// changes, which is slow; Unicorn takes all RAM for such pages, since the default map of the core does.
@@ -69,10 +84,17 @@ impl Processor {
     /// Unicorn splits them: one that is not aligned is a fault (A3.2.1), the others go on.
     fn hook_faults(&mut self, first: u32, last: u32) -> Result<(), uc_error> {
         let state = Rc::clone(&self.state);
-        let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, size: usize, _| {
+        let hook = move |uc: &mut Unicorn<'_, ()>, kind, address, size: usize, value: i64| {
             let address = address as u32;
             let is_register =
                 matches!(kind, MemType::READ_PROT | MemType::WRITE_PROT) && address >= DEVICES;
+            if let Some(reason) = unmodelled(kind, address) {
+                let written = matches!(kind, MemType::WRITE_UNMAPPED | MemType::WRITE_PROT);
+                let halt =
+                    Halt::Refused { address, written: written.then_some(value as u32), reason };
+                state.borrow_mut().halt(uc, halt);
+                return false;
+            }
             let fault = match kind {
                 _ if is_register && address.is_multiple_of(size as u32) => {
                     forget_conditions(uc);
@@ -116,6 +138,10 @@ impl Processor {
         let write = move |uc: &mut Unicorn<'_, ()>, offset: u64, size: usize, value: u64| {
             let mut state = writes.borrow_mut();
             let offset = code as u32 + offset as u32;
+            if let Err(reason) = state.controller.flash.leave_program(Bank::of(offset)) {
+                let (address, written) = (FLASH + offset, Some(value as u32));
+                return state.halt(uc, Halt::Refused { address, written, reason });
+            }
             while let Some(until) = {
                 let now = state.now;
                 state.controller.flash.store(offset, value as u32, size as u32, now)

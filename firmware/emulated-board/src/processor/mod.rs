@@ -22,6 +22,7 @@ mod state;
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use hal_mock::flash::Bank;
 use thiserror::Error;
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, UcHookId, Unicorn, uc_error};
 
@@ -98,6 +99,7 @@ impl Processor {
         Ram(&mut uc).fill();
         hooks::split_accesses(&mut uc)?;
         controller.flash.array.burn(0, &image.flash);
+        controller.flash.program = Some(Bank::Lower);
         let state = Rc::new(RefCell::new(State::new(controller, cycles)));
         let mut processor = Self { uc, state, protecting: None, was_unprivileged: false, image };
         processor.hook()?;
@@ -171,10 +173,7 @@ impl Processor {
         if ended.is_ok() && state.halt.is_none() {
             state.halt = state.wait(&self.uc);
         }
-        if state.account() {
-            let pc = self.get(RegisterARM::PC) as u32;
-            state.watch_masks(&mut self.uc, pc);
-        }
+        state.end_block(self.uc.reg_read(RegisterARM::PC).unwrap_or(0) as u32, &mut self.uc);
         match ended {
             Err(reason) if state.halt.is_none() => {
                 drop(state);

@@ -2,7 +2,7 @@
 
 use unicorn_engine::{RegisterARM, Unicorn};
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Effects};
 use super::checks::first_fault;
 use super::memory::{Ram, watch_devices};
 use super::protecting::Checkpoint;
@@ -53,6 +53,8 @@ pub struct Counts {
     pub asleep: Time,
     /// The longest time with interrupts off, and the address at which it ended.
     pub masked: (Time, u32),
+    /// The lowest value of the main stack pointer that was seen.
+    pub lowest_stack: Option<u32>,
 }
 
 /// How accesses are held to their alignment.
@@ -141,17 +143,14 @@ impl State {
         (self.level, self.is_locked, self.checkpoint) = (Level::default(), false, None);
     }
 
-    /// Ends the block that was being executed, and says whether the core must stop before the next one.
+    /// Ends the block that was being executed, and says whether the core must stop before the one at this address.
     pub(super) fn begin_block(
         &mut self,
         address: u32,
         size: u32,
         uc: &mut Unicorn<'_, ()>,
     ) -> bool {
-        let masks_changed = self.account();
-        if masks_changed {
-            self.watch_masks(uc, address);
-        }
+        self.end_block(address, uc);
         if self.now >= self.due {
             let now = self.now;
             self.controller.advance(&mut Ram(uc), now);
@@ -205,14 +204,25 @@ impl State {
         true
     }
 
-    /// Counts the block that was executed; whether it may have changed the masks.
-    pub(super) fn account(&mut self) -> bool {
+    /// Ends the block that was being executed, before an address: counts it, and follows what it may have done.
+    pub(super) fn end_block(&mut self, address: u32, uc: &mut Unicorn<'_, ()>) {
+        let Effects { masks, grows_stack, .. } = self.account();
+        if masks {
+            self.watch_masks(uc, address);
+        }
+        if grows_stack {
+            self.watch_stack(uc);
+        }
+    }
+
+    /// Counts the block that was executed; what it may have done.
+    fn account(&mut self) -> Effects {
         let Some(block) = self.current.take().and_then(|place| self.blocks.all.get_mut(place))
         else {
-            return false;
+            return Effects::default();
         };
         block.count += 1;
-        self.event |= block.signals;
+        self.event |= block.effects.signals;
         self.now = self.now + self.instruction.times(block.offsets.len() as u64);
         if block.is_endless && self.due != Time::NEVER && self.due > self.now {
             // Nothing happens before something is due.
@@ -220,7 +230,14 @@ impl State {
                 ((self.due - self.now).as_seconds() / self.instruction.as_seconds()) as u64;
             self.now = self.due;
         }
-        block.masks
+        block.effects
+    }
+
+    /// Follows how deep the stack is.
+    pub(super) fn watch_stack(&mut self, uc: &Unicorn<'_, ()>) {
+        let pointer = uc.reg_read(RegisterARM::MSP).unwrap_or(0) as u32;
+        let lowest = self.counts.lowest_stack.get_or_insert(pointer);
+        *lowest = pointer.min(*lowest);
     }
 
     /// Looks what the controller has become.

@@ -11,6 +11,7 @@ use hal_mock::board::StageChips;
 use hal_mock::chip::{Rig, Select, Single};
 use hal_mock::converters::Converters;
 use hal_mock::gimbal::board::GimbalChips;
+use hal_mock::i2c::I2cChip;
 use hal_mock::lsm6dsl::Lsm6dsl;
 use hal_mock::plant::base::Base;
 use hal_mock::tmc5160::{ChipFault, Tmc5160};
@@ -260,19 +261,18 @@ impl Wiring for Board {
                 self.carrier.borrow_mut().enable_motors(is_enabled);
             }
         }
-        let Some((_, bus, select)) = self.selects.iter().find(|(own, ..)| *own == pin) else {
-            return;
-        };
         // Resistors pull select lines up where nothing drives them.
         let is_low = level == Some(false);
-        self.buses[*bus].set_select(
-            &mut *self.carrier.borrow_mut(),
-            *select,
-            is_low,
-            now.as_nanoseconds(),
-        );
-        if !is_low {
-            self.look(now);
+        for (_, bus, select) in self.selects.iter().filter(|(own, ..)| *own == pin) {
+            self.buses[*bus].set_select(
+                &mut *self.carrier.borrow_mut(),
+                *select,
+                is_low,
+                now.as_nanoseconds(),
+            );
+            if !is_low {
+                self.look(now);
+            }
         }
     }
 
@@ -298,7 +298,10 @@ impl Wiring for Board {
     fn faults(&self) -> Vec<String> {
         let spi =
             self.buses.iter().flat_map(|bus| bus.faults().first.iter().map(ToString::to_string));
-        spi.chain(self.base.1.faults().first.iter().map(ToString::to_string)).collect()
+        let (base, wires) = &self.base;
+        let of_base = base.iter().flat_map(|base| &I2cChip::<Base>::violations(&base.chip).first);
+        let of_base = of_base.map(|violation| format!("base: {violation}"));
+        spi.chain(wires.faults().first.iter().map(ToString::to_string)).chain(of_base).collect()
     }
 
     fn due(&self) -> Time {

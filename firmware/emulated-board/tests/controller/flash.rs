@@ -3,6 +3,7 @@
 use emulated_board::controller::Refused;
 use emulated_board::controller::flash::STORE;
 use emulated_board::time::Time;
+use hal_mock::flash::Bank;
 
 use super::Bench;
 
@@ -129,4 +130,19 @@ fn a_row_that_lost_its_supply_or_charge_is_corrected_or_told() {
     let _ = bench.controller.flash.load(ROW, 4, bench.now);
     assert_eq!(bench.read(FLASH + 0x18) >> 31, 1, "beyond correction");
     assert!(bench.controller.exceptions.pending.has(2), "which is not maskable");
+}
+
+#[test]
+fn an_erasure_in_the_bank_that_the_program_is_executed_from_is_refused_and_one_in_the_other_is_not()
+{
+    // PER and BKER, MER1, MER2; and STRT.
+    for (control, bank) in
+        [(1 << 1, false), (1 << 1 | 1 << 11, true), (1 << 2, false), (1 << 15, true)]
+    {
+        let mut bench = open();
+        bench.controller.flash.program = Some(Bank::Lower);
+        let erased = bench.controller.flash.write(0x14, control | 1 << 16, bench.now);
+        assert_eq!(erased.is_ok(), bank, "{control:#x}: {erased:?}");
+        assert_eq!(bench.controller.flash.used.pages, u64::from(bank));
+    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 /// The sources with tests of defects.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 14] = [
     include_str!("conclusion.rs"),
     include_str!("cost.rs"),
     include_str!("settings.rs"),
@@ -17,6 +17,7 @@ const SOURCES: [&str; 13] = [
     include_str!("../faults/saving.rs"),
     include_str!("../faults/stopped.rs"),
     include_str!("../faults/supply.rs"),
+    include_str!("../../../../host-tests/tests/instrument/store/sequences.rs"),
 ];
 
 /// The list.

@@ -7,6 +7,7 @@
 mod conclusion;
 mod cost;
 mod list;
+mod rules;
 mod settings;
 mod sound;
 mod spin;

@@ -78,7 +78,7 @@ fn a_hung_transfer_of_the_motors_is_ended_and_told_by_its_bus() {
 }
 
 /// A time limit of five milliseconds ends every transfer, and the log names the base. It is tried twenty times more, and
-/// given up after 0.83 s; the alignment goes on without it.
+/// given up after 0.83 s.
 #[test]
 fn a_hung_transfer_of_the_base_is_ended_and_told_and_the_base_is_given_up() {
     let TurningBoard { mut board, .. } = TurningBoard::new();
@@ -96,6 +96,22 @@ fn a_hung_transfer_of_the_base_is_ended_and_told_and_the_base_is_given_up() {
         .last()
         .and_then(|(_, line)| line.strip_prefix("measuring 0/8, faults ")?.parse::<u32>().ok());
     assert!(faults.is_some_and(|faults| (340..360).contains(&faults)), "{board}");
+}
+
+/// Nothing tells the motion any more, and after twenty seconds a vehicle that cannot be seen counts as driving.
+#[test]
+#[should_panic(
+    expected = "between 19 and 21 s after the base's bus is given up the alignment ends without an azimuth"
+)]
+fn an_alignment_goes_on_where_the_base_is_given_up() {
+    let TurningBoard { mut board, .. } = TurningBoard::new();
+    board.controller(|controller| controller.i2c.hangs = true);
+    let given_up = board.until("base: given up: its bus fails", 2.0);
+    let ended = board.until("azimuth", 120.0);
+    let is_refused = board.lines(given_up, f64::INFINITY).concat().contains("no azimuth");
+    let after = if is_refused { ended - given_up } else { f64::INFINITY };
+    let words = "s after the base's bus is given up the alignment ends without an azimuth";
+    hold(after, f64::INFINITY..=f64::INFINITY, 19.0..=21.0, words);
 }
 
 /// One task reads all devices, and waits for each transfer that hangs. A platform that turns meanwhile has to begin anew.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use execution::built::{executable, of_firmware, root};
 use firmware::platform::Platform;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::images::path;
 use crate::started::{Waiting, output, text};
@@ -90,6 +90,7 @@ fn a_flight_with_a_dead_crystal_begins_after_the_watchdogs_reset_and_is_as_long_
     let [sound, dead]: [Value; 2] = [&[][..], &["--dead-crystal"]].map(|arguments| {
         serde_json::from_slice(&output(file, Platform::Spin, arguments).stdout).expect("a report")
     });
+    assert_eq!((&dead["resets"], &sound["resets"]), (&json!(["Watchdog"]), &json!([])));
     let start = dead["start_seconds"].as_f64().expect("a number");
     assert!((8.1..8.5).contains(&start), "{start}");
     let read = |report: &Value| report["service"][0]["read"].as_f64().expect("a number");

@@ -74,9 +74,15 @@ impl Executed {
     /// What is not as it must be, as sentences.
     #[must_use]
     pub fn complaints(&self) -> Vec<String> {
-        let Report { carrier, violations, .. } = &self.report;
+        let Report { carrier, violations, resets, samples, .. } = &self.report;
         let mut complaints: Vec<String> =
             violations.iter().map(|violation| format!("{carrier}: {violation}")).collect();
+        if !resets.is_empty() {
+            complaints.push(format!("{carrier}: reset after its power-on: {}", resets.join(", ")));
+        }
+        if *samples == 0 {
+            complaints.push(format!("{carrier}: no sample was read while measuring"));
+        }
         let Some([from_truth, from_host]) = self.distances() else {
             // A spinning body has no azimuth.
             if *carrier != Platform::Spin.name() {

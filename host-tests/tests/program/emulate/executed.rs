@@ -21,6 +21,7 @@ fn sound() -> Value {
         "outcome": "azimuth 213.6000° ± 0.1000° (1σ)",
         "seconds": 85.5,
         "start_seconds": 2.0,
+        "resets": [],
         "samples": 33_868,
         "instructions_per_sample": 18_000.5,
         "instructions_by_origin": { "methods": 10_000.0, "store": 8000.5 },
@@ -86,6 +87,17 @@ fn every_violation_of_a_data_sheet_is_complained_of() {
         with([("violations", violations)], Some(213.6)).complaints(),
         ["stage: two chips are selected at once", "stage: a clock of 20 MHz"]
     );
+}
+
+#[test]
+fn resets_and_a_measurement_without_samples_are_complained_of() {
+    let resets = json!(["Software", "Watchdog"]);
+    assert_eq!(
+        complaint(&with([("resets", resets)], Some(213.6))),
+        "stage: reset after its power-on: Software, Watchdog"
+    );
+    let idle = [("carrier", json!("spin")), ("azimuth_deg", Value::Null), ("samples", json!(0))];
+    assert_eq!(complaint(&with(idle, None)), "spin: no sample was read while measuring");
 }
 
 #[test]
