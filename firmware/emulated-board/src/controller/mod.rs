@@ -157,7 +157,8 @@ impl Controller {
         }
     }
 
-    /// Starts again: all registers but those of the backup domain have their reset values.
+    /// Starts again: all registers have their reset values, but for those of the backup domain and of the debug unit,
+    /// which a loss of supply alone resets (RM0351, 6.1 and 48.16).
     pub fn restart(&mut self, reason: ResetReason, now: Time) {
         self.resets.push(reason);
         self.rcc.reset(reason);
@@ -170,7 +171,9 @@ impl Controller {
         self.timer = Timer::new(self.hertz);
         self.spi = [Spi::new(), Spi::new()];
         self.watchdog = Watchdog::default();
-        self.debug = [0; 4];
+        if reason == ResetReason::Supply {
+            self.debug = [0; 4];
+        }
         (self.reset, self.refused) = (None, None);
         for index in 0..PORTS {
             self.ports[index] = Port::new(index);

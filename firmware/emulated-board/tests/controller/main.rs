@@ -8,6 +8,7 @@ mod edges;
 mod flash;
 mod pins;
 mod power;
+mod resets;
 mod serial;
 
 use std::cell::RefCell;

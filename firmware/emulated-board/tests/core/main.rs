@@ -8,6 +8,7 @@ mod returns;
 mod system;
 mod time;
 
+use emulated_board::controller::ResetReason;
 use emulated_board::processor::blocks::Blocks;
 use emulated_board::time::Time;
 use images::{Board, LOOK};
@@ -121,5 +122,28 @@ fn a_core_that_loops_stops_when_it_is_to() -> Result<(), String> {
     board.processor.jump(emulated_board::RAM);
     board.go_on(Time::microseconds(500))?;
     assert!(board.processor.now() < Time::microseconds(501), "{:?}", board.processor.now());
+    Ok(())
+}
+
+#[test]
+fn a_reset_ends_the_time_with_interrupts_off() -> Result<(), String> {
+    /// `CPSID i` and `CPSIE i`, each with a branch to itself, and where they are.
+    const CODE: [(u32, [u8; 4]); 2] = [
+        (emulated_board::RAM, [0x72, 0xB6, 0xFE, 0xE7]),
+        (emulated_board::RAM + 64, [0x62, 0xB6, 0xFE, 0xE7]),
+    ];
+    for is_reset in [false, true] {
+        let mut board = Board::new()?;
+        for (address, code) in CODE {
+            board.processor.poke(address, &code);
+            board.processor.jump(address);
+            board.go_on(LOOK)?;
+            if is_reset {
+                board.processor.reset(ResetReason::Software);
+            }
+        }
+        let (longest, _) = board.processor.counts().masked;
+        assert_eq!(longest < Time::microseconds(50), is_reset, "{longest:?}");
+    }
     Ok(())
 }
