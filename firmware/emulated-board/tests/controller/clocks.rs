@@ -255,3 +255,18 @@ fn the_watchdog_resets_after_its_time_and_the_reason_is_kept() {
     bench.pass(Time::seconds(20.0));
     assert_eq!(bench.controller.reset, None, "a reset stops the watchdog");
 }
+
+#[test]
+fn the_key_of_reloading_alone_feeds_the_watchdog() {
+    // 36.4.1: 0xAAAA reloads, 0x5555 opens the registers, 0xCCCC starts, which it does once; any other means nothing.
+    for (key, feeds) in [(0xAAAA, true), (0x5555, false), (0xCCCC, false), (0, false)] {
+        let mut bench = Bench::clocked();
+        bench.write(WATCHDOG, 0xCCCC);
+        // 4096 periods of 32 kHz / 4.
+        bench.pass(Time::microseconds(300_000));
+        bench.write(WATCHDOG, key);
+        bench.pass(Time::microseconds(300_000));
+        let reset = (!feeds).then_some(ResetReason::Watchdog);
+        assert_eq!(bench.controller.reset, reset, "{key:#x}");
+    }
+}

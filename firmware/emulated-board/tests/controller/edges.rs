@@ -65,11 +65,14 @@ fn a_line_that_is_masked_keeps_its_flag_and_interrupts_when_it_is_unmasked() {
 fn an_edge_of_another_direction_or_port_or_at_an_analogue_pin_is_none() {
     let mut bench = listening();
     edge(&mut bench, Pin::named(b"PD14"), true);
-    edge(&mut bench, Pin::named(b"PC14"), false);
-    assert_eq!(bench.read(EXTI + 0x14), 0);
+    assert_eq!(bench.read(EXTI + 0x14), 0, "it rises");
+    let other = Pin::named(b"PC14");
+    bench.set_mode(other, 0);
+    edge(&mut bench, other, false);
+    assert_eq!(bench.read(EXTI + 0x14), 0, "of another port");
     bench.set_mode(Pin::named(b"PD14"), 3);
     edge(&mut bench, Pin::named(b"PD14"), false);
-    assert_eq!(bench.read(EXTI + 0x14), 0);
+    assert_eq!(bench.read(EXTI + 0x14), 0, "analogue");
 }
 
 #[test]

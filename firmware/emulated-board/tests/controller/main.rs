@@ -2,6 +2,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 mod bus;
+mod carrier;
 mod clocks;
 mod core;
 mod edges;

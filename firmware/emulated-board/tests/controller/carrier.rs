@@ -1,0 +1,69 @@
+//! The wires of a board to the chips of its carrier.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use embassy_time::Instant;
+use emulated_board::time::Time;
+use emulated_board::wiring::board::{Board, Carrier, ONE_LINE, STAGE};
+use emulated_board::wiring::{Pin, Wiring};
+use hal_mock::chip::{BusLimits, Exchange, ReadyLine, Rig, Select, Transaction};
+
+/// A carrier whose chips do nothing: how often, and to what, its motor drivers were switched.
+#[derive(Default)]
+struct Quiet(Vec<bool>);
+
+impl Rig for Quiet {
+    fn transact(&mut self, _: Select, _: &Transaction, _: &mut [u8]) {}
+
+    fn select(&mut self, _: Select, _: Instant) {}
+
+    fn exchange(&mut self, _: Select, _: &Exchange) -> u8 {
+        0xFF
+    }
+
+    fn deselect(&mut self, _: Select, _: Instant, _: Instant, _: bool) {}
+
+    fn limits(&mut self, _: Select) -> BusLimits {
+        BusLimits::default()
+    }
+
+    fn ready_line(&mut self, _: Select, _: Instant) -> ReadyLine {
+        ReadyLine::default()
+    }
+
+    fn power_cycle(&mut self, _: Select, _: Instant) {}
+}
+
+impl Carrier for Quiet {
+    fn violations(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn lost(&self) -> u64 {
+        0
+    }
+
+    fn enable_motors(&mut self, is_enabled: bool) {
+        self.0.push(is_enabled);
+    }
+}
+
+/// A board with such a carrier, which has the wires of a stage.
+fn board() -> (Board, Rc<RefCell<Quiet>>) {
+    let carrier = Rc::new(RefCell::new(Quiet::default()));
+    (Board::new(carrier.clone(), (STAGE, ONE_LINE), None), carrier)
+}
+
+#[test]
+fn motors_run_only_while_their_enable_pin_is_driven_low() {
+    // DRV_ENN, which a resistor pulls up.
+    let enable = Pin::named(b"PD2");
+    for level in [None, Some(true)] {
+        let (mut board, carrier) = board();
+        for driven in [level, Some(false), level, level] {
+            board.drive(enable, driven, Time::ZERO);
+        }
+        assert_eq!(carrier.borrow().0, [false, true, false], "{level:?}");
+    }
+}
