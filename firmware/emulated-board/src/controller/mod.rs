@@ -187,10 +187,10 @@ impl Controller {
         self.hertz
     }
 
-    /// The other side of the serial port sends bytes from now on, one after the other.
+    /// The other side of the serial port sends bytes from now on, one after the other. One that comes while the port does
+    /// not receive is lost.
     pub fn hear(&mut self, bytes: &[u8], now: Time) {
-        self.usart.offer(bytes);
-        self.usart.begin(now, self.hertz);
+        self.usart.offer(bytes, self.wiring.baud(), now);
     }
 
     /// When something next happens of itself.
@@ -227,7 +227,9 @@ impl Controller {
                 self.spi[bus].receive(self.wiring.finish(bus));
             }
         }
-        self.usart.advance(at);
+        if self.usart.advance(at) {
+            self.wiring.frame(self.usart.baud(self.hertz));
+        }
         if self.i2c.due() <= at {
             self.i2c.advance(at, self.hertz, &mut *self.wiring);
         }
@@ -259,7 +261,9 @@ impl Controller {
                 self.wiring.begin(bus, byte, spi.clock(self.hertz), now);
             }
         }
-        self.usart.begin(now, self.hertz);
+        if self.usart.begin(now, self.hertz) {
+            self.wiring.frame(self.usart.baud(self.hertz));
+        }
         if self.i2c.due() == Time::NEVER {
             self.i2c.advance(now, self.hertz, &mut *self.wiring);
         }

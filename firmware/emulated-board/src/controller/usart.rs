@@ -42,8 +42,10 @@ pub struct Usart {
     shifting: Option<(u8, Time)>,
     /// The byte that was received.
     received: Option<u8>,
-    /// Bytes that the other side sends, and when the frame of the first ends.
-    incoming: (VecDeque<u8>, Option<Time>),
+    /// Bytes that the other side sends, each with when its frame begins and ends.
+    incoming: VecDeque<(u8, [Time; 2])>,
+    /// Since when it receives, where it does.
+    receives_since: Option<Time>,
     /// Bytes that were sent.
     pub sent: Vec<u8>,
     /// Bytes of the other side that were lost, because the one before was not read.
@@ -56,75 +58,89 @@ impl Usart {
         Self { flags: COMPLETE, ..Self::default() }
     }
 
-    /// A reset; what was sent is not the port's any more.
+    /// A reset; what was sent is not the port's any more, and the other side goes on to send.
     pub fn reset(&mut self) {
         let (sent, incoming) = (std::mem::take(&mut self.sent), std::mem::take(&mut self.incoming));
-        *self = Self { sent, incoming: (incoming.0, None), overruns: self.overruns, ..Self::new() };
+        *self = Self { sent, incoming, overruns: self.overruns, ..Self::new() };
     }
 
-    /// Time of a frame, by the clock of the peripheral, Hz.
-    fn frame(&self, hertz: u64) -> Time {
-        Time::periods(FRAME * u64::from(self.divider.max(16)), hertz)
+    /// Periods of its clock for a bit.
+    fn bit(&self) -> u64 {
+        self.divider.max(16).into()
     }
 
-    /// The other side sends bytes.
-    pub fn offer(&mut self, bytes: &[u8]) {
-        self.incoming.0.extend(bytes);
+    /// Its rate, baud, by the clock of the peripheral, Hz.
+    pub fn baud(&self, hertz: u64) -> u32 {
+        (hertz / self.bit()) as u32
     }
 
-    /// Begins frames that wait.
-    pub fn begin(&mut self, now: Time, hertz: u64) {
-        let is_on = |bit| self.control[0] & (ENABLED | bit) == ENABLED | bit;
-        let (sends, receives) = (is_on(SENDS), is_on(RECEIVES));
-        let end = now + self.frame(hertz);
-        if sends
-            && self.shifting.is_none()
-            && let Some(byte) = self.waiting.take()
-        {
-            self.shifting = Some((byte, end));
+    /// Whether it is enabled and a bit of `USART_CR1` is set.
+    const fn is_on(&self, bit: u32) -> bool {
+        self.control[0] & (ENABLED | bit) == ENABLED | bit
+    }
+
+    /// The other side sends bytes at its rate, baud, one after the other, from now on or after those before them.
+    pub fn offer(&mut self, bytes: &[u8], baud: u32, now: Time) {
+        let frame = Time::periods(FRAME, baud.into());
+        for byte in bytes {
+            let begin = self.incoming.back().map_or(now, |(_, [_, end])| *end);
+            self.incoming.push_back((*byte, [begin, begin + frame]));
         }
-        let (bytes, next) = &mut self.incoming;
-        if receives && !bytes.is_empty() {
-            next.get_or_insert(end);
+    }
+
+    /// Begins the frame that waits to be sent, where it can; whether one begins.
+    pub fn begin(&mut self, now: Time, hertz: u64) -> bool {
+        self.receives_since =
+            if self.is_on(RECEIVES) { self.receives_since.or(Some(now)) } else { None };
+        if !self.is_on(SENDS) || self.shifting.is_some() {
+            return false;
         }
+        let end = now + Time::periods(FRAME * self.bit(), hertz);
+        self.shifting = self.waiting.take().map(|byte| (byte, end));
+        self.shifting.is_some()
+    }
+
+    /// Whether it receives a frame that began then: one that it has not heard from its start is lost.
+    fn hears(&self, begin: Time) -> bool {
+        self.receives_since.is_some_and(|since| since <= begin)
     }
 
     /// Whether frames are on the wires that it sends, and that it receives.
-    pub const fn uses(&self) -> [bool; 2] {
-        [self.shifting.is_some(), self.incoming.1.is_some()]
+    pub fn uses(&self) -> [bool; 2] {
+        let receives = self.incoming.front().is_some_and(|(_, [begin, _])| self.hears(*begin));
+        [self.shifting.is_some(), receives]
     }
 
     /// When a frame ends.
     pub fn due(&self) -> Time {
         let sending = self.shifting.map_or(Time::NEVER, |(_, end)| end);
-        sending.min(self.incoming.1.unwrap_or(Time::NEVER))
+        self.incoming.front().map_or(sending, |(_, [_, end])| sending.min(*end))
     }
 
-    /// Ends frames that end until now.
-    pub fn advance(&mut self, now: Time) {
+    /// Ends frames that end until now; whether one was received.
+    pub fn advance(&mut self, now: Time) -> bool {
         if let Some((byte, _)) = self.shifting.take_if(|(_, end)| *end <= now) {
             self.sent.push(byte);
             if self.waiting.is_none() {
                 self.flags |= COMPLETE;
             }
         }
-        if self.incoming.1.take_if(|end| *end <= now).is_some()
-            && let Some(byte) = self.incoming.0.pop_front()
-        {
-            if self.received.is_some() {
-                self.flags |= OVERRUN;
-                self.overruns += 1;
-            } else {
-                self.received = Some(byte);
-            }
+        let ended = self.incoming.pop_front_if(|(_, [_, end])| *end <= now);
+        let Some((byte, _)) = ended.filter(|(_, [begin, _])| self.hears(*begin)) else {
+            return false;
+        };
+        if self.received.is_some() {
+            self.flags |= OVERRUN;
+            self.overruns += 1;
+        } else {
+            self.received = Some(byte);
         }
+        true
     }
 
     /// Whether it asks for a byte to send by direct memory access.
     pub fn wants_byte(&self) -> bool {
-        self.control[2] & 0x80 != 0
-            && self.control[0] & (ENABLED | SENDS) == ENABLED | SENDS
-            && self.waiting.is_none()
+        self.control[2] & 0x80 != 0 && self.is_on(SENDS) && self.waiting.is_none()
     }
 
     /// Whether it has a byte for the direct memory access.

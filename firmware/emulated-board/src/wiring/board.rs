@@ -58,6 +58,11 @@ pub const SPIN: Selects = &[
 ];
 /// The pin that enables the motor drivers, active low.
 const MOTORS: Pin = Pin::named(b"PD2");
+/// Rate of the virtual COM port at the other side of the link, baud, as the README states it.
+const BAUD: u32 = 115_200;
+/// By how much of its rate that of a frame of ten bits may differ, %: a bit is read in its middle, and the last one by the
+/// clock that its start has set (RM0351, 40.5.5).
+const TOLERANCE: u32 = 3;
 /// The data-ready line of a single converter.
 pub const ONE_LINE: Lines = &[(Pin::named(b"PD14"), Select::Gyro)];
 /// Data-ready lines in a vehicle.
@@ -176,6 +181,8 @@ pub struct Board {
     motors: bool,
     /// When the latest byte on a serial bus began.
     begun: Time,
+    /// The first rate of a frame on the link that its other side does not understand, baud.
+    other_rate: Option<u32>,
 }
 
 impl Board {
@@ -195,7 +202,8 @@ impl Board {
         let buses = [SpiWires::new(), SpiWires::new()];
         let lines = lines.iter().map(line).collect();
         let base = (base, I2cWires::new());
-        Self { carrier, buses, selects, lines, base, motors: true, begun: Time::ZERO }
+        let (motors, begun, other_rate) = (true, Time::ZERO, None);
+        Self { carrier, buses, selects, lines, base, motors, begun, other_rate }
     }
 
     /// Looks when the data-ready lines next fall.
@@ -295,13 +303,26 @@ impl Wiring for Board {
         answer
     }
 
+    fn baud(&self) -> u32 {
+        BAUD
+    }
+
+    fn frame(&mut self, baud: u32) {
+        if baud.abs_diff(BAUD) > BAUD / 100 * TOLERANCE {
+            self.other_rate.get_or_insert(baud);
+        }
+    }
+
     fn faults(&self) -> Vec<String> {
         let spi =
             self.buses.iter().flat_map(|bus| bus.faults().first.iter().map(ToString::to_string));
         let (base, wires) = &self.base;
         let of_base = base.iter().flat_map(|base| &I2cChip::<Base>::violations(&base.chip).first);
         let of_base = of_base.map(|violation| format!("base: {violation}"));
-        spi.chain(wires.faults().first.iter().map(ToString::to_string)).chain(of_base).collect()
+        let buses = spi.chain(wires.faults().first.iter().map(ToString::to_string));
+        let link =
+            self.other_rate.map(|baud| format!("the link: {baud} baud, where {BAUD} are meant"));
+        buses.chain(of_base).chain(link).collect()
     }
 
     fn due(&self) -> Time {

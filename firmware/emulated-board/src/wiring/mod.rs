@@ -69,7 +69,13 @@ pub trait Wiring: I2cBus {
     /// The byte on a serial bus has ended: what came back.
     fn finish(&mut self, bus: usize) -> u8;
 
-    /// Rules of the buses that were broken, as sentences.
+    /// The rate of the other side of the serial port, baud.
+    fn baud(&self) -> u32;
+
+    /// A frame begins to be sent, or was received, on the serial port at this rate of the microcontroller, baud.
+    fn frame(&mut self, baud: u32);
+
+    /// Rules of the wires that were broken, as sentences.
     fn faults(&self) -> Vec<String>;
 
     /// When a wire next changes of itself.

@@ -9,6 +9,11 @@ use emulated_board::wiring::board::{Board, Carrier, ONE_LINE, STAGE};
 use emulated_board::wiring::{Pin, Wiring};
 use hal_mock::chip::{BusLimits, Exchange, ReadyLine, Rig, Select, Transaction};
 
+use super::Bench;
+
+/// The serial port USART1.
+const PORT: u32 = 0x4001_3800;
+
 /// A carrier whose chips do nothing: how often, and to what, its motor drivers were switched.
 #[derive(Default)]
 struct Quiet(Vec<bool>);
@@ -65,5 +70,31 @@ fn motors_run_only_while_their_enable_pin_is_driven_low() {
             board.drive(enable, driven, Time::ZERO);
         }
         assert_eq!(carrier.borrow().0, [false, true, false], "{level:?}");
+    }
+}
+
+#[test]
+fn a_link_at_another_rate_than_that_of_the_virtual_com_port_is_told_once() {
+    // 4 MHz / 35 and / 34 are 0.8 % below and 2.1 % above 115 200 baud, / 33 and / 36 5.2 % above and 3.5 % below; the last
+    // is 9600 baud.
+    for (divider, told) in [
+        (35, None),
+        (34, None),
+        (33, Some("the link: 121212 baud, where 115200 are meant")),
+        (36, Some("the link: 111111 baud, where 115200 are meant")),
+        (417, Some("the link: 9592 baud, where 115200 are meant")),
+    ] {
+        let mut bench = Bench::wired(board().0);
+        bench.connect_all();
+        bench.write(PORT + 0x0C, divider);
+        bench.write(PORT, 0xD);
+        for _ in 0..2 {
+            bench.write(PORT + 0x28, b'A'.into());
+            bench.pass(Time::microseconds(2000));
+        }
+        // Another one that is wrong is not told beside it.
+        bench.write(PORT + 0x0C, if told.is_some() { 400 } else { divider });
+        bench.write(PORT + 0x28, b'A'.into());
+        assert_eq!(bench.controller.wiring.faults(), told.as_slice(), "4 MHz / {divider}");
     }
 }

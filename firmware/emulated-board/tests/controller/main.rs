@@ -63,7 +63,8 @@ impl Memory for Ram {
     }
 }
 
-/// Wires on which each byte comes back inverted, and on which a device answers at address 0x6A. All others are high.
+/// Wires on which each byte comes back inverted, and on which a device answers at address 0x6A. The other side of the serial
+/// port sends 10 000 baud. All others are high.
 #[derive(Default)]
 struct Wires {
     /// Bytes that were begun: bus, byte, clock and time.
@@ -74,6 +75,8 @@ struct Wires {
     driven: Vec<(Pin, Option<bool>)>,
     /// Wires that are low.
     low: Vec<Pin>,
+    /// Rates of the frames on the serial port, baud.
+    rates: Vec<u32>,
     /// The next edge of a wire: when, at which pin, whether it rises.
     edge: Option<(Time, Pin, bool)>,
 }
@@ -128,6 +131,14 @@ impl Wiring for Shared {
         latest.map_or(0xFF, |(_, byte, ..)| !byte)
     }
 
+    fn baud(&self) -> u32 {
+        10_000
+    }
+
+    fn frame(&mut self, baud: u32) {
+        self.0.borrow_mut().rates.push(baud);
+    }
+
     fn faults(&self) -> Vec<String> {
         Vec::new()
     }
@@ -159,24 +170,40 @@ impl Bench {
     /// A controller at 4 MHz with all peripherals clocked, and connected to the wires.
     fn new() -> Self {
         let mut bench = Self::clocked();
-        for (_, pin, function) in SIGNALS {
-            bench.connect(Pin::named(pin), function);
-        }
-        // The wires of I2C2 are pulled down by the devices, too: open drains.
-        bench.write(GPIO + 0x400 + 4, 3 << 10);
+        bench.connect_all();
         bench
     }
 
     /// A controller after the supply came up, at 4 MHz, with all peripherals clocked.
     fn clocked() -> Self {
         let wires = Shared::default();
+        Self { wires: wires.clone(), ..Self::wired(wires) }
+    }
+
+    /// As [`Self::clocked`], with other wires.
+    fn wired(wiring: impl Wiring + 'static) -> Self {
         let oscillators = Oscillators { has_crystal: true, msi_error: 0.0 };
-        let controller = Controller::new(oscillators, 1, Box::new(wires.clone()));
-        let mut bench = Self { controller, ram: Ram(vec![0; 4096]), wires, now: Time::ZERO };
-        for offset in [0x48, 0x4C, 0x58, 0x60] {
-            bench.write(RCC + offset, 0xFFFF_FFFF);
-        }
+        let controller = Controller::new(oscillators, 1, Box::new(wiring));
+        let (ram, wires) = (Ram(vec![0; 4096]), Shared::default());
+        let mut bench = Self { controller, ram, wires, now: Time::ZERO };
+        bench.clock_all();
         bench
+    }
+
+    /// Gives all peripherals their clock.
+    fn clock_all(&mut self) {
+        for offset in [0x48, 0x4C, 0x58, 0x60] {
+            self.write(RCC + offset, 0xFFFF_FFFF);
+        }
+    }
+
+    /// Connects all peripherals to the wires.
+    fn connect_all(&mut self) {
+        for (_, pin, function) in SIGNALS {
+            self.connect(Pin::named(pin), function);
+        }
+        // The wires of I2C2 are pulled down by the devices, too: open drains.
+        self.write(GPIO + 0x400 + 4, 3 << 10);
     }
 
     /// Gives a pin to an alternate function.

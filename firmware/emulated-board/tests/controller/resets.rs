@@ -84,13 +84,6 @@ fn registers() -> Vec<Register> {
     all
 }
 
-/// Gives all peripherals their clock again.
-fn clock(bench: &mut Bench) {
-    for offset in [0x48, 0x4C, 0x58, 0x60] {
-        bench.write(RCC + offset, 0xFFFF_FFFF);
-    }
-}
-
 #[test]
 fn every_reset_brings_registers_back_to_what_the_manual_has_for_it() {
     for (reason, _) in REASONS {
@@ -100,7 +93,7 @@ fn every_reset_brings_registers_back_to_what_the_manual_has_for_it() {
             assert_ne!(bench.read(address), after, "{address:#x} is not changed");
         }
         bench.controller.restart(reason, bench.now);
-        clock(&mut bench);
+        bench.clock_all();
         for (address, _, after) in registers() {
             assert_eq!(bench.read(address), after, "{address:#x} after {reason:?}");
         }
@@ -200,7 +193,7 @@ fn every_reset_ends_what_was_under_way() {
             begin(&mut bench);
             bench.controller.restart(reason, bench.now);
             assert_eq!(bench.controller.due(bench.now), Time::NEVER, "{what} after {reason:?}");
-            clock(&mut bench);
+            bench.clock_all();
             bench.pass(span);
             let active: Vec<usize> = (0..82).filter(|number| bench.interrupts(*number)).collect();
             assert!(active.is_empty(), "{what} after {reason:?}: {active:?}");

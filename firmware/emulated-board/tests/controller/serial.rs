@@ -1,21 +1,32 @@
 //! The serial port, both ways.
 
-use emulated_board::controller::Refused;
+use emulated_board::controller::{Refused, ResetReason};
 use emulated_board::time::Time;
 
 use super::Bench;
 
 /// The serial port USART1.
 const PORT: u32 = 0x4001_3800;
-/// Time of a frame at 4 MHz and a divider of 400: ten bits of 100 µs.
+/// Time of a frame at 4 MHz and a divider of 400, and of one of the other side: ten bits of 100 µs.
 const FRAME: Time = Time::microseconds(1000);
 
 /// A port that sends and receives.
 fn port() -> Bench {
     let mut bench = Bench::new();
+    set_up(&mut bench);
+    bench
+}
+
+/// Has the port send and receive.
+fn set_up(bench: &mut Bench) {
     bench.write(PORT + 0x0C, 400);
     bench.write(PORT, 0xD);
-    bench
+}
+
+/// The byte that was received, where there is one.
+fn received(bench: &mut Bench) -> Option<u8> {
+    let has_byte = bench.read(PORT + 0x1C) & 0x20 != 0;
+    has_byte.then(|| bench.read(PORT + 0x24) as u8)
 }
 
 #[test]
@@ -59,6 +70,86 @@ fn a_byte_that_is_not_read_in_time_costs_the_next_one() {
     assert_eq!(bench.read(PORT + 0x1C) & 8, 8, "the overrun is told");
     assert_eq!(bench.read(PORT + 0x24), u32::from(b'x'));
     assert_eq!(bench.controller.usart.overruns, 2);
+}
+
+#[test]
+fn bytes_that_come_while_the_port_does_not_receive_are_lost() {
+    // It is off; it only sends; it is to do both, and is off.
+    for control in [0, 0x9, 0xC] {
+        let mut bench = port();
+        bench.write(PORT, control);
+        bench.controller.hear(b"xy", bench.now);
+        bench.pass(FRAME.times(2));
+        bench.write(PORT, 0xD);
+        bench.pass(FRAME.times(5));
+        assert_eq!(received(&mut bench), None, "{control:#x}");
+        bench.controller.hear(b"z", bench.now);
+        bench.pass(FRAME);
+        assert_eq!(received(&mut bench), Some(b'z'), "{control:#x}");
+        assert_eq!(bench.controller.usart.overruns, 0);
+    }
+}
+
+#[test]
+fn a_byte_within_whose_frame_the_receiver_is_switched_is_lost_and_the_next_one_comes() {
+    let quarter = Time::microseconds(250);
+    for before in [0xD, 0x9] {
+        let mut bench = port();
+        bench.write(PORT, before);
+        bench.controller.hear(b"xy", bench.now);
+        bench.pass(quarter);
+        bench.write(PORT, 0x9);
+        bench.pass(quarter);
+        bench.write(PORT, 0xD);
+        bench.pass(quarter.times(2));
+        assert_eq!(received(&mut bench), None);
+        bench.pass(FRAME);
+        assert_eq!(received(&mut bench), Some(b'y'));
+    }
+}
+
+#[test]
+fn bytes_that_are_on_their_way_over_a_reset_are_lost() {
+    let mut bench = port();
+    bench.controller.hear(b"wxyz", bench.now);
+    bench.pass(FRAME + Time::microseconds(100));
+    bench.controller.restart(ResetReason::Software, bench.now);
+    bench.pass(FRAME);
+    bench.clock_all();
+    bench.connect_all();
+    set_up(&mut bench);
+    assert_eq!(received(&mut bench), None, "what was received before");
+    bench.pass(FRAME);
+    assert_eq!(received(&mut bench), None, "what began before it receives again");
+    bench.pass(FRAME);
+    assert_eq!(received(&mut bench), Some(b'z'));
+}
+
+#[test]
+fn bytes_come_at_the_rate_of_the_other_side() {
+    let mut bench = port();
+    bench.write(PORT + 0x0C, 4000);
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(FRAME - Time::microseconds(1));
+    assert_eq!(received(&mut bench), None);
+    bench.pass(Time::microseconds(1));
+    assert_eq!(received(&mut bench), Some(b'x'));
+}
+
+#[test]
+fn the_wires_hear_of_the_rate_of_each_frame_both_ways() {
+    let mut bench = port();
+    bench.write(PORT + 0x28, b'A'.into());
+    assert_eq!(bench.wires.0.borrow().rates, [10_000], "it begins to be sent");
+    bench.pass(FRAME);
+    bench.write(PORT + 0x0C, 800);
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(FRAME);
+    assert_eq!(bench.wires.0.borrow().rates, [10_000, 5000], "it was received");
+    bench.write(PORT, 0x9);
+    bench.controller.hear(b"y", bench.now);
+    bench.pass(FRAME);
+    assert_eq!(bench.wires.0.borrow().rates.len(), 2, "it was lost");
 }
 
 #[test]

@@ -116,6 +116,12 @@ impl Wiring for Nothing {
         0xFF
     }
 
+    fn baud(&self) -> u32 {
+        115_200
+    }
+
+    fn frame(&mut self, _: u32) {}
+
     fn faults(&self) -> Vec<String> {
         Vec::new()
     }
