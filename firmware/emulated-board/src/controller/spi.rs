@@ -125,11 +125,14 @@ impl Spi {
         }
     }
 
+    /// Whether there is room for bytes to send: more than half full, the buffer counts as full (42.4.9).
+    fn has_room(&self) -> bool {
+        self.sending.len() <= DEPTH / 2
+    }
+
     /// Whether it asks for a byte to send by direct memory access.
     pub fn wants_byte(&self) -> bool {
-        self.control[1] & 2 != 0
-            && self.control[0] & ENABLED != 0
-            && self.sending.len() <= DEPTH / 2
+        self.control[1] & 2 != 0 && self.is_on() && self.has_room()
     }
 
     /// Whether it has a byte for the direct memory access.
@@ -144,7 +147,7 @@ impl Spi {
         let is_busy = self.shifting.is_some() || (self.is_on() && !self.sending.is_empty());
         let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
         flag(self.received.len() >= threshold, RECEIVED)
-            | flag(self.sending.len() <= DEPTH / 2, EMPTY)
+            | flag(self.has_room(), EMPTY)
             | flag(self.overrun != Overrun::None, OVERRUN)
             | flag(is_busy, 1 << 7)
             | level(&self.received) << 9
@@ -198,9 +201,11 @@ impl Spi {
             // Its flags are not cleared by writing.
             0x08 => {}
             0x0C => {
+                if !self.has_room() {
+                    return Err(Refused::NotModelled("a byte to be sent while there is no room"));
+                }
                 let bytes = value.to_le_bytes();
                 self.sending.extend(&bytes[..size.min(2) as usize]);
-                self.sending.truncate(DEPTH);
             }
             _ => return Err(Refused::Unknown),
         }

@@ -87,6 +87,28 @@ fn all_that_comes_after_an_overrun_is_lost_until_it_is_cleared() {
     assert_eq!(bench.try_read(SPI[0] + 0x0C, 1), Ok(0xF7));
 }
 
+/// What is told of a byte that is sent while the buffer counts as full.
+const NO_ROOM: Refused = Refused::NotModelled("a byte to be sent while there is no room");
+
+#[test]
+fn a_byte_to_be_sent_is_refused_while_the_status_has_no_room_for_it() {
+    // 42.4.9: three bytes, or four where the last two were written together, fill the buffer.
+    for sizes in [&[1, 1, 1][..], &[1, 2], &[2, 2], &[1, 1, 2]] {
+        let mut bench = Bench::new();
+        bench.write(SPI[0] + 4, 0x1700);
+        for size in sizes {
+            assert_eq!(bench.read(SPI[0] + 8) & 2, 2, "{sizes:?}");
+            assert_eq!(bench.try_write(SPI[0] + 0x0C, 0x2211, *size), Ok(()), "{sizes:?}");
+        }
+        assert_eq!(bench.read(SPI[0] + 8) & 2, 0, "{sizes:?}");
+        assert_eq!(bench.try_write(SPI[0] + 0x0C, 0x33, 1), Err(NO_ROOM), "{sizes:?}");
+        bench.write(SPI[0], 0x345);
+        bench.pass(Time::microseconds(30));
+        let sent = bench.wires.0.borrow().bytes.len();
+        assert_eq!(sent, sizes.iter().sum::<u32>() as usize, "{sizes:?}: all of them and no other");
+    }
+}
+
 #[test]
 fn a_serial_bus_interrupts_by_room_by_a_byte_and_by_an_overrun() {
     for (bus, interrupt) in [(0, 35), (1, 36)] {
@@ -175,17 +197,23 @@ fn of_two_channels_that_are_due_the_one_with_the_higher_priority_goes_first() {
     }
 }
 
-#[test]
-fn direct_memory_access_to_a_register_that_holds_no_data_is_refused() {
+/// What is told of channel 3 of DMA1, which listens to SPI1, where it writes so many bytes to this register.
+fn refusal(register: u32, count: u32) -> Option<Refused> {
     let mut bench = Bench::new();
     bench.write(DMA + 0xA8, 1 << 8);
-    arm(&mut bench, DMA, 2, (MEMORY, 1), 0x13);
-    bench.write(DMA + 8 + 40, 0x12);
-    bench.write(DMA + 8 + 40 + 8, super::GPIO + 0x18);
-    bench.write(DMA + 8 + 40, 0x13);
-    bench.write(SPI[0] + 4, 0x1702);
-    let refused = bench.try_write(SPI[0], 0x345, 4);
-    assert!(matches!(refused, Err(Refused::NotModelled(_))), "{refused:?}");
+    for (offset, value) in [(4, count), (8, register), (12, MEMORY), (0, 0x13)] {
+        bench.write(DMA + 8 + 40 + offset, value);
+    }
+    bench.write(SPI[0], 0x345);
+    bench.try_write(SPI[0] + 4, 0x1702, 4).err()
+}
+
+#[test]
+fn direct_memory_access_to_a_register_that_holds_no_data_is_refused() {
+    let expected = "direct memory access to another register than one of data";
+    for register in [super::GPIO + 0x18, SPI[0] + 8, 0x5000_0000] {
+        assert_eq!(refusal(register, 1), Some(Refused::NotModelled(expected)), "{register:#x}");
+    }
 }
 
 #[test]
