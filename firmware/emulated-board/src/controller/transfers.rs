@@ -6,7 +6,7 @@ use super::dma::Item;
 use super::map::{Peripheral, REQUESTS, Request, peripheral};
 use super::{Controller, Memory, Refused};
 
-/// What a channel meets whose address in the peripheral is that of another register.
+/// Why a channel is refused whose address in the peripheral is that of another register.
 const NO_DATA_REGISTER: Refused =
     Refused::NotModelled("direct memory access to another register than one of data");
 
@@ -24,10 +24,12 @@ impl Controller {
             (Reverse(*controller), self.dma[*controller].priority(*channel), Reverse(*channel))
         });
         let Some((controller, channel, ..)) = first else { return false };
-        if let Some(item) = self.dma[controller].take(channel)
-            && !self.carry(memory, item)
-        {
-            self.dma[controller].fail(channel);
+        if let Some(item) = self.dma[controller].take(channel) {
+            match self.carry(memory, item) {
+                Ok(true) => {}
+                Ok(false) => self.dma[controller].fail(channel),
+                Err(refused) => self.refused = Some(refused),
+            }
         }
         true
     }
@@ -45,46 +47,42 @@ impl Controller {
     }
 
     /// Carries an item between memory and a register; whether there is memory.
-    fn carry(&mut self, memory: &mut dyn Memory, item: Item) -> bool {
+    fn carry(&mut self, memory: &mut dyn Memory, item: Item) -> Result<bool, Refused> {
         let mut bytes = [0; 4];
-        let held = &mut bytes[..item.memory_size as usize];
         if item.is_to_peripheral {
-            let is_there = memory.read(item.memory, held);
-            if is_there && self.put(item, u32::from_le_bytes(bytes)).is_none() {
-                self.refused = Some(NO_DATA_REGISTER);
+            let is_there = memory.read(item.memory, &mut bytes[..item.memory_size as usize]);
+            if is_there {
+                self.put(item, u32::from_le_bytes(bytes))?;
             }
-            return is_there;
+            return Ok(is_there);
         }
-        let Some(value) = self.get(item) else {
-            self.refused = Some(NO_DATA_REGISTER);
-            return true;
-        };
-        memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize])
+        let value = self.get(item)?;
+        Ok(memory.write(item.memory, &value.to_le_bytes()[..item.memory_size as usize]))
     }
 
-    /// Writes an item into the register of a peripheral that sends; none where it is no such register.
-    fn put(&mut self, item: Item, value: u32) -> Option<()> {
+    /// Writes an item into the register of a peripheral that sends.
+    fn put(&mut self, item: Item, value: u32) -> Result<(), Refused> {
         let offset = item.peripheral & 0x3FF;
-        match (peripheral(item.peripheral)?.0, offset) {
+        let (peripheral, _) = peripheral(item.peripheral).ok_or(NO_DATA_REGISTER)?;
+        match (peripheral, offset) {
             (Peripheral::Spi(bus), 0x0C) => {
                 self.spi[bus].write(offset, value, item.peripheral_size)
             }
             (Peripheral::I2c, 0x28) => self.i2c.write(offset, value),
             (Peripheral::Usart, 0x28) => self.usart.write(offset, value),
-            _ => return None,
+            _ => Err(NO_DATA_REGISTER),
         }
-        .ok()
     }
 
-    /// Reads an item from the register of a peripheral that receives; none where it is no such register.
-    fn get(&mut self, item: Item) -> Option<u32> {
+    /// Reads an item from the register of a peripheral that receives.
+    fn get(&mut self, item: Item) -> Result<u32, Refused> {
         let offset = item.peripheral & 0x3FF;
-        match (peripheral(item.peripheral)?.0, offset) {
+        let (peripheral, _) = peripheral(item.peripheral).ok_or(NO_DATA_REGISTER)?;
+        match (peripheral, offset) {
             (Peripheral::Spi(bus), 0x0C) => self.spi[bus].read(offset, item.peripheral_size),
             (Peripheral::I2c, 0x24) => self.i2c.read(offset),
             (Peripheral::Usart, 0x24) => self.usart.read(offset),
-            _ => return None,
+            _ => Err(NO_DATA_REGISTER),
         }
-        .ok()
     }
 }

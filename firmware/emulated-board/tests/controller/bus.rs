@@ -217,6 +217,13 @@ fn direct_memory_access_to_a_register_that_holds_no_data_is_refused() {
 }
 
 #[test]
+fn what_a_register_refuses_is_told_of_direct_memory_access_as_of_any_other() {
+    // SPI2 is off, and three bytes fill its buffer.
+    assert_eq!(refusal(SPI[1] + 0x0C, 3), None);
+    assert_eq!(refusal(SPI[1] + 0x0C, 4), Some(NO_ROOM));
+}
+
+#[test]
 fn what_the_two_wire_bus_does_not_do_here_is_refused() {
     // CR1 with a digital filter, and as a device; CR2 with ten bits, and a checksum; an own address; a time-out.
     let cases =
