@@ -1,6 +1,7 @@
 //! The simulated chips of a carrier on the pins of the board B-L475E-IOT01A, as its image's first page lists them.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::slice;
 
@@ -58,6 +59,8 @@ pub const SPIN: Selects = &[
 ];
 /// The pin that enables the motor drivers, active low.
 const MOTORS: Pin = Pin::named(b"PD2");
+/// The pin to which the virtual COM port sends, which drives its wire at all times.
+const LINK: Pin = Pin::named(b"PB7");
 /// Rate of the virtual COM port at the other side of the link, baud, as the README states it.
 const BAUD: u32 = 115_200;
 /// By how much of its rate that of a frame of ten bits may differ, %: a bit is read in its middle, and the last one by the
@@ -183,6 +186,8 @@ pub struct Board {
     begun: Time,
     /// The first rate of a frame on the link that its other side does not understand, baud.
     other_rate: Option<u32>,
+    /// Pins whose wires something else drives, and which the controller has driven.
+    opposed: BTreeSet<Pin>,
 }
 
 impl Board {
@@ -202,8 +207,17 @@ impl Board {
         let buses = [SpiWires::new(), SpiWires::new()];
         let lines = lines.iter().map(line).collect();
         let base = (base, I2cWires::new());
-        let (motors, begun, other_rate) = (true, Time::ZERO, None);
-        Self { carrier, buses, selects, lines, base, motors, begun, other_rate }
+        Self {
+            carrier,
+            buses,
+            selects,
+            lines,
+            base,
+            motors: true,
+            begun: Time::ZERO,
+            other_rate: None,
+            opposed: BTreeSet::new(),
+        }
     }
 
     /// Looks when the data-ready lines next fall.
@@ -211,6 +225,13 @@ impl Board {
         for line in &mut self.lines {
             line.next = self.carrier.borrow_mut().ready_line(line.select, now.instant()).next;
         }
+    }
+
+    /// What drives the wire of a pin at all times, whatever the controller does; none where nothing does.
+    fn driver(&self, pin: Pin) -> Option<String> {
+        let line = self.lines.iter().find(|line| line.pin == pin);
+        line.map(|line| format!("{:?}", line.select))
+            .or_else(|| (pin == LINK).then(|| "the virtual COM port".to_owned()))
     }
 
     /// Counts the conversions that are read from now on: the first byte to a converter lifts its line.
@@ -262,6 +283,9 @@ impl Wiring for Board {
     }
 
     fn drive(&mut self, pin: Pin, level: Option<bool>, now: Time) {
+        if level.is_some() && self.driver(pin).is_some() {
+            self.opposed.insert(pin);
+        }
         if pin == MOTORS {
             // A resistor pulls the pin up where nothing drives it.
             let is_enabled = level == Some(false);
@@ -322,7 +346,10 @@ impl Wiring for Board {
         let buses = spi.chain(wires.faults().first.iter().map(ToString::to_string));
         let link =
             self.other_rate.map(|baud| format!("the link: {baud} baud, where {BAUD} are meant"));
-        buses.chain(of_base).chain(link).collect()
+        let opposed = self.opposed.iter().filter_map(|pin| {
+            Some(format!("{pin}: the controller drives it against {}", self.driver(*pin)?))
+        });
+        buses.chain(of_base).chain(link).chain(opposed).collect()
     }
 
     fn due(&self) -> Time {

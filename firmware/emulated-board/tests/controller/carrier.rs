@@ -5,11 +5,11 @@ use std::rc::Rc;
 
 use embassy_time::Instant;
 use emulated_board::time::Time;
-use emulated_board::wiring::board::{Board, Carrier, ONE_LINE, STAGE};
+use emulated_board::wiring::board::{Board, Carrier, ONE_LINE, SPIN, SPIN_LINES, STAGE};
 use emulated_board::wiring::{Pin, Wiring};
 use hal_mock::chip::{BusLimits, Exchange, ReadyLine, Rig, Select, Transaction};
 
-use super::Bench;
+use super::{Bench, registers};
 
 /// The serial port USART1.
 const PORT: u32 = 0x4001_3800;
@@ -97,4 +97,50 @@ fn a_link_at_another_rate_than_that_of_the_virtual_com_port_is_told_once() {
         bench.write(PORT + 0x28, b'A'.into());
         assert_eq!(bench.controller.wiring.faults(), told.as_slice(), "4 MHz / {divider}");
     }
+}
+
+#[test]
+fn an_output_against_that_of_a_chip_is_told_once_with_its_pin() {
+    let outputs: [(&[u8], &str); 6] = [
+        (b"PB0", "GyroRight"),
+        (b"PB1", "GyroUp"),
+        (b"PB7", "the virtual COM port"),
+        (b"PC3", "ForceRight"),
+        (b"PC4", "ForceUp"),
+        (b"PD14", "Gyro"),
+    ];
+    for (name, chip) in outputs {
+        let pin = Pin::named(name);
+        let told = format!("{pin}: the controller drives it against {chip}");
+        // As an open drain that is high it drives nothing.
+        for (is_open_drain, is_high) in [(false, false), (false, true), (true, false), (true, true)]
+        {
+            let carrier = Rc::new(RefCell::new(Quiet::default()));
+            let mut bench = Bench::wired(Board::new(carrier, (SPIN, SPIN_LINES), None));
+            bench.write(registers(pin) + 4, u32::from(is_open_drain) << pin.number);
+            bench.write(registers(pin) + 0x14, u32::from(is_high) << pin.number);
+            for mode in [0, 2, 3] {
+                bench.set_mode(pin, mode);
+            }
+            assert!(bench.controller.wiring.faults().is_empty(), "{pin} is no output");
+            for mode in [1, 0, 1] {
+                bench.set_mode(pin, mode);
+            }
+            let expected = if is_open_drain && is_high { vec![] } else { vec![told.clone()] };
+            let faults = bench.controller.wiring.faults();
+            assert_eq!(faults, expected, "open drain: {is_open_drain}, high: {is_high}");
+        }
+    }
+}
+
+#[test]
+fn outputs_at_pins_that_no_chip_drives_are_not_told() {
+    let mut bench = Bench::wired(board().0);
+    let outputs = (0..8).flat_map(|port| (0..16).map(move |number| Pin { port, number }));
+    for pin in outputs.filter(|pin| ![Pin::named(b"PD14"), Pin::named(b"PB7")].contains(pin)) {
+        bench.set_mode(pin, 1);
+    }
+    let faults = bench.controller.wiring.faults();
+    let opposed: Vec<&String> = faults.iter().filter(|fault| fault.contains("drives")).collect();
+    assert!(opposed.is_empty(), "{opposed:?}");
 }
