@@ -2,18 +2,17 @@
 
 use std::rc::Rc;
 
+use execution::report::Report;
 use firmware::platform::Platform;
 
 use crate::controller::flash::STORE;
 use crate::controller::rcc::Oscillators;
 use crate::controller::{Controller, ResetReason};
 use crate::image::Image;
+use crate::observation::Observation;
 use crate::probe::{Line, Probe};
 use crate::processor::memory::RAM_FILL;
 use crate::processor::{Processor, Unknown};
-use execution::report::Report;
-
-use crate::observation::Observation;
 use crate::time::Time;
 use crate::world::World;
 

@@ -116,7 +116,7 @@ fn in_workspace(program: &OsStr) -> Result<Command, String> {
 fn shown(mut pipe: impl Read) -> String {
     let (mut all, mut chunk) = (Vec::new(), [0; 4096]);
     while let Ok(count @ 1..) = pipe.read(&mut chunk) {
-        // Where nobody reads it, the build goes on all the same.
+        // The build goes on even where standard error is closed.
         let _ = io::stderr().write_all(&chunk[..count]);
         all.extend_from_slice(&chunk[..count]);
     }

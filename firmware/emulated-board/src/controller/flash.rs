@@ -16,6 +16,8 @@ const CACHES_DATA: u32 = 1 << 10;
 const PROGRAM: u32 = 1;
 /// `FLASH_CR`: a page is erased.
 const ERASE_PAGE: u32 = 2;
+/// `FLASH_CR`: the page is one of the upper bank.
+const IN_UPPER: u32 = 1 << 11;
 /// `FLASH_CR`: the lower bank is erased.
 const ERASE_LOWER: u32 = 4;
 /// `FLASH_CR`: the upper bank is erased.
@@ -281,27 +283,22 @@ impl Flash {
 
     /// Erases what the control register says.
     fn erase(&mut self, now: Time) -> Result<(), Refused> {
-        let bank = |upper: bool| if upper { Bank::Upper } else { Bank::Lower };
-        let time = since_start(now);
-        let begun = match self.control & (ERASE_PAGE | ERASE_LOWER | ERASE_UPPER | PROGRAM) {
-            ERASE_PAGE => {
-                let page = (self.control >> 3 & 0xFF) as u8;
-                let bank = bank(self.control & 1 << 11 != 0);
-                self.leave_program(bank)?;
-                self.array.erase_page(bank, page, time)
-            }
-            ERASE_LOWER => {
-                self.leave_program(Bank::Lower)?;
-                self.array.erase_bank(Bank::Lower, time)
-            }
-            ERASE_UPPER => {
-                self.leave_program(Bank::Upper)?;
-                self.array.erase_bank(Bank::Upper, time)
-            }
+        let page = (self.control >> 3 & 0xFF) as u8;
+        let (bank, page) = match self.control & (ERASE_PAGE | ERASE_LOWER | ERASE_UPPER | PROGRAM) {
+            ERASE_PAGE if self.control & IN_UPPER != 0 => (Bank::Upper, Some(page)),
+            ERASE_PAGE => (Bank::Lower, Some(page)),
+            ERASE_LOWER => (Bank::Lower, None),
+            ERASE_UPPER => (Bank::Upper, None),
             _ => {
                 self.status |= SEQUENCE;
                 return Ok(());
             }
+        };
+        self.leave_program(bank)?;
+        let time = since_start(now);
+        let begun = match page {
+            Some(page) => self.array.erase_page(bank, page, time),
+            None => self.array.erase_bank(bank, time),
         };
         match begun {
             Ok(()) => {

@@ -14,23 +14,16 @@ use hal_mock::wires::I2cWires;
 
 use super::support::executed::execute_in;
 use super::support::images::path;
-use super::support::worlds::usual;
+use super::support::worlds::{ADDRESS, usual};
 
 /// A stage from its start to the measurement of its tilt; nothing is found.
-const SHORT: Order = Order {
-    carrier: Platform::Stage,
-    seed: 1,
-    cycles: 1.4,
-    afterwards: 0.0,
-    longest: 4.0,
-    has_crystal: true,
-};
-/// Address of the LSM6DSL.
-const ADDRESS: u8 = 0x6A;
+fn short() -> Order {
+    Order { longest: 4.0, ..Order::usual(Platform::Stage, 1) }
+}
 
 /// What a stage is reported to have done wrong in a world.
 fn violations(world: World) -> String {
-    execute_in(&SHORT, world).report.violations.join("\n")
+    execute_in(&short(), world).report.violations.join("\n")
 }
 
 #[test]
@@ -67,7 +60,7 @@ fn a_stack_that_reaches_the_statics_is_reported() {
     // Of 96 KB three are left.
     image.stack_end = image.stack_start - 3072;
     let world = usual(Platform::Stage);
-    let ended = execute(&Rc::new(image), &SHORT, world, |_| (), |_| Vec::new());
+    let ended = execute(&Rc::new(image), &short(), world, |_| (), |_| Vec::new());
     let found = ended.expect("it is executed").violations.join("\n");
     assert_eq!(found, "the stack reached the statics");
 }
@@ -79,7 +72,7 @@ fn end(instructions: &[u16]) -> String {
     let start = (reset & !1) as usize - emulated_board::FLASH as usize;
     let bytes: Vec<u8> = instructions.iter().flat_map(|half| half.to_le_bytes()).collect();
     image.flash[start..start + bytes.len()].copy_from_slice(&bytes);
-    let execution = Execution::new(&Rc::new(image), &SHORT, usual(Platform::Stage));
+    let execution = Execution::new(&Rc::new(image), &short(), usual(Platform::Stage));
     let ended = execution.expect("the image has a log").step();
     ended.expect_err("it does what is not modelled").to_string()
 }

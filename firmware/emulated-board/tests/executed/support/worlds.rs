@@ -19,7 +19,7 @@ use simulated::scenario::Scenario;
 use super::executed::{Executed, execute_in, once};
 
 /// Address of the LSM6DSL on the board, whose pin SA0 is low (data sheet, 6.1.1).
-const ADDRESS: u8 = 0x6A;
+pub const ADDRESS: u8 = 0x6A;
 /// An LSM6DSL of its data sheet, whose accelerometers are calibrated to 2 mg.
 const CALIBRATED: CoarseConfiguration = CoarseConfiguration {
     rate_hz: 208.0,
