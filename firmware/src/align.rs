@@ -29,7 +29,12 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     let mut request = aligner.begin(&mut listener(shared));
     loop {
         request = match request {
-            Request::Compute => aligner.compute(&mut listener(shared)),
+            Request::Compute => {
+                shared.begin_computing(aligner.taken());
+                let request = aligner.compute(&mut listener(shared));
+                shared.is_computing.set(false);
+                request
+            }
             Request::Locate => match aiding.displacement() {
                 Some(place) => give(&mut aligner, Input::Displaced(place), shared),
                 None => Request::Continue,
@@ -48,8 +53,9 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                     }
                 } else if channels.samples.is_empty() {
                     shared.catch_up();
-                    if aligner.state != State::Homing {
-                        Timer::after(REST.min(shared.period.get() * (QUEUE as u32 / 3))).await;
+                    let period = shared.period.get();
+                    if aligner.state != State::Homing && period < REST {
+                        Timer::after(REST.min(period * (QUEUE as u32 / 3))).await;
                     }
                 }
                 match &select(shared.orders.wait(), channels.samples.receive()).await {

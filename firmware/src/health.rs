@@ -7,6 +7,8 @@ use orientation::device::Device;
 pub struct Health {
     /// Samples that were acquired.
     pub samples: u32,
+    /// Samples that were passed by because the aligner computed, and needed none.
+    pub passed_by: u32,
     /// Samples that never came, by the gaps in the time of those that did.
     pub missing: u32,
     /// Samples that came at the wrong time.
@@ -35,7 +37,7 @@ impl Health {
         count(&mut self.restarts, device);
     }
 
-    /// Sum of all faults; samples that were acquired do not count.
+    /// Sum of all faults; samples that were acquired or passed by do not count.
     #[must_use]
     pub fn faults(&self) -> u32 {
         let devices = self.lost.iter().chain(&self.restarts).map(|count| u32::from(*count));

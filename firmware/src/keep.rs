@@ -11,7 +11,7 @@
 //! holds 20 beside it. Two pages of 10 000 erase cycles (STM32L475 data sheet, table 59) take 400 000
 //! items, about nine years of continuous operation.
 
-use core::cell::Cell;
+use core::convert::Infallible;
 use core::future::pending;
 
 use drivers::fault::Fault;
@@ -24,25 +24,23 @@ use orientation::units;
 
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
-use crate::shared::Shared;
+use crate::shared::{QUEUE, Saving, Shared};
 use crate::storage::HEADING;
 
-/// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
-/// kHz.
-const REST: Duration = Duration::from_millis(4);
+/// Longest time for which inertial samples wait in the queue. They are taken several at a time, because waking for
+/// each would cost more than processing it.
+const REST: Duration = Duration::from_millis(10);
 /// Time without an inertial sample after which the navigator goes by the clock, µs.
 const SILENCE: u64 = 100_000;
 /// The item that invalidates the stored heading: its checksum is wrong.
 const NOTHING: [u8; Remembered::BYTES] = [0; Remembered::BYTES];
 
 /// What an instrument that keeps its attitude is given.
-pub struct Keeping<'k, T> {
+pub struct Keeping<'k> {
     /// The estimator of the attitude, which has had no sample.
     pub keeper: &'k mut Keeper,
     /// Duration, policy at stops and stated errors of the gyros.
     pub policy: Policy,
-    /// Store of the heading over a loss of supply.
-    pub store: T,
 }
 
 /// What an instrument does with its azimuth after the alignment.
@@ -69,7 +67,7 @@ impl Keep for NotKept {
     }
 }
 
-impl<T: Store> Keep for Option<Keeping<'_, T>> {
+impl Keep for Option<Keeping<'_>> {
     fn is_held(&self) -> bool {
         self.as_ref().is_some_and(|keeping| keeping.policy.holds())
     }
@@ -82,60 +80,108 @@ impl<T: Store> Keep for Option<Keeping<'_, T>> {
     }
 }
 
-/// Keeps the attitude until its duration is over.
-async fn keep<T: Store>(keeping: &mut Keeping<'_, T>, aiding: &dyn Aiding, shared: &Shared<'_>) {
-    let Keeping { keeper, policy, store } = keeping;
-    let mut has_failed = false;
-    let loaded = load(store).await;
-    let to_save = Cell::new(None);
-    let mut navigator = Navigator::new(keeper, policy);
-    let give = |navigator: &mut Navigator, input: Input| {
-        shared.observer.navigates(&input);
-        navigator.take(&input, &mut |output| execute(output, &to_save, shared));
+/// Keeps the attitude until its duration is over, once the store has said which heading it holds.
+async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_>) {
+    let remembered = shared.remembered.wait().await;
+    let mut keeper = Navigation {
+        navigator: Navigator::new(keeping.keeper, &keeping.policy),
+        aiding,
+        shared,
+        latest: Instant::MIN,
     };
-    match loaded {
-        Ok(Some(heading)) => give(&mut navigator, Input::Remembered(heading)),
-        Ok(None) => {}
-        Err(fault) => fail(fault, &mut has_failed, shared),
+    if let Some(heading) = remembered {
+        keeper.give(Input::Remembered(heading));
     }
-    let mut latest = Instant::MIN;
-    while !navigator.is_over() {
-        select(shared.caught_up.wait(), Timer::after(REST)).await;
-        give(&mut navigator, Input::Idle(shared.is_idle()));
-        if !shared.is_behind.get() {
-            if let Some((at, azimuth)) = shared.found.try_take() {
-                give(&mut navigator, Input::Found(at, azimuth));
-            }
-            while let Ok(motion) = shared.motions.try_receive() {
-                if let Motion::Moved(sample) = motion {
-                    if navigator.wants_aiding(sample.time) {
-                        give(&mut navigator, aided(aiding));
-                    }
-                    latest = Instant::now();
-                }
-                give(&mut navigator, Input::Motion(motion));
-            }
-            give(&mut navigator, Input::Settled);
+    while !keeper.navigator.is_over() {
+        let rest = rest(shared.period.get());
+        Timer::after(rest).await;
+        shared.caught_up.reset();
+        if !shared.may_move() {
+            select(shared.caught_up.wait(), Timer::after(rest)).await;
         }
-        if latest.elapsed().as_micros() >= SILENCE {
+        keeper.give(Input::Idle(shared.is_idle()));
+        if shared.may_move() {
+            keeper.take_moves();
+        }
+        keeper.pass_time();
+        shared.is_at_rest.set(keeper.navigator.is_at_rest);
+    }
+}
+
+/// Time for which inertial samples of this period wait in the queue: at most half of its capacity.
+fn rest(period: Duration) -> Duration {
+    REST.min(period * (QUEUE as u32 / 2))
+}
+
+/// The navigator with what it is given.
+struct Navigation<'n, 'k> {
+    navigator: Navigator<'k>,
+    aiding: &'n dyn Aiding,
+    shared: &'n Shared<'n>,
+    /// Time at which the latest increment was taken.
+    latest: Instant,
+}
+
+impl Navigation<'_, '_> {
+    /// Gives the navigator an input, and executes what follows.
+    fn give(&mut self, input: Input) {
+        let shared = self.shared;
+        shared.observer.navigates(&input);
+        self.navigator.take(&input, &mut |output| execute(output, shared));
+    }
+
+    /// Gives it what is known from outside, where it wants that before an event of this time.
+    fn aid(&mut self, now: units::Instant) {
+        if self.navigator.wants_aiding(now) {
+            self.give(Input::Aided(self.aiding.velocity(), self.aiding.azimuth()));
+        }
+    }
+
+    /// Gives it all increments that are queued, and between them what an alignment has come to.
+    fn take_moves(&mut self) {
+        let shared = self.shared;
+        let computing = shared.concluding.try_take();
+        match shared.found.try_take() {
+            Some((at, azimuth)) => self.give(Input::Found(at, azimuth)),
+            None => computing.into_iter().for_each(|at| self.give(Input::Concluding(at))),
+        }
+        while let Ok(motion) = shared.motions.try_receive() {
+            if let Motion::Moved(sample) = motion {
+                self.aid(sample.time);
+                self.latest = Instant::now();
+            }
+            self.give(Input::Motion(motion));
+        }
+        self.give(Input::Settled);
+    }
+
+    /// Lets time pass by the clock, where no increment comes.
+    fn pass_time(&mut self) {
+        if self.latest.elapsed().as_micros() >= SILENCE {
             let now = units::Instant(Instant::now().as_micros());
-            if navigator.wants_aiding(now) {
-                give(&mut navigator, aided(aiding));
-            }
-            give(&mut navigator, Input::Passed(now));
-        }
-        shared.is_at_rest.set(navigator.is_at_rest);
-        if let Some(item) = to_save.take()
-            && let Err(fault) = store.save(HEADING, &item).await
-        {
-            fail(fault, &mut has_failed, shared);
+            self.aid(now);
+            self.give(Input::Passed(now));
         }
     }
 }
 
-/// What is known from outside at this moment.
-fn aided(aiding: &dyn Aiding) -> Input {
-    Input::Aided(aiding.velocity(), aiding.azimuth())
+/// Says which heading a store holds from before the restart, then keeps in it what the navigator saves, for ever.
+pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallible {
+    let mut has_failed = false;
+    let loaded = load(store).await;
+    shared.remembered.signal(loaded.unwrap_or_default());
+    let mut outcome = loaded.map(|_| ());
+    loop {
+        if let Err(fault) = outcome
+            && !core::mem::replace(&mut has_failed, true)
+        {
+            shared.report(Event::HeadingNotKept(fault));
+        }
+        outcome = match shared.saving.wait().await {
+            Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
+            Saving::Nothing => store.save(HEADING, &NOTHING).await,
+        };
+    }
 }
 
 /// Reads the heading that was stored before the restart. An item with a wrong checksum counts as
@@ -145,21 +191,14 @@ async fn load<T: Store>(store: &mut T) -> Result<Option<Remembered>, Fault> {
     Ok(item.as_ref().and_then(|bytes| Remembered::from_bytes(bytes)))
 }
 
-/// Reports the first failure of the store.
-fn fail(fault: Fault, has_failed: &mut bool, shared: &Shared<'_>) {
-    if !core::mem::replace(has_failed, true) {
-        shared.report(Event::HeadingNotKept(fault));
-    }
-}
-
-/// Executes an output of the navigator; an item to be saved is noted.
-fn execute(output: Output, to_save: &Cell<Option<[u8; Remembered::BYTES]>>, shared: &Shared<'_>) {
+/// Executes an output of the navigator.
+fn execute(output: Output, shared: &Shared<'_>) {
     match output {
         Output::Progress(progress) => shared.report(Event::Navigation(progress)),
         Output::Order(order) => shared.order(order),
         Output::Request(request) => shared.wanted.signal(request),
-        Output::Save(remembered) => to_save.set(Some(remembered.to_bytes())),
-        Output::Forget => to_save.set(Some(NOTHING)),
+        Output::Save(remembered) => shared.saving.signal(Saving::Heading(remembered)),
+        Output::Forget => shared.saving.signal(Saving::Nothing),
         Output::Report(report, attitude) => {
             shared.observer.kept(&report);
             if let Some(attitude) = attitude {

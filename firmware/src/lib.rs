@@ -14,7 +14,7 @@
 //! gyros and the accelerometer give the samples, and the method asks the driver to stop and to
 //! drive on. On a [`spin`]ning body there is no alignment; its roll angle is tracked.
 //!
-//! [`acquire::acquire`] samples, and [`run::navigate`] joins the other parts in fixed order: the
+//! [`acquire::acquire`] samples, and [`run`] joins the other parts in fixed order: the
 //! aligner ([`align`]), the navigator ([`mod@keep`]), the [`mechanism`], the [`mod@link`]. They
 //! know no pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe
 //! what they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
@@ -54,6 +54,7 @@ pub mod status;
 pub mod watch;
 
 pub mod configuration;
+pub mod crossing;
 pub mod platform;
 pub mod run;
 pub mod settings;

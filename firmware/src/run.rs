@@ -1,42 +1,62 @@
 //! Runs the instrument: joins its parts in fixed order, so that one seed gives the same run on
 //! every machine.
 //!
-//! Acquisition is a future of its own beside [`navigate`]. It is woken several times per sample and
-//! must not wait for the computation of a conclusion, so a board may give it a task or an interrupt
-//! of its own. Acquisition never returns; [`navigate`] ends within bounded time, whatever the
-//! devices do, unless it is to hold the azimuth, or to track a roll, without end.
+//! ```text
+//!  acquire ─┬─ motions ──▶ operate: mechanism, navigator ◀── requests, azimuth ─┐
+//!           └─ samples ──▶ find: aligner, link, store ──────────────────────────┘
+//! ```
+//!
+//! What must not wait for the computation of a conclusion is acquisition and [`operate`]; a board gives them an
+//! executor of higher priority, and leaves [`find`] the thread. [`navigate`] is both in one executor, beside
+//! acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
+//! unless it is to hold the azimuth, or to track a roll, without end.
 
 use core::future::pending;
-use core::pin::{Pin, pin};
+use core::pin::pin;
 
-use embassy_futures::select::select5;
+use embassy_futures::select::{select3, select4};
 use embedded_io_async::Write;
 use orientation::alignment::Method;
 use orientation::signal::Timed;
 
 use crate::align::align;
 use crate::health::Health;
-use crate::keep::Keep;
+use crate::keep::{Keep, remember};
 use crate::link;
 use crate::mechanism::Mechanism;
-use crate::ports::{Aiding, Recorder};
-use crate::shared::{Channels, discard};
+use crate::ports::{Aiding, Recorder, Store};
+use crate::shared::{Channels, Shared, discard};
 use crate::watch::watch;
 
 /// Runs a method from power-on to its verdict, and keeps the azimuth until the policy's duration is
 /// over. Whatever the outcome, the mechanism is parked. Returns the counters of faults.
 ///
 /// The method is the largest object in memory; the caller owns it and chooses its place.
-pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, K: Keep, S: Timed>(
+pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, K: Keep, S: Timed>(
     mechanism: &mut M,
     method: &mut dyn Method<S>,
-    mut keeping: K,
+    keeping: K,
     aiding: &dyn Aiding,
-    (link, recorder): (&mut L, &mut R),
+    outside: Outside<'_, L, R, T>,
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
     // Known before any part runs, since a method may refuse at once.
+    shared.is_kept.set(keeping.is_held());
+    let (finding, discarding) = (find(method, aiding, outside, channels), discard(channels));
+    operate(mechanism, keeping, aiding, shared, (finding, discarding)).await;
+    shared.health.get()
+}
+
+/// Serves the mechanism and keeps the attitude, until its duration or what runs `beside` ends. Then parks the
+/// mechanism, while `meanwhile`, which never ends, takes the samples.
+pub async fn operate<M: Mechanism, K: Keep>(
+    mechanism: &mut M,
+    mut keeping: K,
+    aiding: &dyn Aiding,
+    shared: &Shared<'_>,
+    (beside, meanwhile): (impl Future<Output = ()>, impl Future<Output = ()>),
+) {
     shared.is_kept.set(keeping.is_held());
     {
         let turning = pin!(async {
@@ -45,27 +65,35 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, K: Keep, S: Timed>
             pending::<()>().await;
         });
         let kept = pin!(keeping.keep(aiding, shared));
-        join(turning, kept, link, recorder, (method, aiding), channels).await;
+        // The navigator is polled last, so that it takes only what the aligner has taken.
+        select3(pin!(beside), turning, kept).await;
     }
-    mechanism.park(discard(channels)).await;
-    shared.health.get()
+    mechanism.park(meanwhile).await;
 }
 
-/// Joins the parts with the control of the mechanism and with the navigator, whose end is the end
-/// of all. The kinds of mechanism and store are not part of the type, so that its code exists once.
-async fn join<L: Write, R: Recorder<S>, S: Timed>(
-    turning: Pin<&mut dyn Future<Output = ()>>,
-    kept: Pin<&mut dyn Future<Output = ()>>,
-    link: &mut L,
-    recorder: &mut R,
-    (method, aiding): (&mut dyn Method<S>, &dyn Aiding),
+/// Where results go: link, recorder, and the store of what outlasts a loss of supply.
+pub struct Outside<'o, L, R, T> {
+    /// Link for status lines.
+    pub link: &'o mut L,
+    /// Recorder of samples and conclusions.
+    pub recorder: &'o mut R,
+    /// Store of the heading.
+    pub store: T,
+}
+
+/// Aligns, reports over the link and keeps what is to be saved, until nothing more will happen.
+pub async fn find<L: Write, R: Recorder<S>, T: Store, S: Timed>(
+    method: &mut dyn Method<S>,
+    aiding: &dyn Aiding,
+    outside: Outside<'_, L, R, T>,
     channels: &Channels<'_, S>,
 ) {
     let shared = &channels.shared;
+    let Outside { link, recorder, mut store } = outside;
     // Each part is pinned here, so that it exists in memory once.
     let aligning = pin!(align(method, aiding, recorder, channels));
     let reporting = pin!(link::run(link, shared));
     let watching = pin!(watch(shared));
-    // The navigator is polled last, so that it takes only what the aligner has taken.
-    select5(aligning, turning, reporting, watching, kept).await;
+    let storing = pin!(remember(&mut store, shared));
+    select4(aligning, reporting, watching, storing).await;
 }

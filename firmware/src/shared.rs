@@ -1,14 +1,13 @@
-//! Communication between the parts of the instrument: bounded queues of samples, signals and cells.
+//! Communication between the parts of the instrument: bounded queues of samples, signals and values.
 
-use core::cell::Cell;
 use core::future::pending;
 
-use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Azimuth, Progress, Request};
+use orientation::attitude::restart::Remembered;
 use orientation::device::{Device, Trouble};
 use orientation::navigation::{Motion, Order};
 use orientation::roll;
@@ -16,9 +15,10 @@ use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{self, Angle};
 
+use crate::crossing::{AnyObserver, Common, Lock};
 use crate::event::Event;
 use crate::health::Health;
-use crate::ports::{Frames, Observer};
+use crate::ports::Frames;
 use crate::retry_budget::{RETRY, Symptom};
 use crate::status::Status;
 
@@ -26,33 +26,33 @@ use crate::status::Status;
 pub const QUEUE: usize = 16;
 
 /// The queue of samples from acquisition to the aligner.
-pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
+pub type Queue<S> = Channel<Lock, S, QUEUE>;
 
 /// All channels of an instrument whose samples are of the type `S`. Only acquisition and the
 /// aligner depend on that type.
 pub struct Channels<'a, S = Sample> {
     /// The samples from acquisition to the aligner.
     pub samples: Queue<S>,
-    /// All other signals and cells.
+    /// All other signals and values.
     pub shared: Shared<'a>,
 }
 
 impl<'a, S> Channels<'a, S> {
     /// Channels without any message; events go to the observer.
-    pub fn new(observer: &'a dyn Observer) -> Self {
+    pub fn new(observer: &'a AnyObserver<'a>) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
     }
 }
 
-/// Discards samples while another part finishes.
-pub(crate) async fn discard<S>(channels: &Channels<'_, S>) {
+/// Discards samples without end, while another part finishes.
+pub async fn discard<S>(channels: &Channels<'_, S>) {
     loop {
         channels.samples.receive().await;
     }
 }
 
 /// The latest corrected angle of an axis' encoder and the time of its reading.
-pub type LatestAngle = Cell<(Angle, Instant)>;
+pub type LatestAngle = Common<(Angle, Instant)>;
 
 /// How far the alignments are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,71 +65,96 @@ enum Alignments {
     Again,
 }
 
-/// Signals and cells between the parts. All parts run in one executor, so no lock is needed.
+/// What the navigator has kept for the next start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Saving {
+    /// The heading of a body at rest.
+    Heading(Remembered),
+    /// The body has set off: no heading is valid.
+    Nothing,
+}
+
+/// Signals and values between the parts, which may run at different priorities.
 pub struct Shared<'a> {
     /// From the aligner and the navigator to the mechanism: the request to obey. A new request
     /// replaces the one before.
-    pub wanted: Signal<NoopRawMutex, Request>,
+    pub wanted: Signal<Lock, Request>,
     /// From any part to the aligner: what it is to do with its alignment.
-    pub orders: Signal<NoopRawMutex, Order>,
+    pub orders: Signal<Lock, Order>,
     /// From acquisition to the mechanism: the sensors give data.
-    pub sensing: Signal<NoopRawMutex, ()>,
+    pub sensing: Signal<Lock, ()>,
     /// From the mechanism to the aligner: the angles are valid. Without a mechanism they are valid
     /// from the begin.
-    pub homed: Signal<NoopRawMutex, ()>,
+    pub homed: Signal<Lock, ()>,
     /// From acquisition to the navigator: the inertial samples, in the order of time.
-    pub motions: Channel<NoopRawMutex, Motion, QUEUE>,
+    pub motions: Channel<Lock, Motion, QUEUE>,
+    /// From the aligner to the navigator: time of the latest sample of an alignment whose azimuth is being
+    /// computed.
+    pub concluding: Signal<Lock, units::Instant>,
+    /// Whether the aligner computes, and needs no samples.
+    pub is_computing: Common<bool>,
     /// From the aligner to the navigator: an azimuth, and the time of the sample to which it
     /// belongs.
-    pub found: Signal<NoopRawMutex, (units::Instant, Azimuth)>,
-    /// From the aligner to the navigator: all samples of the queue have been taken.
-    pub caught_up: Signal<NoopRawMutex, ()>,
+    pub found: Signal<Lock, (units::Instant, Azimuth)>,
+    /// From the aligner to the navigator: all samples of the queue have been taken, or none is needed.
+    pub caught_up: Signal<Lock, ()>,
     /// Whether there are samples that the aligner has not taken yet.
-    pub is_behind: Cell<bool>,
+    pub is_behind: Common<bool>,
+    /// From the store to the navigator: the heading that was saved before the restart.
+    pub remembered: Signal<Lock, Option<Remembered>>,
+    /// From the navigator to the store: what is to be kept for the next start. The latest replaces others.
+    pub saving: Signal<Lock, Saving>,
+    /// From the link to the mechanism: nothing more will happen.
+    pub over: Signal<Lock, ()>,
     /// From the aligner to the link: an alignment is over.
-    pub concluded: Signal<NoopRawMutex, ()>,
+    pub concluded: Signal<Lock, ()>,
     /// How far the alignments are.
-    alignments: Cell<Alignments>,
+    alignments: Common<Alignments>,
     /// Whether a navigator keeps the attitude.
-    pub is_kept: Cell<bool>,
+    pub is_kept: Common<bool>,
     /// Whether the body is at rest, by the navigator's detection.
-    pub is_at_rest: Cell<bool>,
+    pub is_at_rest: Common<bool>,
     /// Sampling period; one second until acquisition has stated it.
-    pub period: Cell<Duration>,
+    pub period: Common<Duration>,
     /// The latest angles of the encoders; the one axis of a stage is the outer one.
     pub angles: Frames<LatestAngle>,
     /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
-    pub sway: Cell<SwayNoise>,
+    pub sway: Common<SwayNoise>,
     /// Counters of faults.
-    pub health: Cell<Health>,
+    pub health: Common<Health>,
     /// The status that the link reports.
-    pub status: Cell<Status>,
+    pub status: Common<Status>,
     /// Receiver of events.
-    pub observer: &'a dyn Observer,
+    pub observer: &'a AnyObserver<'a>,
 }
 
 impl<'a> Shared<'a> {
-    /// Signals and cells without any message.
-    pub fn new(observer: &'a dyn Observer) -> Self {
-        let unread = || Cell::new((Angle(0), Instant::MIN));
+    /// Signals and values without any message.
+    pub fn new(observer: &'a AnyObserver<'a>) -> Self {
+        let unread = || Common::new((Angle(0), Instant::MIN));
         Self {
             wanted: Signal::new(),
             orders: Signal::new(),
             sensing: Signal::new(),
             homed: Signal::new(),
             motions: Channel::new(),
+            concluding: Signal::new(),
+            is_computing: Common::new(false),
             found: Signal::new(),
             caught_up: Signal::new(),
-            is_behind: Cell::new(false),
+            is_behind: Common::new(false),
+            remembered: Signal::new(),
+            saving: Signal::new(),
+            over: Signal::new(),
             concluded: Signal::new(),
-            alignments: Cell::new(Alignments::First),
-            is_kept: Cell::new(false),
-            is_at_rest: Cell::new(false),
-            period: Cell::new(Duration::from_secs(1)),
+            alignments: Common::new(Alignments::First),
+            is_kept: Common::new(false),
+            is_at_rest: Common::new(false),
+            period: Common::new(Duration::from_secs(1)),
             angles: Frames { outer: unread(), inner: unread() },
-            sway: Cell::new(SwayNoise::NONE),
-            health: Cell::default(),
-            status: Cell::new(Status::Starting),
+            sway: Common::new(SwayNoise::NONE),
+            health: Common::default(),
+            status: Common::new(Status::Starting),
             observer,
         }
     }
@@ -183,6 +208,21 @@ impl<'a> Shared<'a> {
         self.is_idle() && !self.is_kept.get()
     }
 
+    /// Notes that the aligner computes what follows from samples up to this time, and needs no others.
+    pub(crate) fn begin_computing(&self, taken: Option<units::Instant>) {
+        if let Some(taken) = taken {
+            self.concluding.signal(taken);
+        }
+        self.is_computing.set(true);
+        self.caught_up.signal(());
+    }
+
+    /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs
+    /// none.
+    pub(crate) fn may_move(&self) -> bool {
+        !self.is_behind.get() || self.is_computing.get()
+    }
+
     /// Signals the navigator that the aligner has taken all samples of the queue.
     pub(crate) fn catch_up(&self) {
         self.is_behind.set(false);
@@ -224,9 +264,7 @@ impl<'a> Shared<'a> {
 
     /// Changes the counters of faults.
     pub fn count(&self, change: impl FnOnce(&mut Health)) {
-        let mut health = self.health.get();
-        change(&mut health);
-        self.health.set(health);
+        self.health.change(change);
     }
 
     /// Counts and reports a lost reading of a device.

@@ -50,15 +50,57 @@ mod clock;
 mod pins;
 
 use defmt_rtt as _;
-use embassy_executor::Spawner;
+use embassy_executor::{InterruptExecutor, Spawner};
+use embassy_stm32::interrupt;
+use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_time::Instant;
 use firmware::platform::Platform;
 use panic_probe as _;
-use stm32::{PLATFORM, spinning, stepwise, stops, turning, watchdog};
+use stm32::{Executors, PLATFORM, spinning, stepwise, stops, turning, watchdog};
 
 use pins::Board;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
+
+/// Executor of acquisition.
+static ACQUISITION: InterruptExecutor = InterruptExecutor::new();
+/// Executor of motors and keeper.
+static CONTROL: InterruptExecutor = InterruptExecutor::new();
+
+/// Priorities of these executors: below all interrupts of devices and of the clock, which only wake tasks, and have
+/// the greatest, and above the thread.
+const PRIORITIES: [Priority; 2] = [Priority::P6, Priority::P8];
+
+/// Polls the tasks of acquisition. The peripheral of this interrupt, a single-wire protocol master, is not used.
+#[interrupt]
+fn SWPMI1() {
+    #[expect(unsafe_code, reason = "only the interrupt of the executor may poll it")]
+    // SAFETY: this is the interrupt that the executor was started with, and that start enables it.
+    unsafe {
+        ACQUISITION.on_interrupt();
+    }
+}
+
+/// Polls the tasks of motors and keeper. The peripheral of this interrupt, for touch keys, is not used.
+#[interrupt]
+fn TSC() {
+    #[expect(unsafe_code, reason = "only the interrupt of the executor may poll it")]
+    // SAFETY: this is the interrupt that the executor was started with, and that start enables it.
+    unsafe {
+        CONTROL.on_interrupt();
+    }
+}
+
+/// Starts the executors above the thread.
+fn executors() -> Executors {
+    let [acquisition, control] = PRIORITIES;
+    interrupt::SWPMI1.set_priority(acquisition);
+    interrupt::TSC.set_priority(control);
+    Executors {
+        acquisition: ACQUISITION.start(interrupt::SWPMI1),
+        control: CONTROL.start(interrupt::TSC),
+    }
+}
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
@@ -69,22 +111,23 @@ async fn main(spawner: Spawner) {
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
     let board = defmt::unwrap!(Board::new(peripherals));
+    let executors = executors();
     // Tasks that are never spawned are not in the image.
     match PLATFORM {
         Platform::Stage => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(spawner, board.axis())));
+            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(executors, board.axis())));
         }
         Platform::TwoFrame => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(spawner, board.two_frames())));
+            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(executors, board.two_frames())));
         }
         Platform::Turntable => {
-            spawner.spawn(defmt::unwrap!(turning::align(spawner, board.axis())));
+            spawner.spawn(defmt::unwrap!(turning::align(executors, board.axis())));
         }
         Platform::Vehicle => {
-            spawner.spawn(defmt::unwrap!(stops::align(spawner, board.vehicle())));
+            spawner.spawn(defmt::unwrap!(stops::align(executors, board.vehicle())));
         }
         Platform::Spin => {
-            spawner.spawn(defmt::unwrap!(spinning::follow(spawner, board.spinning_body())));
+            spawner.spawn(defmt::unwrap!(spinning::follow(executors, board.spinning_body())));
         }
     }
 }

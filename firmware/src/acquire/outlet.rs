@@ -28,10 +28,14 @@ impl<'a, S> Outlet<'a, S> {
         &self.channels.shared
     }
 
-    /// Queues a sample for the session, and reports an overflow of the queue.
+    /// Queues a sample for the session, and reports an overflow of the queue. While the aligner computes, it
+    /// needs none: they are passed by.
     pub(super) fn hand_over(&mut self, sample: S) {
         let shared = self.shared();
         shared.count(|health| health.samples = health.samples.saturating_add(1));
+        if shared.is_computing.get() {
+            return shared.count(|health| health.passed_by = health.passed_by.saturating_add(1));
+        }
         shared.is_behind.set(true);
         if self.channels.samples.try_send(sample).is_err() {
             self.overflowed += 1;

@@ -26,7 +26,7 @@ pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     sensors: &'a mut Sensors<G, A, E, B>,
     configuration: &Configuration,
     channels: &'a Channels<'a>,
-) -> impl Source<'a> {
+) -> impl Source<'a, Sample = Sample> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let (harmonics, latest) = (configuration.encoder, &channels.shared.angles.outer);
     let shared = &channels.shared;
@@ -40,7 +40,7 @@ pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     configuration: &Configuration,
     frames: &FramesConfiguration,
     channels: &'a Channels<'a>,
-) -> impl Source<'a> {
+) -> impl Source<'a, Sample = Sample> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let shafts = FrameShafts::new(encoder, configuration, frames, &channels.shared);
     Acquisition::new(gyro, accelerometer, shafts, base, configuration, channels)

@@ -19,21 +19,37 @@ pub mod turning;
 
 pub use configuration::PLATFORM;
 
+use core::future::pending;
+
+use embassy_executor::SendSpawner;
+use embassy_futures::select::select;
 use embassy_time::Timer;
 use firmware::acquire::{acquire, on_stage};
-use firmware::health::Health;
-use firmware::keep::Keeping;
+use firmware::keep::{Keep, Keeping};
 use firmware::link;
 use firmware::log::DefmtLog;
+use firmware::mechanism::Mechanism;
+use firmware::ports::{Recorder, Store};
+use firmware::run::{Outside, find, operate};
 use firmware::settings::Settings;
-use firmware::shared::Shared;
+use firmware::shared::{Shared, discard};
 use firmware::sway::SwayCompensation;
+use orientation::alignment::Method;
 use orientation::alignment::setup::SetupError;
 use orientation::attitude::{Keeper, Setting};
-use orientation::signal::Sample;
+use orientation::signal::{Sample, Timed};
 use static_cell::StaticCell;
 
 use wiring::{BaseBus, Link};
+
+/// Executors above the thread, which has what may wait: conclusions, plans, link and store.
+#[derive(Clone, Copy)]
+pub struct Executors {
+    /// Of acquisition, with the greater priority: what is read belongs to the moment of its conversion.
+    pub acquisition: SendSpawner,
+    /// Of mechanism and keeper.
+    pub control: SendSpawner,
+}
 
 /// The channels between the instrument's parts.
 type Channels<S = Sample> = firmware::shared::Channels<'static, S>;
@@ -54,10 +70,10 @@ fn on_base(bus: BaseBus) -> &'static mut ports::Base {
 }
 
 /// Attitude and heading of a platform's base after the alignment, where they are held.
-fn keeping<C, T>(settings: &Settings<C>, store: T) -> Option<Keeping<'static, T>> {
+fn keeping<C>(settings: &Settings<C>) -> Option<Keeping<'static>> {
     settings.holds.then(|| {
         let keeper = keeper(&configuration::base_keeper(settings.latitude));
-        Keeping { keeper, policy: configuration::base_policy(settings), store }
+        Keeping { keeper, policy: configuration::base_policy(settings) }
     })
 }
 
@@ -78,12 +94,31 @@ async fn stage_acquisition(mut inputs: ports::Inputs<OnBase>, channels: &'static
     acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
 }
 
-/// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
-/// the motor would lose its current and the link its last bytes.
-async fn report_conclusion(health: &Health, link: &mut Link, shared: &Shared<'static>) -> ! {
-    defmt::info!("board: done, {} faults on the way", health.faults());
-    loop {
-        Timer::after_secs(1).await;
-        link::send(link, shared).await;
-    }
+/// Serves the mechanism and keeps the attitude, for ever.
+async fn control(mechanism: &mut impl Mechanism, keeping: impl Keep, shared: &Shared<'static>) {
+    let until = (shared.over.wait(), pending());
+    operate(mechanism, keeping, &(), shared, until).await;
+    pending().await
+}
+
+/// Aligns, reports over the link and stores what is to be kept; then reports the conclusion without end. It never
+/// returns, because the peripherals would be dropped: the link would lose its last bytes.
+async fn find_and_report<S: Timed>(
+    method: &mut dyn Method<S>,
+    mut link: Link,
+    recorder: &mut impl Recorder<S>,
+    store: impl Store,
+    channels: &'static Channels<S>,
+) {
+    let shared = &channels.shared;
+    find(method, &(), Outside { link: &mut link, recorder, store }, channels).await;
+    shared.over.signal(());
+    defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
+    let reporting = async {
+        loop {
+            Timer::after_secs(1).await;
+            link::send(&mut link, shared).await;
+        }
+    };
+    select(reporting, discard(channels)).await;
 }

@@ -1,8 +1,8 @@
 //! Program of the board on a platform that rotates continuously, with the axis misalignment stored
 //! in flash. It holds azimuth, pitch and roll afterwards, by the IMU of the board on the base.
 
-use embassy_executor::Spawner;
-use firmware::run::navigate;
+use embassy_stm32::gpio::Output;
+use firmware::keep::Keeping;
 use firmware::settings::{Settings, TurntableSchedule};
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
@@ -11,10 +11,11 @@ use orientation::alignment::rotating::session::Session;
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
+use crate::ports::AxisMotor;
 use crate::wiring::{AxisPlatformWires, Outlets};
 use crate::{
-    Channels, begun, channels, configuration, keeping, on_base, ports, report_conclusion, settings,
-    stage_acquisition,
+    Channels, Executors, begun, channels, configuration, control, find_and_report, keeping,
+    on_base, ports, settings, stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -22,10 +23,9 @@ const TODAY: Today = Today { date: None, longest: None };
 
 /// Runs the instrument on a rotating platform: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn align(spawner: Spawner, wires: AxisPlatformWires) {
-    let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable: _enabled, outlets } =
-        wires;
-    let Outlets { mut link, mut flash } = outlets;
+pub async fn align(executors: Executors, wires: AxisPlatformWires) {
+    let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
+    let Outlets { link, mut flash } = outlets;
     let Some(settings) = settings::load(&mut flash, settings::turntable) else {
         return;
     };
@@ -34,15 +34,27 @@ pub async fn align(spawner: Spawner, wires: AxisPlatformWires) {
     let encoder = ports::encoder(axes.encoder);
     let converter = (converter, &settings.gyro);
     let Some(inputs) = ports::inputs(converter, accelerometer, encoder, base) else { return };
-    spawner.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let store = &SharedStore::new(store(flash));
     let Some(session) = session(&settings, store, channels).await else { return };
-    let mut motor = ports::motor(axes.motor);
-    let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
-    let outside = (&mut link, &mut CalibrationStore { store, channels });
-    let health =
-        navigate(&mut platform, session, keeping(&settings, store), &(), outside, channels).await;
-    report_conclusion(&health, &mut link, &channels.shared).await;
+    let motor = ports::motor(axes.motor);
+    executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
+    let keeping = keeping(&settings);
+    executors.control.spawn(defmt::unwrap!(platform(motor, motor_enable, keeping, channels)));
+    let recorder = &mut CalibrationStore { store, channels };
+    find_and_report(session, link, recorder, store, channels).await;
+}
+
+/// Motor and keeper on a rotating platform.
+#[embassy_executor::task]
+async fn platform(
+    mut motor: AxisMotor,
+    _enabled: Output<'static>,
+    keeping: Option<Keeping<'static>>,
+    channels: &'static Channels,
+) {
+    let shared = &channels.shared;
+    let mut platform = Turntable::new(&mut motor, &configuration::platform(), shared);
+    control(&mut platform, keeping, shared).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.

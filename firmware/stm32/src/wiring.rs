@@ -19,26 +19,25 @@ use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode, Spi};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::UartTx;
-use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::mutex::Mutex;
+use firmware::crossing::Lock;
 use firmware::ports::Frames;
 
 /// Greatest bus clock of the TMC5160 with its own oscillator, Hz (data sheet rev. 1.14, 4.3); the
 /// MT6835 allows more.
 const TMC5160_HERTZ: u32 = 4_000_000;
 
-/// The bus of the sensors. All devices of a bus belong to one executor, so it needs no lock.
-pub type Bus = Mutex<NoopRawMutex, Spi<'static, Async, Master>>;
+/// The bus of the sensors. All its devices belong to one executor; the lock lets them be handed to it.
+pub type Bus = Mutex<Lock, Spi<'static, Async, Master>>;
 /// A sensor on its bus, with its own mode and clock.
-pub type Device =
-    SpiDeviceWithConfig<'static, NoopRawMutex, Spi<'static, Async, Master>, Output<'static>>;
+pub type Device = SpiDeviceWithConfig<'static, Lock, Spi<'static, Async, Master>, Output<'static>>;
 /// The SPI of the stage without DMA: the few bytes of a transfer take 20 µs, hardly more than to set
 /// up two DMA channels, which the IMU on the base has.
 type StageSpi = BlockingAsync<Spi<'static, Blocking, Master>>;
 /// The bus of encoders and motor drivers.
-pub type StageBus = Mutex<NoopRawMutex, StageSpi>;
+pub type StageBus = Mutex<Lock, StageSpi>;
 /// An encoder or a motor driver on its bus; all have one mode and one clock.
-pub type StageDevice = SpiDevice<'static, NoopRawMutex, StageSpi, Output<'static>>;
+pub type StageDevice = SpiDevice<'static, Lock, StageSpi, Output<'static>>;
 /// The bus of the IMU on the base.
 pub type BaseBus = I2c<'static, Async, i2c::Master>;
 /// A data-ready line.

@@ -69,8 +69,8 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let ended = harness.run(
         acquire(&mut on_mount(&mut sensors, &configuration, &frames, &channels)),
         &mut Gimbal::new(&mut actuator, &frames, &channels.shared),
-        (&mut session, Some(Keeping { keeper: &mut keeper, policy, store })),
-        (&scenario.base.hold.aiding(), FaultyRecorder::new(recorder, injection.hang)),
+        (&mut session, Some(Keeping { keeper: &mut keeper, policy })),
+        (&scenario.base.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
         &channels,
     )?;
     let [outer, inner] = board.borrow().plant.frames();

@@ -8,8 +8,8 @@ use firmware::event::Event;
 use firmware::health::Health;
 use firmware::keep::Keep;
 use firmware::mechanism::Mechanism;
-use firmware::ports::{Aiding, BaseReading, Observer, Recorder};
-use firmware::run::navigate;
+use firmware::ports::{Aiding, BaseReading, Observer, Recorder, Store};
+use firmware::run::{Outside, navigate};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
 use orientation::alignment::{Method, Progress};
@@ -100,11 +100,11 @@ impl<'w> Harness<'w> {
         acquisition: impl Future<Output = ()>,
         mechanism: &mut impl Mechanism,
         (method, keeping): (&mut dyn Method<S>, impl Keep),
-        (aiding, mut recorder): (&dyn Aiding, impl Recorder<S>),
+        (aiding, mut recorder, store): (&dyn Aiding, impl Recorder<S>, impl Store),
         channels: &Channels<'_, S>,
     ) -> Result<(Health, Instant), RunError> {
         let instrument = async {
-            let outside = (&mut Wire(&self.bytes), &mut recorder);
+            let outside = Outside { link: &mut Wire(&self.bytes), recorder: &mut recorder, store };
             let health = navigate(mechanism, method, keeping, aiding, outside, channels).await;
             (health, Instant::now())
         };

@@ -83,7 +83,7 @@ impl Carrier for SpinScenario {
             acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
             &mut Strapdown::new(&channels.shared),
             (&mut flight, NotKept),
-            (&(), (&mut kept, recorder)),
+            (&(), (&mut kept, recorder), ()),
             &channels,
         )?;
         // Another body of the same course, which has not flown yet.

@@ -67,8 +67,8 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let ended = harness.run(
         acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
         &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
-        (&mut session, Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store })),
-        (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang)),
+        (&mut session, Some(Keeping { keeper: &mut keeper, policy: scenario.policy() })),
+        (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
         &channels,
     )?;
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };

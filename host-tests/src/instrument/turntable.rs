@@ -80,8 +80,8 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let ended = harness.run(
         acquire(&mut on_stage(&mut sensors, &configuration, channels)),
         &mut Turntable::new(&mut actuator, &platform, &channels.shared),
-        (&mut session, Some(Keeping { keeper: &mut keeper, policy, store })),
-        (&scenario.base.hold.aiding(), recorder),
+        (&mut session, Some(Keeping { keeper: &mut keeper, policy })),
+        (&scenario.base.hold.aiding(), recorder, store),
         channels,
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;

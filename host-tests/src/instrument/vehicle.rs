@@ -62,12 +62,12 @@ impl Carrier for VehicleScenario {
         let aiding = VehicleAiding::new(&board, scenario);
         let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
         let mut keeper = Keeper::new(&setting);
-        let keeping = Some(Keeping { keeper: &mut keeper, policy: scenario.policy(), store });
+        let keeping = Some(Keeping { keeper: &mut keeper, policy: scenario.policy() });
         let ended = harness.run(
             acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
             &mut Strapdown::new(&channels.shared),
             (&mut session, keeping),
-            (&aiding, FaultyRecorder::new(recorder, injection.hang)),
+            (&aiding, FaultyRecorder::new(recorder, injection.hang), store),
             &channels,
         )?;
         let truth = board.borrow().plant.truth();

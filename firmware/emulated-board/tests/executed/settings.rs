@@ -7,7 +7,7 @@ use firmware::ports::Store as _;
 use firmware::settings::{BYTES, SLOT};
 
 use super::support::board::Board;
-use super::support::defect::hold;
+use super::support::defect::{hold, within};
 use super::support::executed::execute_in;
 use super::support::worlds::{short_stage, usual};
 
@@ -89,11 +89,8 @@ fn a_store_with_another_programs_remains_is_erased() {
     hold(ended as f64, 0.0..=0.0, 3.0..=3.0, words);
 }
 
-/// The samples are not taken any more, and every one of them counts as a fault.
+/// The samples go on to be taken.
 #[test]
-#[should_panic(
-    expected = "between 390 and 410 faults a second are counted after the result of a stage that does not hold it"
-)]
 fn a_board_that_does_not_hold_its_result_counts_no_faults_after_it() {
     let order = Order { afterwards: 5.0, ..Order::usual(Platform::Stage, 1) };
     let shown = execute_in(&order, short_stage(false, 0));
@@ -104,5 +101,5 @@ fn a_board_that_does_not_hold_its_result_counts_no_faults_after_it() {
     let counts: Vec<f64> = counts.collect();
     let each = (counts[0] - counts[3]) / 3.0;
     let words = "faults a second are counted after the result of a stage that does not hold it";
-    hold(each, 0.0..=0.0, 390.0..=410.0, words);
+    within(each, 0.0..=0.0, words);
 }

@@ -10,7 +10,7 @@ use super::setting::Gyro;
 use super::vertical::Vertical;
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
-use crate::units::{MetresPerSecond, Radians, TURN, wrapped};
+use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other.
 const BOUND: f64 = 4.0;
@@ -89,6 +89,49 @@ impl Heading {
         let sigma = Radians(libm::sqrt(old * new / (old + new)));
         *self = Self::begin(Azimuth { angle, sigma }, gyro, vertical);
         Realigned::Fused { sigmas }
+    }
+}
+
+/// Course of the body at a moment, from which an azimuth of that moment is carried on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mark {
+    /// The moment.
+    pub(super) at: Instant,
+    /// Course of body x on the level frame, rad.
+    course: f64,
+    /// Variance of the turn, rad², and net turn, rad, up to the moment.
+    variance: f32,
+    turned: f32,
+    /// Standard deviation of the turn since then, rad, until its count was restarted.
+    since: f64,
+}
+
+impl Mark {
+    /// Marks the present course as that of a moment.
+    pub(super) fn new(at: Instant, vertical: &Vertical) -> Self {
+        let (variance, turned) = (vertical.turn_variance(), vertical.course.turned);
+        Self { at, course: course(vertical), variance, turned, since: 0.0 }
+    }
+
+    /// Standard deviation of the turn since the moment, rad. Errors of biases and scale factors before and after
+    /// a restart of the count are the same ones, so that they add up.
+    fn sigma(&self, gyro: &Gyro, vertical: &Vertical) -> f64 {
+        let scale = gyro.scale_sigma * f64::from(vertical.course.turned - self.turned);
+        let grown = f64::from((vertical.turn_variance() - self.variance).max(0.0));
+        self.since + libm::sqrt(grown + scale * scale)
+    }
+
+    /// Notes that the count of the turn's error restarts.
+    pub(super) fn restart(&mut self, gyro: &Gyro, vertical: &Vertical) {
+        self.since = self.sigma(gyro, vertical);
+        (self.variance, self.turned) = (0.0, 0.0);
+    }
+
+    /// Carries an azimuth of the moment on to the present.
+    pub(super) fn carry(&self, azimuth: Azimuth, gyro: &Gyro, vertical: &Vertical) -> Azimuth {
+        let angle = wrapped(azimuth.angle.0 + course(vertical) - self.course);
+        let sigma = libm::hypot(azimuth.sigma.0, self.sigma(gyro, vertical));
+        Azimuth { angle: Radians(angle), sigma: Radians(sigma) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Attitude and heading reference (AHRS): gyrovertical and heading hold together. It takes samples
 //! from switch-on and reports pitch, roll and azimuth.
 
-use super::heading::{Heading, Realigned, frame_rate};
+use super::heading::{Heading, Mark, Realigned, frame_rate};
 use super::quaternion as attitude;
 use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
@@ -26,6 +26,8 @@ pub struct Keeper {
     heading: Option<Heading>,
     /// Time at which the azimuth was handed over.
     handed: Instant,
+    /// Course at the time to which an azimuth belongs that is being computed.
+    mark: Option<Mark>,
     /// Speed north and east, where it is known.
     speed: Option<[MetresPerSecond; 2]>,
     /// Reliability of the level.
@@ -43,6 +45,7 @@ impl Keeper {
             vertical: Vertical::new(setting),
             heading: None,
             handed: Instant::default(),
+            mark: None,
             speed: None,
             trust: Trust::Starting,
             since: Instant::default(),
@@ -85,6 +88,7 @@ impl Keeper {
 
     /// Adopts an azimuth of body x at the present time, in place of any previous one.
     pub fn hand_over(&mut self, azimuth: Azimuth) {
+        self.restart_mark();
         let [.., gyro] = &self.setting.gyros;
         let is_first = self.heading.is_none();
         self.heading = Some(Heading::begin(azimuth, gyro, &mut self.vertical));
@@ -96,9 +100,35 @@ impl Keeper {
         }
     }
 
+    /// Marks the present course as that of a time, to which an azimuth belongs that is being computed.
+    pub(crate) fn mark(&mut self, at: Instant) {
+        if self.heading.is_none() {
+            self.vertical.begin_course();
+        }
+        self.mark = Some(Mark::new(at, &self.vertical));
+    }
+
+    /// An azimuth of a time, carried on to the present where that time was marked.
+    pub(crate) fn carried(&mut self, at: Instant, azimuth: Azimuth) -> Azimuth {
+        let [.., gyro] = &self.setting.gyros;
+        let mark = self.mark.take().filter(|mark| mark.at == at);
+        mark.map_or(azimuth, |mark| mark.carry(azimuth, gyro, &self.vertical))
+    }
+
+    /// Notes for an azimuth that is being computed that the error of the turn restarts.
+    fn restart_mark(&mut self) {
+        let [.., gyro] = &self.setting.gyros;
+        if let Some(mark) = &mut self.mark {
+            mark.restart(gyro, &self.vertical);
+        }
+    }
+
     /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
     /// is withdrawn.
     pub(crate) fn realign(&mut self, azimuth: Azimuth) -> Realigned {
+        if self.heading.is_some() {
+            self.restart_mark();
+        }
         let [.., gyro] = &self.setting.gyros;
         let realigned = match &mut self.heading {
             None => Realigned::Taken,

@@ -62,6 +62,12 @@ impl<'m, S: Timed> Aligner<'m, S> {
         self.method
     }
 
+    /// Time of the latest sample that the method has taken.
+    #[must_use]
+    pub fn taken(&self) -> Option<Instant> {
+        self.taken
+    }
+
     /// The azimuth that was found and the time of the sample to which it belongs, once.
     pub fn hand_over(&mut self) -> Option<(Instant, Azimuth)> {
         self.found.take()

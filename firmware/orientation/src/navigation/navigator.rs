@@ -71,11 +71,14 @@ pub enum Input {
     Remembered(Remembered),
     /// Whether no alignment runs.
     Idle(bool),
+    /// The latest sample that an alignment uses is of this time, and its azimuth is being computed.
+    Concluding(Instant),
     /// The azimuth of an alignment, which belongs to a sample of this time.
     Found(Instant, Azimuth),
     /// Motion of the body.
     Motion(Motion),
-    /// There is no increment of a later time yet: a found azimuth belongs to the latest one.
+    /// There is no increment of a later time yet: an azimuth that was found, or is being computed, belongs to
+    /// the latest one.
     Settled,
     /// Aiding from outside: velocity over ground north and east, and an azimuth of body x at this
     /// moment, where they are known.
@@ -121,7 +124,9 @@ pub struct Navigator<'k> {
     /// Time of the next check, and checks since the latest full second.
     due: Option<Instant>,
     looks: u8,
-    /// An azimuth that waits for the inertial sample of its time.
+    /// Time of an azimuth that is being computed, and an azimuth, that wait for the inertial sample of their
+    /// time.
+    concluding: Option<Instant>,
     found: Option<(Instant, Azimuth)>,
     /// The state that was reported last.
     state: Option<State>,
@@ -160,6 +165,7 @@ impl<'k> Navigator<'k> {
             moved: None,
             due: None,
             looks: 0,
+            concluding: None,
             found: None,
             state: None,
             is_recalled: false,
@@ -195,10 +201,11 @@ impl<'k> Navigator<'k> {
         match input {
             Input::Remembered(heading) => self.remembered = Some(*heading),
             Input::Idle(is_idle) => self.is_idle = *is_idle,
+            Input::Concluding(at) => self.concluding = Some(*at),
             Input::Found(at, azimuth) => self.found = Some((*at, *azimuth)),
             Input::Motion(Motion::Moved(sample)) => self.push(sample, outlet),
             Input::Motion(Motion::Exchanged(down)) => self.exchange(*down, outlet),
-            Input::Settled => self.take_found(Instant(u64::MAX), outlet),
+            Input::Settled => self.settle(Instant(u64::MAX), outlet),
             Input::Aided(velocity, azimuth) => {
                 self.keeper.move_at(*velocity);
                 self.aid(*azimuth, outlet);
@@ -209,7 +216,7 @@ impl<'k> Navigator<'k> {
 
     /// Takes an increment of rotation and velocity.
     fn push(&mut self, sample: &InertialSample, outlet: Outlet) {
-        self.take_found(sample.time, outlet);
+        self.settle(sample.time, outlet);
         self.keeper.push(sample);
         self.moved = Some(sample.time);
         self.tick(sample.time, outlet);
@@ -259,15 +266,19 @@ impl<'k> Navigator<'k> {
         self.due.is_some_and(|due| now >= due)
     }
 
-    /// Takes a found azimuth before an increment of the time `before`, if it belongs to an earlier
-    /// sample. It is refused if the body has set off meanwhile.
-    fn take_found(&mut self, before: Instant, outlet: Outlet) {
-        let Some((_, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
+    /// Does what belongs to samples before an increment of the time `before`: marks the course for an azimuth
+    /// that is being computed, and takes one that was found. It is refused if the body has set off meanwhile.
+    fn settle(&mut self, before: Instant, outlet: Outlet) {
+        if let Some(at) = self.concluding.take_if(|at| *at < before) {
+            self.keeper.mark(at);
+        }
+        let Some((at, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
             let reason = Refusal::MovedDuringAlignment;
             outlet(Output::Progress(Progress::Refused(reason)));
         } else {
-            self.align(azimuth, outlet);
+            let carried = self.keeper.carried(at, azimuth);
+            self.align(carried, outlet);
         }
     }
 

@@ -24,7 +24,7 @@ pub struct Writer<W> {
     sum: RefCell<Checksum>,
     /// Whether no alignment ran at the latest input that said so.
     was_idle: Cell<Option<bool>>,
-    /// Whether an azimuth waits for the inertial sample of its time.
+    /// Whether an azimuth, or the computation of one, waits for the inertial sample of its time.
     is_found: Cell<bool>,
 }
 
@@ -85,7 +85,7 @@ impl<W: Write> Observer for Writer<W> {
     fn navigates(&self, input: &Input) {
         let changes = match input {
             Input::Idle(is_idle) => self.was_idle.replace(Some(*is_idle)) != Some(*is_idle),
-            Input::Found(..) => {
+            Input::Concluding(_) | Input::Found(..) => {
                 self.is_found.set(true);
                 true
             }

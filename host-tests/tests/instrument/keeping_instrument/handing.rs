@@ -75,6 +75,65 @@ fn what_turns_between_the_sessions_last_sample_and_the_handing_over_counts() {
     }
 }
 
+/// An azimuth and its 1σ, °.
+fn azimuth(angle: f64, sigma: f64) -> Azimuth {
+    Azimuth { angle: Radians::from_degrees(angle), sigma: Radians::from_degrees(sigma) }
+}
+
+/// Azimuth and σ, °, of a body that turns by 0.1° a sample, by a gyro with this error of its scale, after inputs that come
+/// before samples of this turn. The first sample of the turn is the 501st.
+fn turned(count: u64, scale: f64, inputs: &[(u64, Input)]) -> [f64; 2] {
+    let mut keeper = keeper();
+    (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
+    let mut navigator = Navigator::new(&mut keeper, &policy());
+    for index in 0..=count {
+        for (_, input) in inputs.iter().filter(|(at, _)| *at == index) {
+            navigator.take(input, &mut |_| ());
+        }
+        if index < count {
+            navigator.take(&moved(501 + index, TURN * (1.0 + scale)), &mut |_| ());
+        }
+    }
+    navigator.take(&Input::Settled, &mut |_| ());
+    let Azimuth { angle, sigma } = keeper.report().azimuth.expect("it is handed over");
+    [angle.degrees(), sigma.degrees()]
+}
+
+/// The moment of the 500th sample, to which the azimuths of the alignments below belong.
+const CONCLUDED: Instant = Instant(500 * 10_000);
+
+#[test]
+fn what_turns_while_a_conclusion_is_computed_counts_and_costs_no_less_than_it_costs_a_held_azimuth()
+{
+    let found = azimuth(100.0, 0.01);
+    for count in [1, 10, 100, 900] {
+        // The scale factor is off by its 1σ.
+        let at_once = turned(count, 1e-4, &[(0, Input::Aided(None, Some(found)))]);
+        let announced = (0, Input::Concluding(CONCLUDED));
+        let late = turned(count, 1e-4, &[announced, (count, Input::Found(CONCLUDED, found))]);
+        let turn = count as f64 * 0.1;
+        assert!((late[0] - 100.0 - turn).abs() < 2e-3 + 1e-4 * turn, "{count}: {late:?}");
+        // As long as north is not known, biases may contain the Earth rate.
+        assert!((0.99..2.5).contains(&(late[1] / at_once[1])), "{count}: {late:?}, {at_once:?}");
+    }
+}
+
+#[test]
+fn an_azimuth_from_outside_while_a_conclusion_is_computed_is_fused_with_what_is_found() {
+    let (found, outside) = (azimuth(100.0, 0.01), azimuth(145.0, 0.02));
+    let given = (450, Input::Aided(None, Some(outside)));
+    let [announced, concluded] =
+        [(0, Input::Concluding(CONCLUDED)), (900, Input::Found(CONCLUDED, found))];
+    let [angle, sigma] = turned(900, 0.0, &[announced, given, concluded]);
+    let [_, found_alone] = turned(900, 0.0, &[announced, concluded]);
+    let [_, given_alone] = turned(900, 0.0, &[given]);
+    assert!((angle - 190.0).abs() < 5e-3, "{angle}°");
+    // As of two azimuths that nothing connects, or worse.
+    let best = (found_alone.powi(-2) + given_alone.powi(-2)).powf(-0.5);
+    let alone = found_alone.min(given_alone);
+    assert!((0.98 * best..=alone).contains(&sigma), "{sigma}°, {found_alone}°, {given_alone}°");
+}
+
 #[test]
 fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
     let (mut keeper, mut shown) = (keeper(), Vec::new());

@@ -14,7 +14,7 @@ use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::mechanism::{Mechanism, Strapdown};
 use firmware::ports::{Aiding, NoBase, NoRecorder};
-use firmware::run::navigate;
+use firmware::run::{Outside, navigate};
 use firmware::shared::Channels;
 use firmware::spin::configuration::SpinConfiguration;
 use firmware::stage::Stage;
@@ -136,7 +136,7 @@ impl AnyMethod {
                 run(&mut platform, session, None, &(), channels).await;
             }
             (Ground::Vehicle(scenario, board, channels), Self::Stops(session, keeper)) => {
-                let keeping = Some(Keeping { keeper, policy: scenario.policy(), store: () });
+                let keeping = Some(Keeping { keeper, policy: scenario.policy() });
                 let aiding = VehicleAiding::new(board, scenario);
                 let mut body = Strapdown::new(&channels.shared);
                 run(&mut body, session, keeping, &aiding, channels).await;
@@ -164,11 +164,11 @@ impl AnyMethod {
 async fn run<M: Mechanism, S: Timed>(
     mechanism: &mut M,
     method: &mut dyn Method<S>,
-    keeping: Option<Keeping<'_, ()>>,
+    keeping: Option<Keeping<'_>>,
     aiding: &dyn Aiding,
     channels: &Channels<'_, S>,
 ) {
-    let outside = (&mut NoLink, &mut NoRecorder);
+    let outside = Outside { link: &mut NoLink, recorder: &mut NoRecorder, store: () };
     navigate(mechanism, method, keeping, aiding, outside, channels).await;
 }
 
