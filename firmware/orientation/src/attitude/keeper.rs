@@ -159,15 +159,40 @@ impl Keeper {
         frame_rate(self.setting.latitude, north, self.speed)
     }
 
+    /// Present azimuth of body x; none where it is unknown.
+    pub(crate) fn azimuth(&self) -> Option<Azimuth> {
+        self.heading.as_ref().map(|heading| heading.azimuth(&self.vertical))
+    }
+
+    /// Reliability of the level, and the time since which it has been the same.
+    pub(crate) fn state(&self) -> State {
+        let since = Seconds(self.vertical.time().seconds() - self.since.seconds());
+        State { trust: self.trust, seconds: since }
+    }
+
+    /// Whether the body is at rest.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.vertical.is_at_rest()
+    }
+
+    /// Whether an azimuth is held.
+    pub(crate) fn has_azimuth(&self) -> bool {
+        self.heading.is_some()
+    }
+
+    /// Whether a gyro's bias exceeded its stated 1σ by far.
+    pub(crate) fn is_bias_beyond_stated(&self) -> bool {
+        self.vertical.is_bias_beyond_stated
+    }
+
     /// Present attitude with its uncertainties.
     #[must_use]
     pub fn report(&self) -> Report {
         let vertical = &self.vertical;
-        let azimuth = self.heading.as_ref().map(|heading| heading.azimuth(vertical));
+        let azimuth = self.azimuth();
         let [course, pitch, roll] = attitude::angles(vertical.attitude().parts());
         let course = azimuth.map_or(course, |azimuth| azimuth.angle.0);
         let time = vertical.time();
-        let since = Seconds(time.seconds() - self.since.seconds());
         let seconds = azimuth.map_or(0.0, |_| time.seconds() - self.handed.seconds());
         Report {
             time,
@@ -176,7 +201,7 @@ impl Keeper {
             level_sigma: Radians(vertical.sigma().into()),
             azimuth,
             attitude: attitude::quaternion([course, pitch, roll]),
-            state: State { trust: self.trust, seconds: since },
+            state: self.state(),
             is_at_rest: vertical.is_at_rest(),
             biases: rates(vertical.bias),
             bias_sigmas: rates(vertical.bias_sigmas()),

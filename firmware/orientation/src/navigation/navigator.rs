@@ -303,16 +303,15 @@ impl<'k> Navigator<'k> {
 
     /// Checks the state and reports its changes.
     fn look(&mut self, outlet: Outlet) {
-        let report = self.keeper.report();
         let is_silent = self.is_silent();
-        self.is_at_rest = report.is_at_rest && !is_silent;
-        self.report_state((!is_silent).then_some(report.state), outlet);
-        let had = core::mem::replace(&mut self.has_azimuth, report.azimuth.is_some());
-        if had && report.azimuth.is_none() {
+        self.is_at_rest = self.keeper.is_at_rest() && !is_silent;
+        self.report_state((!is_silent).then(|| self.keeper.state()), outlet);
+        let has_azimuth = self.keeper.has_azimuth();
+        if core::mem::replace(&mut self.has_azimuth, has_azimuth) && !has_azimuth {
             self.is_recalled = false;
             outlet(Output::Progress(Progress::AzimuthLost));
         }
-        let is_beyond = report.is_bias_beyond_stated;
+        let is_beyond = self.keeper.is_bias_beyond_stated();
         if is_beyond && !core::mem::replace(&mut self.is_bias_beyond_stated, true) {
             outlet(Output::Progress(Progress::BiasBeyondStated));
         }
@@ -380,7 +379,7 @@ impl<'k> Navigator<'k> {
             return outlet(Output::Progress(Progress::RecallRefused(reason)));
         }
         (self.is_recalled, self.has_azimuth) = (true, true);
-        if let Some(azimuth) = self.keeper.report().azimuth {
+        if let Some(azimuth) = self.keeper.azimuth() {
             outlet(Output::Progress(Progress::HeadingRecalled(azimuth)));
         }
         self.spare(outlet);
@@ -398,12 +397,10 @@ impl<'k> Navigator<'k> {
             }
             return;
         }
-        let (Some(azimuth), Some(remembered)) =
-            (self.keeper.report().azimuth, self.keeper.remember())
-        else {
+        let Some(azimuth) = self.keeper.azimuth().filter(|azimuth| self.is_new(*azimuth)) else {
             return;
         };
-        if self.is_new(azimuth) {
+        if let Some(remembered) = self.keeper.remember() {
             self.saved = Some((azimuth, self.now));
             outlet(Output::Save(remembered));
         }
