@@ -20,8 +20,7 @@ use rayon::prelude::*;
 
 /// Greatest distance of an azimuth from the truth, in its own σ.
 const FROM_TRUTH: f64 = 3.0;
-/// Greatest distance of an azimuth from that of the host's run, in its own σ: demanded where no conversion was lost
-/// while measuring; the images keep to it where some were, too, and are held to it.
+/// Greatest distance of an azimuth from that of the host's run, in its own σ.
 const FROM_HOST: f64 = 0.3;
 
 /// How images are executed.
@@ -83,6 +82,7 @@ impl Executed {
         if *samples == 0 {
             complaints.push(format!("{carrier}: no sample was read while measuring"));
         }
+        complaints.extend(self.losses());
         let Some([from_truth, from_host]) = self.distances() else {
             // A spinning body has no azimuth.
             if *carrier != Platform::Spin.name() {
@@ -98,12 +98,22 @@ impl Executed {
             }
         };
         hold(from_truth, FROM_TRUTH, "the truth");
-        let lost = match self.report.lost_measuring() {
-            0 => String::new(),
-            lost => format!(" ({lost} conversions were lost while measuring)"),
-        };
-        hold(from_host, FROM_HOST, &format!("that of the host{lost}"));
+        hold(from_host, FROM_HOST, "that of the host");
         complaints
+    }
+
+    /// Conversions that were lost at any time, and notices of the log that are false, as sentences.
+    fn losses(&self) -> impl Iterator<Item = String> {
+        let Report { carrier, service, false_notices, .. } = &self.report;
+        let [read, lost] = service
+            .iter()
+            .fold([0, 0], |[read, lost], service| [read + service.read, lost + service.lost]);
+        let losses = (lost > 0)
+            .then(|| format!("{carrier}: {lost} of {} conversions were lost", read + lost));
+        let false_ones = false_notices.iter().map(move |(words, count)| {
+            format!("{carrier}: \"{words}\" in the log, falsely: {count}")
+        });
+        losses.into_iter().chain(false_ones)
     }
 }
 
