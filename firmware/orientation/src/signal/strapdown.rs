@@ -15,11 +15,19 @@
 
 use super::InertialSample;
 use super::increment::{Increment, STEADY, STEP};
-use crate::math::rotation::{Quaternion, dot, sum, turned};
-use crate::units::Instant;
+use crate::math::rotation::{Quaternion, difference, dot, sum, turned};
+use crate::units::{AngleIncrement, Instant};
 
 /// Time between attitude updates, µs: 50 Hz.
 const PERIOD: u64 = 20_000;
+/// Averaging time of the recent change of the rates, s.
+const WATCH: f32 = 1.0;
+/// Angle that a rate may gain over the mean of both ends of a gap, in units of the recent angular
+/// acceleration and the squared length of the gap: a quarter if the acceleration changes its sign
+/// halfway. For a sine of any frequency it exceeds the RMS of what is missing.
+const WITHIN: f32 = 0.25;
+/// Least angular acceleration of a body in motion, rad/s²: a vehicle that begins to steer.
+const STEERING: f32 = 0.05;
 /// A 3×3 matrix in single precision, row by row.
 pub(crate) type Rough = [[f32; 3]; 3];
 
@@ -34,12 +42,14 @@ pub struct Carried {
     /// Rotation of the start frame per relative scale-factor error, rad; rows are start axes,
     /// columns body axes.
     pub scale: Rough,
+    /// Variance about each axis of the rotation in which samples are missing, rad².
+    pub lost: f32,
 }
 
 /// Sums since they were last taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
-    /// Sums of the angle increments, in steps of [`crate::units::AngleIncrement`].
+    /// Sums of the angle increments, in steps of [`AngleIncrement`].
     pub turned: [i64; 3],
     /// Sums of the angle increments about the body axes, rad: the present, the least and the
     /// greatest value.
@@ -52,6 +62,8 @@ pub struct Sums {
     pub count: u32,
     /// Whether a shock turned the body so quickly that the forces are not usable.
     pub is_blown: bool,
+    /// Whether the forces of more than an attitude update are missing.
+    pub is_interrupted: bool,
 }
 
 impl Sums {
@@ -85,6 +97,8 @@ pub struct Strapdown {
     pub carried: Carried,
     /// Mean rates between the last three attitude updates, rad/s, the latest first.
     rates: [[f32; 3]; 2],
+    /// Recent mean square of the change of these rates from one update to the next, (rad/s)².
+    changes: [f32; 3],
     /// Attitude of the last update as a matrix.
     matrix: Rough,
     /// Time of the last attitude update.
@@ -141,11 +155,57 @@ impl Strapdown {
         if seconds > 0.0 {
             let inverse = 1.0 / seconds;
             self.rates = [small.map(|turn| turn * inverse), self.rates[0]];
+            self.watch(seconds);
         }
         self.sums.turned = sum(&self.sums.turned, &steps.map(i64::from));
         self.sums.sweep(&small);
         self.sums.is_blown |= dot(&small, &small) > STEADY * STEADY;
         self.turn_force(&both);
+    }
+
+    /// Averages the change of the rates over an update of this length, s. A second that ends between
+    /// two updates cuts one short.
+    fn watch(&mut self, seconds: f32) {
+        if seconds < 0.5e-6 * PERIOD as f32 {
+            return;
+        }
+        let part = if self.changes[0] > 0.0 { (seconds / WATCH).min(1.0) } else { 1.0 };
+        let [now, before] = &self.rates;
+        for (axis, mean) in self.changes.iter_mut().enumerate() {
+            let change = now[axis] - before[axis];
+            *mean += part * (change * change - *mean);
+        }
+    }
+
+    /// Bridges samples that are missing for this time before a sample, s: the rate there is taken as
+    /// the mean of both ends. Its variance is that of the rates at both ends, and of what the recent
+    /// angular acceleration may have turned beyond; the stated squared angle random walk of the gyros,
+    /// rad²/s, is no acceleration.
+    #[cold]
+    pub(crate) fn bridge(
+        &mut self,
+        sample: &InertialSample,
+        [missing, period]: [f32; 2],
+        walk: f32,
+        is_at_rest: bool,
+    ) {
+        let before = self.rates[0];
+        let after = sample.turned.map(|turned| turned.0 as f32 * STEP / period);
+        let steps = |axis: usize| (0.5 * missing / STEP * (before[axis] + after[axis])) as i32;
+        let turned = core::array::from_fn(|axis| AngleIncrement(steps(axis)));
+        let end = Instant(sample.time.0.saturating_sub((period * 1e6) as u64));
+        let jump = difference(&after, &before).map(|jump| jump * jump);
+        let interval = period.max(PERIOD as f32 * 1e-6);
+        let variances = core::array::from_fn::<f32, 3, _>(|axis| {
+            let change = self.changes[axis];
+            let least = if is_at_rest { 0.0 } else { STEERING * interval };
+            let within = (change - 2.0 * walk / interval).max(least * least);
+            let gained = WITHIN * missing / interval;
+            missing * missing * (0.25 * (jump[axis] + 2.0 * change) + gained * gained * within)
+        });
+        self.carried.lost += variances.into_iter().fold(0.0, f32::max);
+        self.sums.is_interrupted |= missing * 1e6 > PERIOD as f32;
+        self.push(&InertialSample { time: end, turned, force: None });
     }
 
     /// Transforms the forces since the last update to the start axes, with the mean of the

@@ -23,7 +23,7 @@ proptest! {
             steps += i128::from(increment.0);
             exact += i128::from(rate) * i128::from(microseconds);
         }
-        // A step is 4 nrad, a product 10⁻¹⁵ rad.
+        // A step is 4 nrad, a product of whole numbers 10⁻¹⁵ rad.
         prop_assert!((steps * 4_000_000 - exact).abs() < 4_000_000);
     }
 }

@@ -2,6 +2,7 @@
 
 mod criteria;
 mod drives;
+mod gaps;
 mod inclination;
 mod increments;
 mod minimum;

@@ -52,8 +52,8 @@ fn a_drive_of_no_length_is_named() {
 }
 
 #[test]
-fn a_lost_sample_is_named_with_its_time() {
-    let faults = vec![SensorFault { failure: SensorFailure::Gap, from_s: 200.0, until_s: 200.03 }];
+fn seconds_without_samples_are_named_with_their_time() {
+    let faults = vec![SensorFault { failure: SensorFailure::Gap, from_s: 200.0, until_s: 202.0 }];
     let Err(Refusal::Stops(stops::Refusal::RotationMissing { at, .. })) =
         verdict(&Day { faults, ..two(1) })
     else {

@@ -67,11 +67,14 @@ fn a_stop_that_is_none_is_refused() {
 }
 
 #[test]
-fn a_gap_is_refused() {
-    let gap = drive(|rows| rows.retain(|row| !(500.0..500.4).contains(&row.time_s)));
-    let reason = words(&gap);
-    println!("{reason}");
-    assert!(reason.contains("missing") || reason.contains("gap"), "{reason}");
+fn a_gap_on_the_way_costs_sigma_and_one_of_seconds_is_refused() {
+    let without = |until| drive(|rows| rows.retain(|row| !(500.0..until).contains(&row.time_s)));
+    let found = |recorded: &Recorded| recorded.error(conclusion(&recorded.replayed()));
+    let ([_, whole], [error, sigma]) = (found(&drive(|_| ())), found(&without(500.4)));
+    println!("{error}° ± {sigma}°, without a gap {whole}°");
+    assert!(error.abs() <= SIGMAS * sigma && sigma > 2.0 * whole, "{error}° ± {sigma}°");
+    let reason = words(&without(502.0));
+    assert!(reason.contains("samples are missing after 4"), "{reason}");
 }
 
 #[test]

@@ -29,6 +29,8 @@ pub(crate) struct Block {
     pub attitude: Rough,
     /// Sensitivity of the start frame's rotation to gyro biases at its middle, s.
     pub bias: Rough,
+    /// Variance of the start frame's rotation by missing samples, at its middle, rad².
+    pub lost: f32,
     /// Number of the stop to which it belongs, or after which it was driven.
     pub stop: u8,
 }
@@ -45,6 +47,7 @@ impl Block {
             force: sum(&self.force.map(|part| a * part), &other.force.map(|part| b * part)),
             attitude: rough(&self.attitude, &other.attitude),
             bias: rough(&self.bias, &other.bias),
+            lost: a * self.lost + b * other.lost,
             stop: self.stop,
         }
     }

@@ -124,8 +124,7 @@ impl Conclusion {
             found = Found::of(setting, &path(setting, stop_detector));
         }
         Self {
-            verdict: judge(setting, &found, stop_detector.stops.len() as u32)
-                .map(|()| found.azimuth),
+            verdict: judge(setting, &found, stop_detector).map(|()| found.azimuth),
             found: Some(found),
         }
     }
@@ -171,7 +170,7 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
 /// short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Passed {
     setting.site.check_latitude()?;
-    stop_detector.state.loss.map_or(Ok(()), Err)?;
+    stop_detector.loss(setting.site.required_sigma.0).map_or(Ok(()), Err)?;
     let (stops, is_whole) = (&stop_detector.stops, stop_detector.rests == Rests::Whole);
     let is_fleeting = stop_detector.state.fleeting > 0.0 && stops.len() < 2;
     refuse_if(is_fleeting, too_short(stops.len(), Seconds(stop_detector.state.fleeting)))?;
@@ -232,8 +231,8 @@ fn agree(found: &Tally, stops: u32) -> Passed {
 }
 
 /// Tests the plausibility of the result.
-fn judge(setting: &Setting, found: &Found, stops: u32) -> Passed {
-    agree(&found.tally, stops)?;
+fn judge(setting: &Setting, found: &Found, stop_detector: &StopDetector) -> Passed {
+    agree(&found.tally, stop_detector.stops.len() as u32)?;
     let (Tally { left_out, chi_square, degrees, .. }, of) = (found.tally, found.blocks);
     refuse_if(left_out * LEFT_OUT > of, Refusal::RestDisturbed { disturbed: left_out, of })?;
     let is_no_noise = chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY;
@@ -247,7 +246,9 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Passed {
     refuse_if(is_off, alignment::Refusal::EarthRateMismatch { ratio, sigma })?;
     let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
     let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
-    setting.site.check_sigma(found.azimuth.sigma, source)
+    let sigma = found.azimuth.sigma;
+    let is_met = setting.site.check_sigma(sigma, source);
+    is_met.map_err(|reason| stop_detector.cause(sigma.0).map_or(reason, Into::into))
 }
 
 impl Found {

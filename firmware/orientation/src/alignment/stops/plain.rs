@@ -152,7 +152,8 @@ fn sigmas(setting: &Setting, path: &Path, first: &End, last: &End, turn: f64) ->
         let force = site.accelerometer_bias_sigma.0 / path.gravity
             * length(&weighted(direction, &last.attitude, &first.attitude));
         let walk = site.noise.model().angle_random_walk;
-        let noise = walk.0 * walk.0 * (last.middle - first.middle)
+        let noise = f64::from(path.carried.lost)
+            + walk.0 * walk.0 * (last.middle - first.middle)
             + path.density() / (path.gravity * path.gravity)
                 * (1.0 / first.seconds + 1.0 / last.seconds);
         let place = path.displacement_sigma(setting) * path.place.per_metre()[0];

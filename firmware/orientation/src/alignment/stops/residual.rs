@@ -13,7 +13,7 @@ pub struct Residual {
     /// Levelled less predicted vertical, along north and east of the start. Gyro biases are
     /// compensated, accelerometer biases and scale errors are not.
     pub tilt: [Radians; 2],
-    /// Standard deviation of either from white noise alone, 1σ.
+    /// Standard deviation of either from white noise and missing samples alone, 1σ.
     pub sigma: Radians,
 }
 
@@ -32,7 +32,8 @@ impl Residual {
         let since = end.middle - path.start;
         let predicted = up(&path.place.navigation(since, end.displacement));
         let [north, east, _] = difference(&levelled, &predicted);
-        let walked = angle_random_walk.0 * angle_random_walk.0 * since.max(0.0);
+        let walked = angle_random_walk.0 * angle_random_walk.0 * since.max(0.0)
+            + f64::from(path.carried.lost);
         let felt = path.density() / (path.gravity * path.gravity * end.seconds);
         Self { tilt: [Radians(north), Radians(east)], sigma: Radians(libm::sqrt(walked + felt)) }
     }

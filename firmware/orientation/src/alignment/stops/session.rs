@@ -15,7 +15,7 @@ use super::residual::Residual;
 use super::stop::{STOPS, Stop};
 use super::stop_detector::{Rests, StopDetector};
 use super::{Progress, Setting};
-use crate::alignment::period::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, contradiction};
+use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
 use crate::alignment::progress::Progress::Stops;
 use crate::alignment::setup::{LONGEST, PERIODS, check_ranges};
 use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, Solution, Verdict};
@@ -76,19 +76,14 @@ impl Procedure {
             stop_seconds: STOP_SECONDS,
             longest_seconds: LONGEST_SECONDS,
             sample_seconds,
-            period_tolerance: CONVERTER_TOLERANCE,
+            period_tolerance: PERIOD_TOLERANCE,
             displacements: Vec::new(),
         }
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
     pub fn recorded(rests: Rests, sample_seconds: Seconds) -> Self {
-        Self {
-            rests,
-            longest_seconds: Seconds(f64::INFINITY),
-            period_tolerance: PERIOD_TOLERANCE,
-            ..Self::new(0, sample_seconds)
-        }
+        Self { rests, longest_seconds: Seconds(f64::INFINITY), ..Self::new(0, sample_seconds) }
     }
 
     /// Checks the procedure.
@@ -243,7 +238,8 @@ impl Session {
             self.is_reported = false;
             self.enter(phase, now, listener);
         }
-        if self.procedure.stops > 0 && self.stop_detector.state.loss.is_some() {
+        let required = self.setting.site.required_sigma.0;
+        if self.procedure.stops > 0 && self.stop_detector.loss(required).is_some() {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds.0 {
@@ -303,8 +299,9 @@ impl Session {
     fn contradiction(&self) -> Option<Refusal> {
         let Procedure { sample_seconds: stated, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
-        // Missing samples are reported as such instead.
-        let is_whole = self.samples > 0 && self.stop_detector.state.loss.is_none();
+        // Lost rotation is reported as such instead.
+        let is_whole = self.samples > 0
+            && self.stop_detector.loss(self.setting.site.required_sigma.0).is_none();
         contradiction(stated, Seconds(found), period_tolerance).filter(|_| is_whole)
     }
 

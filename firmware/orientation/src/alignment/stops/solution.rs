@@ -141,12 +141,19 @@ struct Moment {
     bias: Rough,
     /// Sensitivity of the frame to scale errors, rad.
     scale: Rough,
+    /// Variance of the frame's rotation by missing samples, rad².
+    lost: f32,
 }
 
 impl Moment {
     /// Sensitivities of a carried attitude at a time, s.
     fn of(at: f64, carried: &Carried) -> Self {
-        Self { at, bias: carried.bias, scale: carried.scale }
+        Self { at, bias: carried.bias, scale: carried.scale, lost: carried.lost }
+    }
+
+    /// Sensitivities in the middle of a block; that to scale errors is not kept of each.
+    fn within(block: &Block, scale: Rough) -> Self {
+        Self { at: block.middle, bias: block.bias, scale, lost: block.lost }
     }
 }
 
@@ -285,8 +292,7 @@ impl Run<'_> {
         self.solution.filter.anchor();
         self.before = [0.0; 2];
         for block in self.path.blocks.of(index) {
-            let scale = stop.begin.scale;
-            self.carry(Moment { at: block.middle, bias: block.bias, scale });
+            self.carry(Moment::within(block, stop.begin.scale));
             self.block(block, self.path.displaced(index));
         }
         self.carry(Moment::of(stop.to.0, &stop.end));
@@ -301,7 +307,8 @@ impl Run<'_> {
         let bias = gained(&to.bias, &self.last.bias);
         let has_scale = self.setting.site.scale_sigma > 0.0;
         let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
-        self.solution.filter.carry(&bias, &scale, walk * walk * seconds);
+        let lost = f64::from((to.lost - self.last.lost).max(0.0));
+        self.solution.filter.carry(&bias, &scale, walk * walk * seconds + lost);
         self.solution.filter.walk(self.bias_walk() * seconds);
         self.last = to;
     }
@@ -326,8 +333,7 @@ impl Run<'_> {
         self.solution.filter.reset(VELOCITY..VELOCITY + 3, 0.0);
         let (mut gained, mut seconds) = ([0.0; 3], 0.0);
         for block in path.drives.of(index - 1) {
-            let scale = self.last.scale;
-            self.carry(Moment { at: block.middle, bias: block.bias, scale });
+            self.carry(Moment::within(block, self.last.scale));
             let displaced = path.underway(index - 1, block.middle);
             let above = up(&path.place.navigation(block.middle - path.start, displaced));
             let predicted = scaled(&turned(&self.solution.frame, &above), path.gravity);

@@ -30,8 +30,15 @@ const REST_SPAN: f32 = 5.0;
 const DRIVE_SPAN: f32 = 15.0;
 /// Nominal length of a second, µs.
 const SECOND: u64 = 1_000_000;
-/// Distance of two samples, in sample periods, from which rotation counts as lost.
+/// Distance of two samples, in sample periods, from which samples are missing.
 const GAP: f64 = 1.6;
+/// Longest gap whose rotation its neighbours bound, s.
+const LONGEST_GAP: f64 = 1.0;
+/// Greatest standard deviation of the rotation in all gaps, 1σ, rad: two degrees, up to which the
+/// equations of the filter are linear.
+const GREATEST_LOSS: f64 = 0.035;
+/// Part of the variance of an azimuth from which the gaps are its cause.
+const CAUSE: f64 = 0.5;
 
 /// Source of the stops.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +83,10 @@ pub(super) struct State {
     /// Lever arm from the axis of the sway to the sensors.
     lever: Lever,
     /// Loss of rotation that first made the carried attitude invalid.
-    pub(super) loss: Option<Refusal>,
+    loss: Option<Refusal>,
+    /// Gap with the greatest variance, rad², and length of all gaps, s.
+    gap: Option<(f32, Refusal)>,
+    missing: f64,
 }
 
 /// Detection of the stops.
@@ -86,6 +96,8 @@ pub struct StopDetector {
     pub(super) rests: Rests,
     /// Limits of the stop criteria.
     limits: Limits,
+    /// Stated squared angle random walk of the gyros, rad²/s.
+    walk: f32,
     /// Local gravity, m/s².
     gravity: f64,
     /// Least distance of two samples that counts as a gap, µs.
@@ -117,6 +129,7 @@ impl StopDetector {
         Self {
             rests,
             limits: sensors.limits(Seconds(WINDOW as f64)),
+            walk: (sensors.angle_random_walk.0 * sensors.angle_random_walk.0) as f32,
             gravity: gravity.0,
             gap: libm::round(GAP * sample_seconds.0 * 1e6) as u64,
             period: libm::round(sample_seconds.0 * 1e6) as u64,
@@ -143,7 +156,7 @@ impl StopDetector {
         if self.state.begun.is_none() {
             self.begin(sample.time);
         }
-        self.watch(sample.time);
+        self.watch(sample);
         // A rotation at its limit is large, so the strapdown has updated its attitude.
         if self.state.strapdown.push(sample)
             && sample.turned.iter().any(|turned| turned.is_saturated())
@@ -168,20 +181,53 @@ impl StopDetector {
         self.restart(start);
     }
 
-    /// Detects a gap.
-    fn watch(&mut self, now: Instant) {
-        let elapsed = now.0.saturating_sub(self.state.last.0);
+    /// Detects a gap before a sample.
+    #[inline]
+    fn watch(&mut self, sample: &InertialSample) {
+        let elapsed = sample.time.0.saturating_sub(self.state.last.0);
         if elapsed > self.gap {
-            let (at, seconds) = (self.state.last.seconds(), elapsed as f64 * 1e-6);
-            self.lose(Refusal::RotationMissing { at: Seconds(at), seconds: Seconds(seconds) });
+            self.bridge(sample, elapsed as f64 * 1e-6);
         }
-        self.state.last = now;
+        self.state.last = sample.time;
+    }
+
+    /// Bridges a gap that ends with a sample this long after the one before it, s.
+    #[cold]
+    fn bridge(&mut self, sample: &InertialSample, elapsed: f64) {
+        let at = Seconds(self.state.last.seconds());
+        let gap = Refusal::RotationMissing { at, seconds: Seconds(elapsed) };
+        let period = self.period as f64 * 1e-6;
+        let missing = elapsed - period;
+        self.state.missing += missing;
+        if missing > LONGEST_GAP {
+            return self.lose(gap);
+        }
+        let before = self.state.strapdown.carried.lost;
+        let times = [missing as f32, period as f32];
+        self.state.strapdown.bridge(sample, times, self.walk, self.state.is_at_rest);
+        let variance = self.state.strapdown.carried.lost - before;
+        if self.state.gap.is_none_or(|(greatest, _)| variance > greatest) {
+            self.state.gap = Some((variance, gap));
+        }
     }
 
     /// Stores the first loss.
     #[cold]
     fn lose(&mut self, loss: Refusal) {
         self.state.loss.get_or_insert(loss);
+    }
+
+    /// Loss of rotation by which no azimuth with this 1σ, rad, can be found any more.
+    pub(super) fn loss(&self, required: f64) -> Option<Refusal> {
+        let most = required.min(GREATEST_LOSS);
+        let lost = f64::from(self.state.strapdown.carried.lost);
+        let gap = self.state.gap.filter(|_| lost > most * most).map(|(_, gap)| gap);
+        self.state.loss.or(gap)
+    }
+
+    /// The gap that contributes most to an azimuth's 1σ, rad, of which gaps are the cause.
+    pub(super) fn cause(&self, sigma: f64) -> Option<Refusal> {
+        self.loss(libm::sqrt(CAUSE) * sigma)
     }
 
     /// Whether a configured stop begins or ends with this sample.
@@ -252,8 +298,8 @@ impl StopDetector {
     fn whole_second(&mut self, now: Instant) -> Second {
         let Progress { since, begin } = self.state.progress;
         let sums = self.state.strapdown.take();
-        let (swung, Sums { turned, force, start_force, count, is_blown, .. }) =
-            (sums.swung(), sums);
+        let swung = sums.swung();
+        let Sums { turned, force, start_force, count, is_blown, is_interrupted, .. } = sums;
         let inverse = 1.0 / count.max(1) as f32;
         let mean = |sum: i64| sum as f64 * 1e-6 / f64::from(count);
         Second {
@@ -261,7 +307,7 @@ impl StopDetector {
             to: now.seconds(),
             turned,
             swung,
-            force: (count > 0).then(|| force.map(mean)),
+            force: (count > 0 && !is_interrupted).then(|| force.map(mean)),
             start_force: start_force.map(|sum| sum * inverse),
             is_blown,
             is_rest: false,
@@ -364,11 +410,11 @@ impl StopDetector {
         }
     }
 
-    /// Time from the beginning of the first sample to the end of the last one, s; zero without
-    /// samples.
+    /// Time from the beginning of the first sample to the end of the last one without gaps, s; zero
+    /// without samples.
     pub(super) fn elapsed(&self) -> f64 {
         let begun = self.state.begun.unwrap_or(self.state.last);
-        self.state.last.0.saturating_sub(begun.0) as f64 * 1e-6
+        self.state.last.0.saturating_sub(begun.0) as f64 * 1e-6 - self.state.missing
     }
 
     /// Beginning of the first sample, s.
@@ -396,6 +442,7 @@ fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
         force,
         attitude: mean(&begin.attitude.rough_matrix(), &end.attitude.rough_matrix()),
         bias: mean(&begin.bias, &end.bias),
+        lost: 0.5 * (begin.lost + end.lost),
         stop,
     }
 }
