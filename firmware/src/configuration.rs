@@ -5,7 +5,7 @@
 
 use embassy_time::Duration;
 use orientation::alignment::stepwise::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
-use orientation::units::{DEGREE, Radians};
+use orientation::units::{DEGREE, MetresPerSecondSquared, Radians};
 
 use crate::calibration::Harmonics;
 use crate::ports::Frames;
@@ -87,6 +87,8 @@ pub struct FramesConfiguration {
     stations: [FrameAngles; STATIONS.len()],
     /// Harmonic errors of the two encoders.
     pub encoders: Frames<Harmonics>,
+    /// Standard deviation of the biases of the accelerometer on the base, 1σ.
+    pub force_bias_sigma: MetresPerSecondSquared,
     /// The two drives. The waiting position and the travel follow from the geometry.
     pub drives: Frames<StageConfiguration>,
     /// Time for which neither frame may have moved before samples are used. The frames turn the
@@ -108,12 +110,16 @@ const FRAMES_REST: Duration = Duration::from_millis(1500);
 const FRAME_INDEX: f64 = -95.0 * DEGREE;
 
 impl FramesConfiguration {
-    /// Default drives with a calibrated geometry and calibrated encoders: index at −95°, travel of
-    /// ±[`LIMIT`].
+    /// Default drives with a calibrated geometry, calibrated encoders and a calibrated accelerometer:
+    /// index at −95°, travel of ±[`LIMIT`].
     ///
     /// # Errors
     /// A geometry with which the sensitive axis cannot be brought to one of the orientations.
-    pub fn new(geometry: TwoFrame, encoders: Frames<Harmonics>) -> Result<Self, MountError> {
+    pub fn new(
+        geometry: TwoFrame,
+        encoders: Frames<Harmonics>,
+        force_bias_sigma: MetresPerSecondSquared,
+    ) -> Result<Self, MountError> {
         let drive = |zero: Radians| StageConfiguration {
             index: FRAME_INDEX + zero.0,
             travel: [-LIMIT.0, LIMIT.0],
@@ -124,7 +130,8 @@ impl FramesConfiguration {
             *angles = geometry.angles(station)?;
         }
         let zeros = Frames { outer: geometry.outer_zero, inner: geometry.inner_zero };
-        Ok(Self { geometry, stations, encoders, drives: zeros.map(drive), rest: FRAMES_REST })
+        let drives = zeros.map(drive);
+        Ok(Self { geometry, stations, encoders, force_bias_sigma, drives, rest: FRAMES_REST })
     }
 
     /// The calibrated geometry of the mount.

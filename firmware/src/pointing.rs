@@ -14,7 +14,7 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise::mount::{FrameAngles, TwoFrame};
 use orientation::alignment::stepwise::session::procedure::STILL;
 use orientation::device::Device;
-use orientation::units::{Angle, DEGREE, Radians};
+use orientation::units::{Angle, DEGREE, MetresPerSecondSquared, Radians};
 
 use crate::calibration::{Calibration, Harmonics};
 use crate::configuration::{Configuration, FramesConfiguration};
@@ -49,9 +49,6 @@ pub trait Pointing {
     /// The readings of the encoders.
     type Shown;
 
-    /// Whether the accelerometer is fixed to the base rather than to the platform with the gyro.
-    const FORCE_ON_BASE: bool;
-
     /// Starts the encoders.
     ///
     /// # Errors
@@ -74,6 +71,12 @@ pub trait Pointing {
     /// Elevation of the axis at rest; [`None`] while it moves, or if it cannot leave the base's
     /// plane.
     fn elevation(&self) -> Option<Angle> {
+        None
+    }
+
+    /// Standard deviation of the biases of an accelerometer that is fixed to the base, 1σ; [`None`]
+    /// if it is on the platform with the gyro.
+    fn force_on_base(&self) -> Option<MetresPerSecondSquared> {
         None
     }
 }
@@ -175,8 +178,6 @@ impl<'a, E: Encoder> Shaft<'a, E> {
 impl<E: Encoder> Pointing for Shaft<'_, E> {
     type Shown = Angle;
 
-    const FORCE_ON_BASE: bool = false;
-
     async fn start(&mut self) -> Result<(), Refusal> {
         self.encoder.start(self.shared).await
     }
@@ -210,6 +211,8 @@ pub struct FrameShafts<'a, E> {
     shafts: Frames<Shaft<'a, E>>,
     /// Calibrated geometry of the mount.
     geometry: TwoFrame,
+    /// Standard deviation of the accelerometers' biases, 1σ.
+    force_bias_sigma: MetresPerSecondSquared,
     /// Time without movement after which the frames count as at rest.
     rest: Duration,
     /// Largest change of an angle that counts as rest, in steps of an [`Angle`].
@@ -250,6 +253,7 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
                 inner: shaft(inner, Device::InnerEncoder, inner_error, &latest.inner),
             },
             geometry: frames.geometry(),
+            force_bias_sigma: frames.force_bias_sigma,
             rest: frames.rest,
             still: Angle::from_rad(STILL.0).0,
             level: Angle::from_rad(LEVEL).0,
@@ -287,8 +291,6 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
 impl<E: Encoder> Pointing for FrameShafts<'_, E> {
     type Shown = Frames<Angle>;
 
-    const FORCE_ON_BASE: bool = true;
-
     async fn start(&mut self) -> Result<(), Refusal> {
         self.shafts.outer.start().await?;
         self.shafts.inner.start().await
@@ -319,5 +321,9 @@ impl<E: Encoder> Pointing for FrameShafts<'_, E> {
 
     fn elevation(&self) -> Option<Angle> {
         self.aim.elevation.filter(|_| self.since.elapsed() >= self.rest)
+    }
+
+    fn force_on_base(&self) -> Option<MetresPerSecondSquared> {
+        Some(self.force_bias_sigma)
     }
 }

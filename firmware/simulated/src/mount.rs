@@ -134,7 +134,11 @@ impl FramesScenario {
     pub fn frames(&self) -> Result<FramesConfiguration, MountError> {
         let stated = if self.is_calibrated { self.calibrated } else { self.zeros() };
         let harmonics = self.base.configuration().encoder;
-        FramesConfiguration::new(stated, Frames { outer: harmonics, inner: harmonics })
+        FramesConfiguration::new(
+            stated,
+            Frames { outer: harmonics, inner: harmonics },
+            FORCE_BIAS_SIGMA,
+        )
     }
 
     /// A perfect mount with the same zeros of its encoders, without which nothing homes.

@@ -6,9 +6,13 @@ use embassy_time::Instant;
 use orientation::navigation::Motion;
 use orientation::navigation::progress::VerticalGyro;
 use orientation::signal::InertialSample;
-use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
+use orientation::signal::force_offset::ForceOffset;
+use orientation::units::{
+    Angle, AngleIncrement, AngularRate, MetresPerSecondSquared, SpecificForce,
+};
 
 use super::increments;
+use crate::pointing::Decimator;
 use crate::ports::BaseReading;
 use crate::shared::Shared;
 
@@ -26,6 +30,34 @@ const LONGEST: u64 = 3;
 const COMPARED: u32 = 24_000;
 /// Number of samples from which the comparison is used: ten seconds at 200 Hz.
 const ENOUGH: u32 = 2_000;
+
+/// Decimation of the forces on a platform with which the coarse ones are compared: twelve times a
+/// second.
+const FORCES_COMPARED: u32 = 8;
+/// Standard deviation of the coarse accelerometers' biases after that comparison, 1σ, m/s²: 2 mg, since
+/// neither the scale of the two is equal nor the platform's axis exactly that of the base.
+const COMPARED_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(2e-3 * 9.80665);
+
+/// Comparison of the coarse accelerometers with better ones that turn on a platform.
+#[derive(Clone, Copy, Debug)]
+struct Levelling {
+    /// Decimation of the comparison.
+    due: Decimator,
+    /// Latest coarse force; none where it was clipped.
+    latest: Option<[SpecificForce; 3]>,
+    /// Comparison so far.
+    comparison: ForceOffset,
+    /// Offset of the coarse accelerometers, once it is known.
+    offset: Option<[SpecificForce; 3]>,
+}
+
+impl Levelling {
+    /// Subtracts the offset from a coarse force, where it is known.
+    fn less(&self, coarse: [SpecificForce; 3]) -> [SpecificForce; 3] {
+        let offset = self.offset.unwrap_or_default();
+        core::array::from_fn(|axis| SpecificForce(coarse[axis].0 - offset[axis].0))
+    }
+}
 
 /// Excess of the coarse gyro about the down axis over the precise one, in steps of an increment per
 /// sample.
@@ -114,8 +146,10 @@ pub(super) struct Coarse {
     precise: Precise,
     /// Latest force of the better accelerometer on the base; none without a new one.
     force: Option<[SpecificForce; 3]>,
-    /// Whether there is a better accelerometer.
+    /// Whether there is a better accelerometer on the base.
     is_felt: bool,
+    /// Comparison of the coarse accelerometers with those on a platform.
+    levelling: Levelling,
     /// Source of the rate about the down axis.
     down: VerticalGyro,
     /// Comparison of the coarse gyro with the precise one.
@@ -140,6 +174,12 @@ impl Coarse {
             },
             force: None,
             is_felt: false,
+            levelling: Levelling {
+                due: Decimator::new(FORCES_COMPARED),
+                latest: None,
+                comparison: ForceOffset::default(),
+                offset: None,
+            },
             down: VerticalGyro::Coarse,
             excess: Excess::default(),
         }
@@ -174,10 +214,37 @@ impl Coarse {
         self.precise.is_vertical = false;
     }
 
-    /// Takes a force of the better accelerometer, if there is a new one.
-    pub(super) fn feel(&mut self, force: Option<[SpecificForce; 3]>) {
-        self.is_felt |= force.is_some();
-        self.force = force.or(self.force);
+    /// Takes a force of the better accelerometer on the base, whose biases have this 1σ.
+    pub(super) fn feel(
+        &mut self,
+        force: [SpecificForce; 3],
+        bias_sigma: MetresPerSecondSquared,
+        shared: &Shared<'_>,
+    ) {
+        if !core::mem::replace(&mut self.is_felt, true) {
+            shared.move_on(Motion::ForcesExchanged(bias_sigma));
+        }
+        self.force = Some(force);
+    }
+
+    /// Takes a force of the better accelerometer on a platform, with the heading of its axis.
+    pub(super) fn compare(
+        &mut self,
+        force: [SpecificForce; 3],
+        heading: Angle,
+        shared: &Shared<'_>,
+    ) {
+        let Levelling { due, latest, comparison, offset } = &mut self.levelling;
+        if offset.is_some() || !due.is_due() {
+            return;
+        }
+        if let Some(coarse) = *latest {
+            comparison.push(coarse, force, heading);
+            *offset = comparison.offset();
+        }
+        if offset.is_some() {
+            shared.move_on(Motion::ForcesExchanged(COMPARED_SIGMA));
+        }
     }
 
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
@@ -192,7 +259,9 @@ impl Coarse {
             }
             None => self.excess.less(turned[2]),
         };
-        let coarse = (!reading.is_clipped && !self.is_felt).then_some(reading.force);
+        self.levelling.latest = (!reading.is_clipped).then_some(reading.force);
+        let coarse = self.levelling.latest.filter(|_| !self.is_felt);
+        let coarse = coarse.map(|force| self.levelling.less(force));
         let time = orientation::units::Instant(at.as_micros());
         let force = self.force.take().or(coarse);
         shared.move_on(Motion::Moved(InertialSample { time, turned, force }));

@@ -135,13 +135,17 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
         self.compensation.follow(true, shared).await?;
         self.pass_on();
-        if P::FORCE_ON_BASE {
-            self.coarse.feel(force.map(|reading| reading.force));
+        let on_base = self.pointing.force_on_base();
+        if let Some((reading, bias_sigma)) = force.zip(on_base) {
+            self.coarse.feel(reading.force, bias_sigma, shared);
         }
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.outlet.judge(time);
         let aim = self.pointing.aim(shown);
         self.coarse.point(self.pointing.elevation());
+        if let Some(reading) = force.filter(|_| on_base.is_none()) {
+            self.coarse.compare(reading.force, aim.heading, shared);
+        }
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,

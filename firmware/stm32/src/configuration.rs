@@ -155,9 +155,10 @@ pub const BASE_DIVIDER: u32 = 2;
 /// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
 /// its oscillator and the outputs that are not read.
 const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];
-/// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases
-/// after calibration, m/s².
-const BASE_SIGMAS: (f64, f64, f64) = (3.0, 0.005, 2e-3 * 9.80665);
+/// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases,
+/// m/s²: half of the zero-g level of ±40 mg (data sheet, `LA_TyOff`), since nothing calibrates them
+/// before they are compared with the ADXL355.
+const BASE_SIGMAS: (f64, f64, f64) = (3.0, 0.005, 20e-3 * 9.80665);
 /// Distance of the board from the point about which the base sways, m.
 const BASE_LEVER: f64 = 0.4;
 
@@ -244,7 +245,8 @@ pub fn mount_procedure(settings: &Settings<TwoFrameSchedule>) -> Procedure {
 /// # Errors
 /// A geometry with which an orientation is out of reach.
 pub fn frames() -> Result<FramesConfiguration, MountError> {
-    FramesConfiguration::new(GEOMETRY, Frames { outer: ENCODER, inner: ENCODER })
+    let encoders = Frames { outer: ENCODER, inner: ENCODER };
+    FramesConfiguration::new(GEOMETRY, encoders, FORCE_CALIBRATED_SIGMA)
 }
 
 /// Configuration of the stage's devices.

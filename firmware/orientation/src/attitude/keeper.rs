@@ -8,7 +8,7 @@ use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical, rates};
 use crate::signal::InertialSample;
-use crate::units::{Instant, MetresPerSecond, Radians, Seconds};
+use crate::units::{Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds};
 
 use crate::alignment::Azimuth;
 
@@ -84,6 +84,12 @@ impl Keeper {
     pub fn exchange_down(&mut self, gyro: Gyro) {
         self.setting = self.setting.with_down(gyro);
         self.vertical.exchange_down(&self.setting);
+    }
+
+    /// Replaces the accelerometers by others, whose biases have this 1σ.
+    pub fn exchange_forces(&mut self, bias_sigma: MetresPerSecondSquared) {
+        self.setting.force_bias_sigma = bias_sigma;
+        self.vertical.exchange_forces(&self.setting);
     }
 
     /// Adopts an azimuth of body x at the present time, in place of any previous one.

@@ -9,7 +9,8 @@ use crate::attitude::restart::{RecallRefusal, Remembered};
 use crate::attitude::{Gyro, Keeper, Realigned, Report, State, Trust};
 use crate::signal::InertialSample;
 use crate::units::{
-    DEGREE, DEGREE_PER_HOUR, Instant, MetresPerSecond, Radians, RadiansPerSecond, Seconds,
+    DEGREE, DEGREE_PER_HOUR, Instant, MetresPerSecond, MetresPerSecondSquared, Radians,
+    RadiansPerSecond, Seconds,
 };
 
 /// Period of the checks of the keeper's state, µs.
@@ -60,6 +61,9 @@ pub enum Motion {
     Moved(InertialSample),
     /// From the next increment on, another gyro measures about the down axis.
     Exchanged(VerticalGyro),
+    /// From the next increment on, the forces are those of other accelerometers, or of calibrated
+    /// ones, whose biases have this 1σ.
+    ForcesExchanged(MetresPerSecondSquared),
 }
 
 /// Input of the navigator. What it does follows from its inputs and their order alone.
@@ -205,6 +209,9 @@ impl<'k> Navigator<'k> {
             Input::Found(at, azimuth) => self.found = Some((*at, *azimuth)),
             Input::Motion(Motion::Moved(sample)) => self.push(sample, outlet),
             Input::Motion(Motion::Exchanged(down)) => self.exchange(*down, outlet),
+            Input::Motion(Motion::ForcesExchanged(bias_sigma)) => {
+                self.keeper.exchange_forces(*bias_sigma);
+            }
             Input::Settled => self.settle(Instant(u64::MAX), outlet),
             Input::Aided(velocity, azimuth) => {
                 self.keeper.move_at(*velocity);
@@ -342,12 +349,13 @@ impl<'k> Navigator<'k> {
     }
 
     /// Tracks since when the body has been at rest. A motion as short as that of a slammed door
-    /// does not end the rest.
+    /// does not end the rest, and while nothing is measured none begins.
     fn rest(&mut self) {
         if self.is_at_rest {
             self.moves = None;
             self.rests.get_or_insert(self.now);
-        } else if let Some(rests) = self.rests {
+        } else if let Some(rests) = self.rests.filter(|_| self.moves.is_some() || !self.is_silent())
+        {
             let moves = *self.moves.get_or_insert(self.now);
             self.patience = RESTLESS + LEARNING - moves.0.saturating_sub(rests.0).min(LEARNING);
             if self.now.0.saturating_sub(moves.0) >= self.patience {

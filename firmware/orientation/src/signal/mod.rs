@@ -3,6 +3,7 @@
 
 pub mod blocks;
 pub mod dwell;
+pub mod force_offset;
 pub(crate) mod increment;
 pub mod phasor;
 pub mod rest;

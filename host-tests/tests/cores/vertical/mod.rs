@@ -2,6 +2,8 @@
 
 mod attitude;
 mod faults;
+mod forces;
+mod gaps;
 mod honesty;
 mod rest;
 mod world;

@@ -1,10 +1,10 @@
 //! The moment of the handing over, sample by sample.
 
 use embassy_time::Duration;
-use orientation::alignment::{Azimuth, Progress};
+use orientation::alignment::{Azimuth, Progress, Refusal};
 use orientation::attitude::{Gyro, Keeper, Setting};
 use orientation::earth::Latitude;
-use orientation::navigation::{self, Input, Motion, Navigator, Output, Policy, Realignment};
+use orientation::navigation::{self, Input, Motion, Navigator, Order, Output, Policy, Realignment};
 use orientation::signal::InertialSample;
 use orientation::units::{
     AngleIncrement, DEGREE, Instant, Radians, RadiansPerSecond, Seconds, SpecificForce,
@@ -183,4 +183,55 @@ fn the_azimuth_goes_on_from_the_sessions_last_sample_without_a_gap() {
         let found_error = (azimuth - truth + 180.0).rem_euclid(360.0) - 180.0;
         assert!((error.to_degrees() - found_error).abs() < 0.01, "seed {seed}");
     }
+}
+
+/// Outputs of a navigator in a vehicle beside an alignment, which has samples of half a minute at rest and then what
+/// follows.
+fn outputs(policy: &Policy, follows: impl Iterator<Item = Input>) -> Vec<Output> {
+    let (mut keeper, mut outputs) = (keeper(), Vec::new());
+    let mut navigator = Navigator::new(&mut keeper, policy);
+    for input in (1..=3000).map(|index| moved(index, 0.0)).chain(follows) {
+        navigator.take(&input, &mut |output| outputs.push(output));
+    }
+    outputs
+}
+
+/// Time that passes from 30 s on without a sample, ten times a second.
+fn silence() -> impl Iterator<Item = Input> {
+    (1..=900).map(|tenth| Input::Passed(Instant(30_000_000 + tenth * 100_000)))
+}
+
+#[test]
+fn a_body_at_rest_of_which_nothing_is_measured_any_more_has_not_set_off() {
+    let policy = Policy { knows_stops: false, ..policy() };
+    let failed = Output::Order(Order::Fail(Refusal::MovedDuringAlignment));
+    let outputs = outputs(&policy, silence());
+    assert!(outputs.contains(&Output::Progress(navigation::Progress::NoMotion)));
+    assert!(!outputs.contains(&failed));
+}
+
+#[test]
+fn a_body_that_sets_off_before_nothing_is_measured_any_more_has_set_off() {
+    let policy = Policy { knows_stops: false, ..policy() };
+    let failed = Output::Order(Order::Fail(Refusal::MovedDuringAlignment));
+    let off = (3001..=3200).map(|index| moved(index, TURN));
+    let later = silence().map(|input| match input {
+        Input::Passed(now) => Input::Passed(Instant(now.0 + 2_000_000)),
+        other => other,
+    });
+    assert!(outputs(&policy, off.chain(later)).contains(&failed));
+}
+
+#[test]
+fn gaps_at_rest_do_not_void_the_heading_of_a_vehicle_that_is_saved() {
+    let azimuth =
+        Azimuth { angle: Radians::from_degrees(100.0), sigma: Radians::from_degrees(0.01) };
+    let found = Input::Found(Instant(3000 * 10_000), azimuth);
+    // Two and ninety samples are missing in turn, every two seconds.
+    let is_missing = |index: u64| index % 400 < 90 || (200..202).contains(&(index % 400));
+    let samples = (3001..=8000).filter(move |index| !is_missing(*index));
+    let outputs = outputs(&policy(), [found].into_iter().chain(samples.map(|i| moved(i, 0.0))));
+    let count = |is: fn(&Output) -> bool| outputs.iter().filter(|output| is(output)).count();
+    assert_eq!(count(|output| matches!(output, Output::Save(_))), 1);
+    assert_eq!(count(|output| matches!(output, Output::Forget)), 0);
 }

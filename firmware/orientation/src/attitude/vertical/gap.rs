@@ -5,13 +5,18 @@ use super::judge::{Findings, Task};
 use super::stretch::Stretch;
 use super::sums::{Rested, Sums, Window};
 use super::{Trust, Vertical};
-use crate::math::rotation::{difference, dot, scaled, sum};
+use crate::attitude::quaternion::Vector;
+use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::{Increment, STEP};
 use crate::units::{AngleIncrement, Instant};
 
-/// Deviation of the rate within a gap from the mean of its ends, as a part of the recent rate.
+/// Deviation of the rate within a gap from the mean of its ends, as a part of the recent rate
+/// beyond the biases.
 const GAP_PART: f32 = 0.3;
+/// Longest gap through which a body goes on resting that rested before it, s: whatever moved it
+/// would have to move it and bring it to rest again within that time.
+const STANDING: f32 = 1.0;
 /// Standard deviation of the tilt at which the level is lost, 1σ, rad: it is set anew by the
 /// forces.
 const ALL: f32 = 0.3;
@@ -27,7 +32,8 @@ const LONGEST: f32 = 60.0;
 const ANY_ANGLE: f32 = 6.3;
 
 impl Vertical {
-    /// Bridges missing samples: the rate in the gap is the mean of those at both ends.
+    /// Bridges missing samples: the rate in the gap is the mean of those at both ends, or none of
+    /// a body at rest.
     #[inline(never)]
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
@@ -36,15 +42,27 @@ impl Vertical {
         }
         let end = Instant(sample.time.0.saturating_sub((self.period * 1e6) as u64));
         self.tick(Instant(end.0.saturating_sub((missing * 1e6) as u64)));
+        self.since = end;
         let rate =
             |turned: &[AngleIncrement; 3]| turned.map(|part| part.0 as f32 * STEP / self.period);
         let (before, after) = (rate(&self.before.turned), rate(&sample.turned));
+        if self.is_at_rest() && missing <= STANDING {
+            return self.rest_through(&after, missing);
+        }
         let mean = scaled(&sum(&before, &after), 0.5);
         let jump = difference(&after, &before);
-        let lost = 0.5 * libm::sqrtf(dot(&jump, &jump)) + GAP_PART * self.before.lately;
+        let lost = 0.5 * length(&jump) + GAP_PART * self.before.lately;
         self.advance(&scaled(&mean, missing), missing);
-        self.since = end;
         self.lose(lost * missing);
+    }
+
+    /// Continues a rest after missing samples, with these rates, rad/s. A body that has set off
+    /// meanwhile has turned by half of what those rates would turn it; whether it has is left to rest
+    /// detection.
+    fn rest_through(&mut self, after: &Vector, missing: f32) {
+        let still = sum(&self.bias, &turned(&transposed(&self.matrix), &self.frame));
+        let lost = 0.5 * missing * length(&difference(after, &still));
+        self.inflate_attitude(lost * lost);
     }
 
     /// Resets everything but the biases, which are kept with the variance of a switch-on.
@@ -78,10 +96,15 @@ impl Vertical {
         self.lose_square(angle * angle);
     }
 
-    /// Inflates attitude variances, rad², and discards the averages in progress.
-    fn lose_square(&mut self, variance: f32) {
+    /// Inflates attitude variances, rad².
+    fn inflate_attitude(&mut self, variance: f32) {
         self.filter.inflate_level(variance);
         self.filter.inflate(TURN, variance);
+    }
+
+    /// Inflates attitude variances, rad², and discards the averages in progress.
+    fn lose_square(&mut self, variance: f32) {
+        self.inflate_attitude(variance);
         if self.filter.tilt_sigma() > ALL && self.trust != Trust::Starting {
             self.is_lost = true;
             self.trust = Trust::RotationLost;
@@ -90,4 +113,9 @@ impl Vertical {
         self.rested = Rested::default();
         self.window = Window::default();
     }
+}
+
+/// Length of a vector.
+fn length(vector: &Vector) -> f32 {
+    libm::sqrtf(dot(vector, vector))
 }

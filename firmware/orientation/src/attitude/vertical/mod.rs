@@ -24,7 +24,6 @@ mod sums;
 use self::course::Course;
 use self::filter::{BIAS, Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
-use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
@@ -137,7 +136,7 @@ impl Vertical {
         Self {
             priors: priors.map(|prior| prior as f32),
             unknown: unknown as f32,
-            force_tilt: setting.force_bias_sigma.0 as f32 / GRAVITY,
+            force_tilt: setting.force_tilt(),
             period,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate().0 as f32)],
             matrix: Attitude::default().matrix(),
@@ -206,7 +205,8 @@ impl Vertical {
             self.advance(&rotation, seconds);
         }
         self.before.lately *= 1.0 - (seconds / GAP_WATCH).min(1.0);
-        let rate = libm::sqrtf(dot(&rotation, &rotation)) / seconds.max(self.period);
+        let own = difference(&rotation, &scaled(&self.bias, seconds));
+        let rate = libm::sqrtf(dot(&own, &own)) / seconds.max(self.period);
         self.before.lately = self.before.lately.max(rate);
     }
 
@@ -301,6 +301,16 @@ impl Vertical {
         self.filter.reset_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
         self.rest.exchange(2, self.expected.walk[2]);
+        self.window = Window::default();
+    }
+
+    /// Replaces the accelerometers by others: the level is wrong by the biases of the former ones.
+    pub(crate) fn exchange_forces(&mut self, setting: &Setting) {
+        self.finish();
+        self.filter.inflate_level(self.force_tilt * self.force_tilt);
+        self.force_tilt = setting.force_tilt();
+        self.force = Sums::default();
+        self.rest.exchange_forces();
         self.window = Window::default();
     }
 

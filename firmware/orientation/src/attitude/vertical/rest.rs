@@ -246,6 +246,12 @@ impl ZeroVelocityDetector {
         *self = Self { walk: self.walk, force: self.force, rested: self.rested, ..Self::default() };
     }
 
+    /// Restarts the detection with other accelerometers.
+    pub(crate) fn exchange_forces(&mut self) {
+        self.disturb();
+        self.force = None;
+    }
+
     /// Restarts the detection with another gyro about an axis, whose noise is unknown.
     pub(crate) fn exchange(&mut self, axis: usize, walk: f32) {
         self.disturb();

@@ -92,7 +92,7 @@ pub(super) struct Before {
     pub(super) time: Option<Instant>,
     /// Increments of the previous sample.
     pub(super) turned: [AngleIncrement; 3],
-    /// Recent rate, rad/s.
+    /// Recent rate beyond the biases, rad/s.
     pub(super) lately: f32,
     /// Rotation that may have been lost since a gyro saturated, rad.
     pub(super) clipped: f32,
