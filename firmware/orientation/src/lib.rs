@@ -137,6 +137,7 @@ pub mod words;
 pub mod device;
 pub mod earth;
 pub mod math;
+pub mod timebase;
 
 pub mod signal;
 

@@ -10,7 +10,6 @@ use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{EncoderConfiguration, Harmonic};
-use orientation::alignment::period::CONVERTER_TOLERANCE;
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::stepwise::session::procedure::Procedure;
@@ -21,6 +20,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
+use orientation::timebase::{Clock, Timebase};
 use orientation::units::{
     AngularRate, DEGREE, GSensitivity, MetresPerSecondSquared, Radians, RadiansPerSecond, Seconds,
 };
@@ -66,6 +66,8 @@ pub const RATES: [DataRate; 7] = [
 pub(super) const CONVERTER_NOISE: f64 = 1e-6;
 /// Play of the stage's gear, rad: 0.01°.
 const BACKLASH: f64 = 0.01 * DEGREE;
+/// The clocks of a stage: its converter runs on its own oscillator.
+const CLOCKS: Timebase = Timebase::nominal(Clock::Converter, Clock::Crystal);
 /// How the stage rings after it has stopped.
 const RINGING_HZ: f64 = 15.0;
 /// Damping ratio of that ringing.
@@ -293,7 +295,7 @@ impl Scenario {
         let procedure = Procedure::new(self.schedule(turning), Seconds(1.0 / self.sample_rate_hz));
         let mut procedure = Procedure {
             settle_seconds: Seconds(RINGS_SECONDS),
-            period_tolerance: CONVERTER_TOLERANCE,
+            period_tolerance: CLOCKS.period_tolerance(),
             ..procedure
         };
         if self.survey_s > 0.0 {

@@ -97,7 +97,7 @@ async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible,
 }
 
 /// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,
-/// 10⁻¹⁵ rad.
+/// 10⁻¹⁸ rad.
 fn increments(
     rates: [AngularRate; 3],
     microseconds: u32,

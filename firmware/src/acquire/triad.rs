@@ -26,7 +26,7 @@ pub struct TriadAcquisition<'a, G, A> {
     mean: Mean,
     outlet: Outlet<'a, InertialSample>,
     period: Duration,
-    /// Remainders of the rotation in whole steps, 10⁻¹⁵ rad.
+    /// Remainders of the rotation in whole steps, 10⁻¹⁸ rad.
     carried: [i64; 3],
     /// End of the latest conversions.
     latest: Option<Instant>,

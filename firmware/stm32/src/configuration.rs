@@ -26,7 +26,6 @@ use firmware::settings::{
     VehicleSchedule,
 };
 use firmware::spin::configuration::{Channel, SpinConfiguration};
-use orientation::alignment::period::CONVERTER_TOLERANCE;
 use orientation::alignment::rotating;
 use orientation::alignment::rotating::Sensor;
 use orientation::alignment::rotating::session::Procedure as Turning;
@@ -48,6 +47,7 @@ use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::roll::{self as spin, Flight};
 use orientation::signal::sway::CoarseSensors;
+use orientation::timebase::{Clock, Timebase};
 use orientation::units::{
     DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared, Radians,
     RadiansPerRootSecond, RadiansPerSecond, Seconds,
@@ -96,6 +96,28 @@ const ROTATION: Rotation =
 /// Time for which the stage rings after an arrival.
 const RINGING: Seconds = Seconds(0.25);
 
+/// Frequency of the controller's oscillator MSI as the crystal locks it, and the nominal one by which
+/// its time counts, Hz: 122 times 32 768 Hz for 4 MHz (RM0351, section 6.2.3).
+const MSI_HERTZ: [u64; 2] = [122 * 32_768, 4_000_000];
+
+/// Clocks of the instrument: an oscillator feeds the converters in a vehicle and on a spinning body, and
+/// the controller has its crystal unless that is dead.
+#[must_use]
+pub const fn timebase(has_crystal: bool) -> Timebase {
+    let converter = match PLATFORM {
+        Platform::Vehicle | Platform::Spin => Clock::Crystal,
+        Platform::Stage | Platform::TwoFrame | Platform::Turntable => Clock::Converter,
+    };
+    if has_crystal {
+        Timebase::new(converter, Clock::Crystal, MSI_HERTZ)
+    } else {
+        Timebase::nominal(converter, Clock::Controller)
+    }
+}
+
+/// Clocks of the instrument while its crystal oscillates.
+const CLOCKS: Timebase = timebase(true);
+
 /// Sample period of the converter that takes the precise gyros.
 pub fn period() -> Seconds {
     Seconds(1.0 / CONVERTER.rate.hertz())
@@ -143,7 +165,7 @@ pub fn procedure(settings: &Settings<StageSchedule>) -> Procedure {
 fn dwelling(schedule: Schedule) -> Procedure {
     Procedure {
         settle_seconds: RINGING,
-        period_tolerance: CONVERTER_TOLERANCE,
+        period_tolerance: CLOCKS.period_tolerance(),
         ..Procedure::new(schedule, period())
     }
 }
@@ -188,6 +210,7 @@ pub fn base_keeper(latitude: Latitude) -> keep::Setting {
     let usual = keep::Gyro::coarse();
     let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
     let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
+    let scale_sigma = CLOCKS.with_scale(scale_sigma);
     let gyro = keep::Gyro { noise, bias_sigma: RadiansPerSecond(bias_deg_s * DEGREE), scale_sigma };
     let force_bias_sigma = MetresPerSecondSquared(force_bias_sigma);
     let sample_seconds = Seconds(base_period());
@@ -204,7 +227,7 @@ pub fn base_policy<C>(settings: &Settings<C>) -> Policy {
         knows_stops: false,
         skips_known: false,
         beside,
-        precise: settings.gyro.errors,
+        precise: gyro(settings),
     }
 }
 
@@ -245,8 +268,11 @@ pub fn mount_procedure(settings: &Settings<TwoFrameSchedule>) -> Procedure {
 /// # Errors
 /// A geometry with which an orientation is out of reach.
 pub fn frames() -> Result<FramesConfiguration, MountError> {
-    let encoders = Frames { outer: ENCODER, inner: ENCODER };
-    FramesConfiguration::new(GEOMETRY, encoders, FORCE_CALIBRATED_SIGMA)
+    FramesConfiguration::new(
+        GEOMETRY,
+        Frames { outer: ENCODER, inner: ENCODER },
+        FORCE_CALIBRATED_SIGMA,
+    )
 }
 
 /// Configuration of the stage's devices.
@@ -287,7 +313,9 @@ const FORCE_NOISE: ForceNoise = ForceNoise(1.2 * 25e-6 * 9.80665);
 
 /// Site and instrument in a vehicle.
 pub fn driving_setting(settings: &Settings<VehicleSchedule>) -> stops::Setting {
-    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..site(settings) };
+    let site = site(settings);
+    let scale_sigma = CLOCKS.with_scale(site.scale_sigma);
+    let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, scale_sigma, ..site };
     stops::Setting {
         bias_sigma: Some(settings.gyro.errors.bias_sigma),
         force_noise: FORCE_NOISE,
@@ -298,7 +326,8 @@ pub fn driving_setting(settings: &Settings<VehicleSchedule>) -> stops::Setting {
 /// Procedure of the session in a vehicle.
 pub fn driving_procedure(settings: &Settings<VehicleSchedule>) -> Driving {
     let VehicleSchedule { stops, stop, .. } = settings.schedule;
-    Driving { stop_seconds: stop, ..Driving::new(stops.into(), period()) }
+    let period_tolerance = CLOCKS.period_tolerance();
+    Driving { stop_seconds: stop, period_tolerance, ..Driving::new(stops.into(), period()) }
 }
 
 /// Configuration of the vehicle's devices.
@@ -310,17 +339,23 @@ pub fn vehicle() -> VehicleConfiguration {
 /// vehicle has not moved.
 const ALIGNS_ALWAYS: bool = true;
 
+/// Errors of the precise gyro as its angles have them, with those of the clock over which they integrate.
+fn gyro<C>(settings: &Settings<C>) -> keep::Gyro {
+    let errors = settings.gyro.errors;
+    keep::Gyro { scale_sigma: CLOCKS.with_scale(errors.scale_sigma), ..errors }
+}
+
 /// Site and gyros for attitude and heading.
 pub fn keeper(settings: &Settings<VehicleSchedule>) -> keep::Setting {
     keep::Setting {
         force_bias_sigma: FORCE_CALIBRATED_SIGMA,
-        ..keep::Setting::precise(settings.latitude, period(), settings.gyro.errors)
+        ..keep::Setting::precise(settings.latitude, period(), gyro(settings))
     }
 }
 
 /// Policy after the alignment: the azimuth is held without end.
 pub fn policy(settings: &Settings<VehicleSchedule>) -> Policy {
-    let precise = settings.gyro.errors;
+    let precise = gyro(settings);
     let realigns = settings.schedule.realigns;
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
@@ -354,7 +389,7 @@ pub fn flight(settings: &Settings<SpinSchedule>) -> Flight {
     let setting = spin::Setting {
         sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
         angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
-        scale_sigma: SPIN_SCALE_SIGMA,
+        scale_sigma: CLOCKS.with_scale(SPIN_SCALE_SIGMA),
         bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),
         method: spin::Method::PhaseLocked,
     };

@@ -20,4 +20,5 @@ mod rotating;
 mod session;
 mod spectrum;
 mod stops;
+mod timebase;
 mod vertical;

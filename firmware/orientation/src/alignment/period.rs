@@ -4,11 +4,8 @@ use super::refusal::Refusal;
 use crate::units::{Milliseconds, Seconds};
 
 /// Default tolerance of the time stamps' mean step against the period, relative: a recorder's clock
-/// is far better, a converter's own oscillator is not.
+/// is far better. Boards state that of their clocks ([`crate::timebase`]).
 pub(crate) const PERIOD_TOLERANCE: f64 = 0.01;
-/// Tolerance of the ADS1262's internal oscillator, 2 % (data sheet SBAS661C, §7.5, internal
-/// oscillator accuracy), which holds for a board's samples.
-pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
 /// Refuses samples whose time stamps show a period of `found` where `stated` is configured,
 /// beyond a relative tolerance.

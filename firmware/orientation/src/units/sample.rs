@@ -52,8 +52,8 @@ impl AngleIncrement {
     /// One step, rad.
     pub const STEP: f64 = 4e-9;
 
-    /// One step in nrad/s · µs, which is 10⁻¹⁵ rad.
-    const STEP_FEMTORADIANS: i64 = 4_000_000;
+    /// One step in nrad/s · ns, which is 10⁻¹⁸ rad.
+    const STEP_ATTORADIANS: i64 = 4_000_000_000;
 
     /// Increment from rad; the remainder `carried`, rad, begins at zero and belongs to the axis.
     /// NaN is an unknown rotation and becomes the upper limit.
@@ -64,12 +64,17 @@ impl AngleIncrement {
         increment
     }
 
-    /// Increment of a rate over a time in µs; the remainder `carried`, 10⁻¹⁵ rad, begins at zero
-    /// and belongs to the axis. A saturated rate gives a saturated increment.
+    /// Increment of a rate over a time in µs, as [`Self::of_rate_over`].
     pub fn of_rate(rate: AngularRate, microseconds: u32, carried: &mut i64) -> Self {
-        let whole = i64::from(rate.0) * i64::from(microseconds) + *carried;
-        let steps = whole / Self::STEP_FEMTORADIANS;
-        *carried = whole % Self::STEP_FEMTORADIANS;
+        Self::of_rate_over(rate, 1000 * u64::from(microseconds), carried)
+    }
+
+    /// Increment of a rate over a time in ns, at most four seconds; the remainder `carried`, 10⁻¹⁸ rad,
+    /// begins at zero and belongs to the axis. A saturated rate gives a saturated increment.
+    pub fn of_rate_over(rate: AngularRate, nanoseconds: u64, carried: &mut i64) -> Self {
+        let whole = i64::from(rate.0) * nanoseconds.cast_signed() + *carried;
+        let steps = whole / Self::STEP_ATTORADIANS;
+        *carried = whole % Self::STEP_ATTORADIANS;
         if rate.is_saturated() {
             return Self(if rate.0 > 0 { i32::MAX } else { i32::MIN });
         }

@@ -19,6 +19,7 @@ use orientation::alignment::stops::session::Procedure;
 use orientation::attitude as keep;
 use orientation::earth::Latitude;
 use orientation::navigation::{Policy, Realignment};
+use orientation::timebase::{Clock, Timebase};
 use orientation::units::{
     ForceNoise, GSensitivity, Metres, MetresPerSecondSquared, RadiansPerSecond, Seconds,
 };
@@ -31,6 +32,8 @@ use firmware::chips::AnalogueGyro;
 use firmware::configuration;
 use firmware::ports::VehicleSensors;
 
+/// The clocks of a vehicle: an oscillator feeds its converters.
+const CLOCKS: Timebase = Timebase::nominal(Clock::Crystal, Clock::Crystal);
 /// 1σ of the accelerometers, m/s²: in a vehicle their biases are tilt, so they are calibrated, to 0.1 mg.
 const FORCE_BIAS_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e-4 * 9.80665);
 /// How long the board levels at the stops of a brief run, and how long it drives, s.
@@ -174,6 +177,7 @@ impl VehicleScenario {
         Procedure {
             stop_seconds: Seconds(self.stop_s),
             longest_seconds: Seconds(self.seconds() - END_SECONDS),
+            period_tolerance: CLOCKS.period_tolerance(),
             ..Procedure::new(self.stops, Seconds(1.0 / self.base.sample_rate_hz))
         }
     }
