@@ -1,5 +1,5 @@
 //! The instrument in a vehicle with something wrong: every fault is survived or refused for its reason,
-//! and no rotation that was lost is hidden.
+//! and rotation that was lost is in σ.
 
 use host::instrument::{Trial, VehicleRun};
 use orientation::alignment::Azimuth;
@@ -18,8 +18,6 @@ enum End {
     Survived,
     /// The device is given up for its reason.
     Named(Device, Trouble),
-    /// Rotation was lost, and the session was reported.
-    Lost,
     /// A gyro clipped.
     Clipped,
     /// It did not stand, or drive, as it must: in the time allowed too few stops were found.
@@ -33,9 +31,8 @@ fn expected(fault: Fault) -> End {
         Fault::Chip(device, fault) => of_chip(device, fault),
         Fault::OutOfStep => End::Named(Device::RightGyro, Trouble::OutOfStep),
         Fault::SaturationOnce | Fault::Saturation => End::Clipped,
-        Fault::OverloadOnce => End::Survived,
+        Fault::OverloadOnce | Fault::Overflow => End::Survived,
         Fault::Overload => End::Named(Device::Accelerometer, Trouble::Saturated),
-        Fault::Overflow => End::Lost,
         Fault::NeverDrives | Fault::NeverStops | Fault::ShortStops => End::TooFewStops,
         Fault::Sway | Fault::Bumps => End::SurvivedOrNot,
         other => panic!("{other} is none of a vehicle"),
@@ -51,11 +48,12 @@ fn of_chip(device: Device, fault: ChipFault) -> End {
         ChipFault::ChecksumAlways | ChipFault::Silent => End::Named(device, Trouble::Silent),
         ChipFault::Stuck => End::Named(device, Trouble::Stuck),
         ChipFault::BusAlways => End::Named(device, Trouble::Bus),
-        ChipFault::Reset | ChipFault::Hang => End::Lost,
-        ChipFault::ChecksumOnce | ChipFault::SilentOnce | ChipFault::BusOnce if is_gyro => {
-            End::Lost
-        }
-        ChipFault::ChecksumOnce | ChipFault::SilentOnce | ChipFault::BusOnce => End::Survived,
+        // Gaps of up to half a second.
+        ChipFault::Reset
+        | ChipFault::Hang
+        | ChipFault::ChecksumOnce
+        | ChipFault::SilentOnce
+        | ChipFault::BusOnce => End::Survived,
     }
 }
 
@@ -77,7 +75,6 @@ fn end(found: &VehicleRun) -> Option<End> {
             (sigmas.abs() < 3.5).then_some(End::Survived)
         }
         Err(Refusal::Device { device, trouble }) => Some(End::Named(device, trouble)),
-        Err(Refusal::Stops(Stops::RotationMissing { .. })) => Some(End::Lost),
         Err(Refusal::Stops(Stops::RotationClipped { .. })) => Some(End::Clipped),
         Err(Refusal::Stops(Stops::NoStop | Stops::OneStop { .. } | Stops::StopTooShort { .. })) => {
             Some(End::TooFewStops)

@@ -32,9 +32,6 @@ pub struct Setting {
     pub sample_seconds: Seconds,
 }
 
-/// Standard gravity, m/s².
-const GRAVITY: f64 = 9.80665;
-
 /// Time over which flicker noise is represented by a random walk of the rate, s: equivalent over
 /// half an hour after a rest of some minutes.
 const FLICKER_SECONDS: f64 = 600.0;
@@ -66,11 +63,6 @@ impl Setting {
     pub fn precise(latitude: Latitude, sample_seconds: Seconds, gyro: Gyro) -> Self {
         let force_bias_sigma = MetresPerSecondSquared(1e-3);
         Self { latitude, gyros: [gyro; 3], force_bias_sigma, sample_seconds }
-    }
-
-    /// Standard deviation of the accelerometers' biases as a tilt, 1σ, rad.
-    pub(super) fn force_tilt(&self) -> f32 {
-        (self.force_bias_sigma.0 / GRAVITY) as f32
     }
 
     /// Configuration with another gyro about the down axis.

@@ -24,6 +24,7 @@ mod sums;
 use self::course::Course;
 use self::filter::{BIAS, Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
+use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
@@ -136,7 +137,7 @@ impl Vertical {
         Self {
             priors: priors.map(|prior| prior as f32),
             unknown: unknown as f32,
-            force_tilt: setting.force_tilt(),
+            force_tilt: force_tilt(setting),
             period,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate().0 as f32)],
             matrix: Attitude::default().matrix(),
@@ -308,7 +309,7 @@ impl Vertical {
     pub(crate) fn exchange_forces(&mut self, setting: &Setting) {
         self.finish();
         self.filter.inflate_level(self.force_tilt * self.force_tilt);
-        self.force_tilt = setting.force_tilt();
+        self.force_tilt = force_tilt(setting);
         self.force = Sums::default();
         self.rest.exchange_forces();
         self.window = Window::default();
@@ -353,6 +354,11 @@ impl Vertical {
 #[inline]
 fn seconds_between(before: Instant, now: Instant) -> f32 {
     now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6
+}
+
+/// Standard deviation of the accelerometers' biases as a tilt, 1σ, rad.
+fn force_tilt(setting: &Setting) -> f32 {
+    setting.force_bias_sigma.0 as f32 / GRAVITY
 }
 
 /// Rates in double precision.
