@@ -187,6 +187,10 @@ pub trait Store {
     /// Stores an item in a slot. If the supply is lost during the write, the slot holds either the
     /// old or the new item.
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault>;
+
+    /// Empties a slot, at once: nothing that takes long, as an erasure, is done for it. If the supply is lost
+    /// meanwhile, the slot is empty or holds its item.
+    async fn forget(&mut self, slot: u8) -> Result<(), Fault>;
 }
 
 impl<T: Store> Store for &mut T {
@@ -197,6 +201,10 @@ impl<T: Store> Store for &mut T {
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
         (**self).save(slot, item).await
     }
+
+    async fn forget(&mut self, slot: u8) -> Result<(), Fault> {
+        (**self).forget(slot).await
+    }
 }
 
 /// A store that keeps nothing.
@@ -206,6 +214,10 @@ impl Store for () {
     }
 
     async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    async fn forget(&mut self, _: u8) -> Result<(), Fault> {
         Ok(())
     }
 }

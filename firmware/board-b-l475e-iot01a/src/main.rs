@@ -48,6 +48,7 @@
 
 mod clock;
 mod pins;
+mod unmaskable;
 
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};

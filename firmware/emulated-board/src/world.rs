@@ -12,7 +12,6 @@ use firmware::settings::{CarrierSchedule, Settings, save};
 use firmware::storage::FlashStore;
 use hal_mock::flash::Cells;
 use hal_mock::flash::nor::PoweredFlash;
-use sequential_storage::map::MapConfig;
 use simulated::executed;
 use simulated::fault::Injection;
 use simulated::scenario::Scenario;
@@ -164,7 +163,7 @@ pub fn erased(seed: u64) -> Driver {
 
 /// The store in a flash.
 pub fn store(flash: Driver) -> Store {
-    FlashStore::new(flash, const { MapConfig::new(STORE) })
+    FlashStore::new(flash, STORE.start)
 }
 
 /// The pages of the store in a flash.

@@ -3,7 +3,6 @@
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use sequential_storage::map::MapConfig;
 
 use firmware::storage::FlashStore;
 
@@ -66,7 +65,7 @@ impl Flash {
     /// A store of axis misalignments in it.
     #[must_use]
     pub fn store(self) -> FlashStore<Self> {
-        FlashStore::new(self, const { MapConfig::new(0..BYTES as u32) })
+        FlashStore::new(self, 0)
     }
 
     /// Takes one unit of what is left before the supply is lost.

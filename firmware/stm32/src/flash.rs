@@ -1,21 +1,228 @@
-//! Flash of the controller, for data that must outlast a loss of supply.
+//! Flash of the controller, for data that must outlast a loss of supply: its driver and the store in it, for an STM32L4
+//! with two banks (RM0351, chapter 3). The program lies in the lower bank, the store in the upper one.
+//!
+//! Reading and programming are embassy's. Other tasks run after each row that is programmed, 82 µs, and after some that are
+//! read, since a store is searched for the end of what it holds. What embassy-stm32 0.6.0 lacks is here:
+//! - the data cache, which a write of one bank may corrupt while the other is read (an erratum: Zephyr's pull request 13732),
+//!   is off while a row is programmed or a page erased, and emptied before it is on again, since an erasure leaves in it
+//!   what the page held. The release after 0.6.0 does so (embassy's pull request 6384); [`WithoutCache`] goes then;
+//! - an erasure, 22 ms, is waited for by the timer. The interrupt of the release's asynchronous driver clears errors before
+//!   they are read; once it does not, it can take the place of [`erase_page`];
+//! - a row with two wrong bits, as of a loss of supply amid its programming, raises the non-maskable interrupt. Its handler
+//!   asks [`note_unreadable_row`], and the read ends with an error.
+//!
+//! An erasure that does not end is an error; a row that does not is polled until the watchdog resets.
 
-use embassy_embedded_hal::adapter::BlockingAsync;
+use core::ops::Range;
+use core::sync::atomic::{AtomicU32, Ordering, fence};
+
+use embassy_futures::yield_now;
 use embassy_stm32::Peri;
-use embassy_stm32::flash::{Blocking, FLASH_SIZE, Flash, MAX_ERASE_SIZE};
+use embassy_stm32::flash::{Blocking, FLASH_SIZE, Flash, MAX_ERASE_SIZE, WRITE_SIZE};
+use embassy_stm32::pac;
 use embassy_stm32::peripherals::FLASH;
+use embassy_time::Timer;
+use embedded_storage_async::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
 use firmware::storage::FlashStore;
-use sequential_storage::map::MapConfig;
 
-/// Store in flash. The program lies in the lower bank, so that interrupts are served while the
-/// upper one is erased; the tasks wait meanwhile, and samples are lost.
-pub type Store<'d> = FlashStore<BlockingAsync<Flash<'d, Blocking>>>;
+/// Store in flash.
+pub type Store<'d> = FlashStore<UpperBank<'d>>;
 
 /// Range of the store: the last two pages, which no image reaches (`memory.x`).
-const KEPT: core::ops::Range<u32> = (FLASH_SIZE - 2 * MAX_ERASE_SIZE) as u32..FLASH_SIZE as u32;
+const KEPT: Range<u32> = (FLASH_SIZE - 2 * MAX_ERASE_SIZE) as u32..FLASH_SIZE as u32;
+/// Bytes of a bank.
+const BANK: u32 = FLASH_SIZE as u32 / 2;
+/// Bytes of a page.
+const PAGE: u32 = MAX_ERASE_SIZE as u32;
+/// The keys that unlock the control register, in their order (RM0351, 3.3.5).
+const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+/// Milliseconds after which an erasure counts as failed: twice what the slowest known one took (30 ms, Zephyr's issue
+/// 16934; 24.47 ms by the data sheet).
+const LONGEST_MILLISECONDS: u32 = 60;
+/// Rows that are read before other tasks run, about 3 µs each.
+const ROWS_AT_ONCE: u32 = 16;
+/// No offset.
+const NONE: u32 = u32::MAX;
+
+/// Offset of the row of the store that could not be read last.
+static UNREADABLE: AtomicU32 = AtomicU32::new(NONE);
 
 /// The store in the controller's flash.
 pub fn store(flash: Peri<'_, FLASH>) -> Store<'_> {
-    let flash = BlockingAsync::new(Flash::new_blocking(flash));
-    FlashStore::new(flash, const { MapConfig::new(KEPT) })
+    let flash = UpperBank { flash: Flash::new_blocking(flash), rows_read: 0 };
+    FlashStore::new(flash, KEPT.start)
+}
+
+/// Notes the row of the store that has raised the non-maskable interrupt, for the read that came upon it. `false` if
+/// something else has raised it, which is a fault.
+#[must_use]
+pub fn note_unreadable_row() -> bool {
+    let found = pac::FLASH.eccr().read();
+    let bank = if found.bk_ecc() { BANK } else { 0 };
+    let offset = bank + found.addr_ecc();
+    let is_noted = found.eccd() && !found.sysf_ecc() && KEPT.contains(&offset);
+    if is_noted {
+        UNREADABLE.store(offset, Ordering::Relaxed);
+        clear_findings();
+    }
+    is_noted
+}
+
+/// Clears what was found by the error-correcting code. Both flags are cleared by ones.
+fn clear_findings() {
+    pac::FLASH.eccr().modify(|_| {});
+}
+
+/// Why an access to the flash fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// A row has more wrong bits than its code corrects.
+    Unreadable,
+    /// The flash does not do it: a row was programmed before, an area is protected, or the access is not in whole rows or
+    /// pages.
+    Refused,
+    /// An erasure does not end.
+    Busy,
+}
+
+impl NorFlashError for Trouble {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+/// The flash, of which the program's own bank is neither programmed nor erased.
+pub struct UpperBank<'d> {
+    /// The driver for what it does right.
+    flash: Flash<'d, Blocking>,
+    /// Rows read, which wrap.
+    rows_read: u32,
+}
+
+/// The data cache is off, and emptied before it is on again.
+struct WithoutCache;
+
+impl WithoutCache {
+    /// Switches the cache off.
+    fn new() -> Self {
+        pac::FLASH.acr().modify(|access| access.set_dcen(false));
+        Self
+    }
+}
+
+impl Drop for WithoutCache {
+    fn drop(&mut self) {
+        pac::FLASH.acr().modify(|access| access.set_dcrst(true));
+        pac::FLASH.acr().modify(|access| access.set_dcrst(false));
+        pac::FLASH.acr().modify(|access| access.set_dcen(true));
+    }
+}
+
+impl UpperBank<'_> {
+    /// Reads a row, or a part of it.
+    fn read_row(&mut self, offset: u32, row: &mut [u8]) -> Result<(), Trouble> {
+        // The address of an earlier finding would stay.
+        clear_findings();
+        UNREADABLE.store(NONE, Ordering::Relaxed);
+        fence(Ordering::SeqCst);
+        self.flash.blocking_read(offset, row).map_err(|_| Trouble::Refused)?;
+        fence(Ordering::SeqCst);
+        let is_pending = pac::FLASH.eccr().read().eccd();
+        if is_pending || UNREADABLE.load(Ordering::Relaxed) != NONE {
+            // The cache holds the row now, and would not tell it again.
+            drop(WithoutCache::new());
+            return Err(Trouble::Unreadable);
+        }
+        Ok(())
+    }
+}
+
+/// Waits until nothing is under way, not even an erasure whose future was dropped.
+async fn idle() -> Result<(), Trouble> {
+    for _ in 0..LONGEST_MILLISECONDS {
+        if !pac::FLASH.sr().read().bsy() {
+            return Ok(());
+        }
+        Timer::after_millis(1).await;
+    }
+    Err(Trouble::Busy)
+}
+
+/// Erases the page at this offset.
+async fn erase_page(offset: u32) -> Result<(), Trouble> {
+    idle().await?;
+    let _without_cache = WithoutCache::new();
+    if pac::FLASH.cr().read().lock() {
+        KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
+    }
+    // Errors of before are cleared by ones; with one of them nothing would begin.
+    pac::FLASH.sr().modify(|_| {});
+    pac::FLASH.cr().modify(|control| {
+        control.set_per(true);
+        control.set_bker(offset >= BANK);
+        control.set_pnb((offset % BANK / PAGE) as u8);
+        control.set_start(true);
+    });
+    let ended = idle().await;
+    pac::FLASH.cr().modify(|control| control.set_per(false));
+    pac::FLASH.cr().modify(|control| control.set_lock(true));
+    ended?;
+    let status = pac::FLASH.sr().read();
+    let is_refused = status.operr() || status.wrperr() || status.pgserr();
+    if is_refused { Err(Trouble::Refused) } else { Ok(()) }
+}
+
+impl ErrorType for UpperBank<'_> {
+    type Error = Trouble;
+}
+
+impl ReadNorFlash for UpperBank<'_> {
+    const READ_SIZE: usize = WRITE_SIZE;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Trouble> {
+        for (offset, row) in (offset..).step_by(WRITE_SIZE).zip(bytes.chunks_mut(WRITE_SIZE)) {
+            if self.rows_read.is_multiple_of(ROWS_AT_ONCE) {
+                yield_now().await;
+            }
+            self.rows_read = self.rows_read.wrapping_add(1);
+            self.read_row(offset, row)?;
+        }
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        FLASH_SIZE
+    }
+}
+
+impl NorFlash for UpperBank<'_> {
+    const WRITE_SIZE: usize = WRITE_SIZE;
+    const ERASE_SIZE: usize = MAX_ERASE_SIZE;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Trouble> {
+        if !(BANK <= from && from <= to && to <= 2 * BANK) || from % PAGE != 0 || to % PAGE != 0 {
+            return Err(Trouble::Refused);
+        }
+        for page in (from..to).step_by(MAX_ERASE_SIZE) {
+            erase_page(page).await?;
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Trouble> {
+        if offset < BANK {
+            return Err(Trouble::Refused);
+        }
+        for (offset, row) in (offset..).step_by(WRITE_SIZE).zip(bytes.chunks(WRITE_SIZE)) {
+            idle().await?;
+            let without_cache = WithoutCache::new();
+            let written = self.flash.blocking_write(offset, row);
+            drop(without_cache);
+            written.map_err(|_| Trouble::Refused)?;
+            yield_now().await;
+        }
+        Ok(())
+    }
 }

@@ -18,6 +18,7 @@ pub mod stops;
 pub mod turning;
 
 pub use configuration::PLATFORM;
+pub use flash::note_unreadable_row;
 
 use core::future::pending;
 

@@ -3,7 +3,8 @@
 //!
 //! A record of settings in the last two pages of the flash ([`firmware::settings`]), which no image reaches,
 //! takes the place of all of them; the log of a start says which hold. With a record that must not be used,
-//! or pages that cannot be read, nothing begins: the log says why, and the link stays silent.
+//! or cannot be read, nothing begins: the log says why, and the link stays silent. Pages that hold something
+//! else than a store are erased, which the log says, too.
 //!
 //! | what | where to get it |
 //! |---|---|
@@ -23,7 +24,6 @@
 //! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
 
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
-use embassy_futures::block_on;
 use embassy_stm32::Peri;
 use embassy_stm32::peripherals::FLASH;
 use firmware::settings;
@@ -157,13 +157,22 @@ pub fn spin() -> Settings<SpinSchedule> {
 }
 
 /// Settings of the record in the flash, or those of the image where there is none; logs which. `None`
-/// where they must not be used, for the reason that is logged.
-pub fn load<C: CarrierSchedule>(
+/// where they must not be used, for the reason that is logged. Pages that hold no store are erased, which is
+/// logged, too.
+pub async fn load<C: CarrierSchedule>(
     flash: &mut Peri<'static, FLASH>,
     of_image: fn() -> Settings<C>,
 ) -> Option<Settings<C>> {
-    // The flash blocks: its futures never wait, so no task needs room for them.
-    let (settings, source) = match block_on(settings::load(&mut store(flash.reborrow()))) {
+    let mut store = store(flash.reborrow());
+    match store.take_over().await {
+        Ok(false) => {}
+        Ok(true) => defmt::warn!("board: the flash held no store, and was erased for one"),
+        Err(fault) => defmt::error!(
+            "board: the flash holds no store, and cannot be erased for one: {}",
+            fault
+        ),
+    }
+    let (settings, source) = match settings::load(&mut store).await {
         Ok(Some(settings)) => (settings, "a record in flash"),
         Ok(None) => (of_image(), "the image"),
         Err(error) => {

@@ -19,7 +19,7 @@ pub async fn follow(executors: Executors, wires: SpinWires) {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
     let SpinWires { converters, outlets: Outlets { link, mut flash } } = wires;
-    let Some(settings) = settings::load(&mut flash, settings::spin) else { return };
+    let Some(settings) = settings::load(&mut flash, settings::spin).await else { return };
     let Some(configuration) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };

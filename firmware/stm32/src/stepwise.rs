@@ -27,7 +27,7 @@ use crate::{
 pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires) {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::stage) else { return };
+    let Some(settings) = settings::load(&mut flash, settings::stage).await else { return };
     let session = session(configuration::setting(&settings), configuration::procedure(&settings));
     let Some(session) = session else { return };
     let encoder = ports::encoder(axes.encoder);
@@ -66,7 +66,7 @@ pub async fn on_two_frames(executors: Executors, wires: FramesWires) {
     };
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let (Outlets { link, mut flash }, Frames { outer, inner }) = (outlets, axes);
-    let Some(settings) = settings::load(&mut flash, settings::two_frame) else { return };
+    let Some(settings) = settings::load(&mut flash, settings::two_frame).await else { return };
     let session =
         session(configuration::mount_setting(&settings), configuration::mount_procedure(&settings));
     let Some(session) = session else { return };

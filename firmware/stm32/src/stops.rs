@@ -24,7 +24,7 @@ pub async fn align(executors: Executors, wires: VehicleWires) {
     static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let VehicleWires { converters, accelerometer, outlets } = wires;
     let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::vehicle) else { return };
+    let Some(settings) = settings::load(&mut flash, settings::vehicle).await else { return };
     let Some(session) = session(&settings) else { return };
     let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     let converters = (converters, &settings.gyro);

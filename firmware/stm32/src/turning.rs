@@ -26,7 +26,7 @@ const TODAY: Today = Today { date: None, longest: None };
 pub async fn align(executors: Executors, wires: AxisPlatformWires) {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::turntable) else {
+    let Some(settings) = settings::load(&mut flash, settings::turntable).await else {
         return;
     };
     let channels = channels();

@@ -1,9 +1,9 @@
-//! The flash as a program sees it through the blocking driver of embassy-stm32 0.6.0 (`flash/l.rs`,
-//! `flash/common.rs`), and a supply that is lost when the test wants it.
+//! The flash as a program sees it through its driver (`firmware/stm32/src/flash.rs`, on that of embassy-stm32 0.6.0),
+//! and a supply that is lost when the test wants it.
 //!
-//! Bounds, alignment, sizes and the order of checks are the driver's; so is it that rows before a refused one
-//! stay written. Two differences: where the driver panics, erasing beyond the end, this one returns
-//! [`Trouble::Size`]; and where the processor would stop, it returns an error, so that a test can go on.
+//! The data cache is off while a row is programmed or a page erased, and emptied before it is on again. Rows before
+//! a refused one stay written. Two differences: this one reads bytes anywhere, and tells what is not aligned from what
+//! is beyond the end; and where the processor would stop, it returns an error, so that a test can go on.
 
 use core::ops::DerefMut;
 use core::time::Duration;
@@ -29,7 +29,7 @@ pub struct PoweredFlash<M> {
     pub loss: Option<Loss>,
     /// Rows programmed and pages erased since the supply came.
     pub operations: u32,
-    /// Why the processor executes nothing: no supply, or an interrupt that does not return.
+    /// Why the processor executes nothing: it has no supply.
     stopped: Option<Trouble>,
     /// The time: it passes while rows are programmed and pages erased.
     now: Duration,
@@ -49,10 +49,9 @@ pub enum Loss {
 /// What the program's handler of the non-maskable interrupt does about an uncorrectable row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interrupt {
-    /// It never returns, as that of a program without one (cortex-m-rt's loops): every access fails from then
-    /// on, until the supply is lost and comes back, or the watchdog resets.
-    Stops,
-    /// It clears the flag, and the program goes on with what was read.
+    /// It notes the row, so that the driver's read ends with an error.
+    Notes,
+    /// It clears the flag alone, and the program goes on with what was read.
     Returns,
 }
 
@@ -69,8 +68,8 @@ pub enum Trouble {
     Busy,
     /// There is no supply.
     Supply,
-    /// An uncorrectable row was read, and the interrupt's handler does not return.
-    Interrupt,
+    /// An uncorrectable row was read, which the interrupt's handler has noted.
+    Uncorrectable,
 }
 
 impl NorFlashError for Trouble {
@@ -84,13 +83,13 @@ impl NorFlashError for Trouble {
 }
 
 impl<M: DerefMut<Target = Cells>> PoweredFlash<M> {
-    /// A flash that is supplied, read past the data cache by a program without a handler for
-    /// uncorrectable rows. The seed decides at which moment of an operation the supply is lost.
+    /// A flash that is supplied, read past the data cache by a program whose handler notes uncorrectable
+    /// rows. The seed decides at which moment of an operation the supply is lost.
     pub fn new(flash: Flash<M>, seed: u64) -> Self {
         Self {
             flash,
             is_cached: false,
-            interrupt: Interrupt::Stops,
+            interrupt: Interrupt::Notes,
             loss: None,
             operations: 0,
             stopped: None,
@@ -129,6 +128,23 @@ impl<M: DerefMut<Target = Cells>> PoweredFlash<M> {
         Trouble: From<E>,
     {
         self.pass(Loss::After(self.operations), self.now)?;
+        self.flash.switch_cache(false);
+        let done = self.carry_out(start);
+        self.flash.reset_cache();
+        self.flash.switch_cache(true);
+        done?;
+        self.operations += 1;
+        self.pass(Loss::After(self.operations), self.now)
+    }
+
+    /// Carries out an operation beside the data cache.
+    fn carry_out<E>(
+        &mut self,
+        start: impl FnOnce(&mut Flash<M>, Duration) -> Result<(), E>,
+    ) -> Result<(), Trouble>
+    where
+        Trouble: From<E>,
+    {
         start(&mut self.flash, self.now)?;
         if let Some(Busy { until }) = self.flash.busy(self.now) {
             let within = until.saturating_sub(self.now).mul_f64(self.noise.uniform());
@@ -136,8 +152,7 @@ impl<M: DerefMut<Target = Cells>> PoweredFlash<M> {
             self.now = until;
         }
         self.flash.busy(self.now);
-        self.operations += 1;
-        self.pass(Loss::After(self.operations), self.now)
+        Ok(())
     }
 
     /// Passes a moment at which the supply may be lost.
@@ -157,10 +172,14 @@ impl<M: DerefMut<Target = Cells>> PoweredFlash<M> {
         } else {
             self.flash.read(offset, self.now)?
         };
-        if read.ecc == Ecc::Uncorrectable && self.interrupt == Interrupt::Stops {
-            self.stopped = Some(Trouble::Interrupt);
+        if read.ecc == Ecc::Uncorrectable && self.interrupt == Interrupt::Notes {
+            // The cache would not tell it again.
+            self.flash.switch_cache(false);
+            self.flash.reset_cache();
+            self.flash.switch_cache(true);
+            return Err(Trouble::Uncorrectable);
         }
-        self.stopped.map_or(Ok(read.bytes), Err)
+        Ok(read.bytes)
     }
 }
 

@@ -25,7 +25,7 @@ pub fn steps(seed: u64, slots: u32, is_within: bool) -> impl Iterator<Item = Ste
         let slot = below(slots) as usize;
         match below(10) {
             0..3 => {
-                // A save has up to 26 operations, or up to 86 where pages are changed.
+                // A save has up to 27 operations, or up to 91 where pages are changed.
                 let limit = [28, 96][below(2) as usize];
                 let operation = below(limit);
                 let is_within = is_within && below(2) == 0;

@@ -165,10 +165,11 @@ fn instructions_and_sleep_together_are_the_time_of_the_measurement() {
 }
 
 #[test]
-fn a_heading_in_flash_takes_eleven_rows() {
+fn a_heading_in_flash_takes_twelve_rows_and_one_that_declares_it_void() {
     for carrier in [Platform::Stage, Platform::Vehicle] {
         let FlashUse { rows, pages, .. } = executed(carrier, 1).report.flash_use;
-        assert!(rows > 0 && rows % 11 == 0 && pages == 0, "{carrier}: {rows} rows, {pages} pages");
+        let is_whole = rows > 0 && matches!(rows % 13, 0 | 12);
+        assert!(is_whole && pages == 0, "{carrier}: {rows} rows, {pages} pages");
     }
 }
 

@@ -149,8 +149,10 @@ pub fn nearly_full() -> usize {
     (0..60).find(|earlier| operations(*earlier) > ROWS).expect("a page is full at some time")
 }
 
-/// Rows that a save of a heading writes where no page is changed.
-pub const ROWS: u32 = 11;
+/// Rows that a save of a heading writes where no page is changed: the heading, their sum, and its mark twice.
+pub const ROWS: u32 = 12;
+/// The row from which the saved heading holds: the first one of its mark.
+pub const MARK: u32 = ROWS - 2;
 
 /// The heading in the flash of a board, or none.
 ///

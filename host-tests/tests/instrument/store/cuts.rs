@@ -89,32 +89,25 @@ fn within(effort: u32) -> Vec<Loss> {
 
 #[test]
 fn a_loss_of_supply_between_rows_leaves_the_old_item_or_the_new_one() {
-    let tally = cuts(Interrupt::Stops, between);
+    let tally = cuts(Interrupt::Notes, between);
     let Tally { cuts, old, new, unwritable, .. } = tally;
     assert!(old + new == cuts && unwritable == 0, "{tally:?}");
-    // 40 saves of 11, 10, 10 and 26 rows in their slots. Ten of them change pages: one item of each slot is carried
-    // along, two pages are marked, and one is erased.
-    assert_eq!(cuts, 40 * (12 + 11 + 11 + 27) + 10 * (11 + 10 + 10 + 26 + 3));
+    // 40 saves of 12, 11, 11 and 27 rows in their slots. Nine of them change pages: one item of each slot is carried
+    // along, the header is written twice, and a page is erased.
+    assert_eq!(cuts, 40 * (13 + 12 + 12 + 28) + 9 * (12 + 11 + 11 + 27 + 3));
 }
 
-/// As the firmware is today: it has no handler for the interrupt that an uncorrectable row raises, and the one of
-/// cortex-m-rt does not return. The watchdog restarts the board, which reads the row again.
 #[test]
-#[should_panic(
-    expected = "1928 of 2880 leave a slot that cannot be read, 1584 one that cannot be written"
-)]
 fn a_loss_of_supply_within_a_row_or_page_leaves_a_slot_that_can_be_used() {
-    let Tally { cuts, unreadable, unwritable, .. } = cuts(Interrupt::Stops, within);
+    let Tally { cuts, unreadable, unwritable, .. } = cuts(Interrupt::Notes, within);
     assert!(
         unreadable + unwritable == 0,
         "{unreadable} of {cuts} leave a slot that cannot be read, {unwritable} one that cannot be written"
     );
 }
 
-/// A first row in which a single bit has changed reads as erased, and is where the next item is to go. It is
-/// refused there for ever.
+/// A first row in which a single bit has changed reads as erased, and is where the next item is to go, which it refuses.
 #[test]
-#[should_panic(expected = "5 of 2880 leave a slot that cannot be written")]
 fn where_the_interrupt_returns_a_slot_can_be_written_after_a_loss_of_supply_within_a_row_or_page() {
     let tally = cuts(Interrupt::Returns, within);
     let Tally { cuts, unreadable, unwritable, .. } = tally;
@@ -122,31 +115,25 @@ fn where_the_interrupt_returns_a_slot_can_be_written_after_a_loss_of_supply_with
     assert!(unwritable == 0, "{unwritable} of {cuts} leave a slot that cannot be written");
 }
 
-/// Saves that erase a page, the lower one and the upper one for each slot: the slot, items that are saved before,
-/// and the place of the erasure among the operations. The rows of the item are written after it.
-fn erasures() -> Vec<(Slot, usize, u32)> {
+/// Saves that erase a page, the lower one and the upper one for each slot: the slot, and items that are saved before.
+/// The erasure is the first of their operations.
+fn erasures() -> Vec<(Slot, usize)> {
     let mut found = Vec::new();
     for slot in SLOTS {
         let rows = effort(used(0, slot, 0), slot);
-        let efforts = (0..40).map(|saves| (saves, effort(used(saves, slot, 0), slot)));
-        let changes = efforts.filter(|(_, effort)| *effort > rows).take(2);
-        found.extend(changes.map(|(saves, effort)| (slot, saves, effort - rows - 1)));
+        let changes = (0..40).filter(|saves| effort(used(*saves, slot, 0), slot) > rows).take(2);
+        found.extend(changes.map(|saves| (slot, saves)));
     }
     found
 }
 
-/// Four bits of its first byte tell whether a page is in use, and four of its last one whether it is full: a torn
-/// erasure leaves any of them. If the page still looks full, the next save takes its erasure for a change of pages
-/// that was interrupted: it erases the other page, and saves what the torn one holds, which is nothing. If it looks
-/// in use, it may be taken for the latest page, and nothing can be saved.
 #[test]
-#[should_panic(expected = "in 203 of 400 the next save loses the item, in 15 nothing can be saved")]
 fn where_the_interrupt_returns_a_loss_of_supply_within_an_erasure_leaves_the_old_item() {
     let (mut lost, mut refused) = (0, 0);
-    for ((slot, saves, erasure), seed) in erasures().into_iter().cycle().zip(0..400) {
+    for ((slot, saves), seed) in erasures().into_iter().cycle().zip(0..400) {
         let mut flash = used(saves, slot, seed);
         flash.interrupt = Interrupt::Returns;
-        flash.loss = Some(Loss::Within(erasure));
+        flash.loss = Some(Loss::Within(0));
         slot.save(&mut flash, NEW).expect_err("the supply was lost");
         flash.restart();
         let other = SLOTS[usize::from(slot.key == SLOTS[0].key)];

@@ -1,10 +1,10 @@
 //! The store in the flash of the STM32L475: the supply is lost at any moment, at random moments, and other programs
 //! have used the pages before.
 //!
-//! Tests that are expected to fail show known defects; each names its figure, which depends on the sizes of the
-//! items.
 
+mod contents;
 mod cuts;
+mod forgetting;
 mod remains;
 mod sequences;
 
@@ -19,7 +19,6 @@ use host::virtual_time::run;
 use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
 use orientation::attitude::restart::Remembered;
 use orientation::units::{Radians, RadiansPerSecond, Seconds};
-use sequential_storage::map::MapConfig;
 
 /// The flash of a board, behind its driver.
 type Board = PoweredFlash<Box<Cells>>;
@@ -34,7 +33,7 @@ fn erased(seed: u64) -> Board {
 
 /// The store in this flash. It keeps nothing in memory from one access to the next.
 fn store(flash: &mut Board) -> FlashStore<&mut Board> {
-    FlashStore::new(flash, const { MapConfig::new(FIRST..SIZE as u32) })
+    FlashStore::new(flash, FIRST)
 }
 
 /// A kind of item that the instrument stores. Each item is known by a number.
@@ -127,6 +126,10 @@ impl Slot {
 
     fn save(&self, flash: &mut Board, number: u64) -> Result<(), Fault> {
         (self.save)(flash, self.key, number)
+    }
+
+    fn forget(&self, flash: &mut Board) -> Result<(), Fault> {
+        run(store(flash).forget(self.key)).expect("it ends")
     }
 
     /// The number of the item in the slot, which is whole.

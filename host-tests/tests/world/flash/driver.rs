@@ -1,4 +1,4 @@
-//! The flash as a program sees it through the driver of embassy-stm32.
+//! The flash as a program sees it through its driver.
 
 use super::{DATA, ERASED, UPPER, erased};
 use core::time::Duration;
@@ -104,19 +104,33 @@ fn a_loss_within_an_operation_is_at_some_moment_of_it() {
 }
 
 #[test]
-fn an_uncorrectable_row_stops_a_program_whose_interrupt_does_not_return() {
-    let mut flash = powered();
-    assert_eq!(write(&mut flash, 0, &[1; 2 * ROW]), Ok(()));
-    for bit in [3, 40] {
-        flash.flash.invert(8, bit);
+fn an_uncorrectable_row_is_an_error_of_its_read_or_is_read_as_the_cells_hold_it() {
+    for is_cached in [false, true] {
+        let mut flash = powered();
+        flash.is_cached = is_cached;
+        assert_eq!(write(&mut flash, 0, &[1; 3 * ROW]), Ok(()));
+        for bit in [3, 40] {
+            flash.flash.invert(8, bit);
+        }
+        for _ in 0..2 {
+            assert_eq!(read(&mut flash, 0), Ok([1; ROW]));
+            assert_eq!(read::<1>(&mut flash, 8), Err(Trouble::Uncorrectable), "each time");
+            assert_eq!(read(&mut flash, 16), Ok([1; ROW]));
+        }
+        assert_eq!(flash.stopped(), None);
+        flash.interrupt = Interrupt::Returns;
+        assert_eq!(read(&mut flash, 8), Ok([9, 1, 1, 1, 1, 0, 1, 1]));
     }
-    assert_eq!(read(&mut flash, 0), Ok([1; ROW]));
-    assert_eq!(read::<1>(&mut flash, 8), Err(Trouble::Interrupt));
-    assert_eq!(read::<1>(&mut flash, 0), Err(Trouble::Interrupt));
-    assert_eq!(erase(&mut flash, 0, PAGE as u32), Err(Trouble::Interrupt), "not even this");
-    assert_eq!(flash.stopped(), Some(Trouble::Interrupt));
-    flash.restart();
-    assert_eq!(read(&mut flash, 0), Ok([1; ROW]));
-    flash.interrupt = Interrupt::Returns;
-    assert_eq!(read(&mut flash, 8), Ok([9, 1, 1, 1, 1, 0, 1, 1]), "as the cells hold it");
+}
+
+#[test]
+fn what_an_erased_page_held_is_not_read_out_of_the_cache_nor_are_rows_spoilt_there() {
+    let mut flash = powered();
+    flash.is_cached = true;
+    flash.flash.set_cache_risk(1.0);
+    assert_eq!(write(&mut flash, UPPER, &DATA), Ok(()));
+    assert_eq!(read(&mut flash, UPPER), Ok(DATA));
+    assert_eq!(erase(&mut flash, UPPER, UPPER + PAGE as u32), Ok(()));
+    assert_eq!(read(&mut flash, UPPER), Ok(ERASED));
+    assert_eq!(flash.flash.spoilt_rows(), 0);
 }

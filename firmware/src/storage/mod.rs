@@ -1,70 +1,28 @@
 //! Data kept over a loss of supply: the axis misalignment of the gyro on a turntable, one for each
-//! speed, with date and temperature; the heading of a vehicle at rest; and the [`settings`].
+//! speed, with date and temperature; the heading of a vehicle at rest; and the [`settings`](crate::settings).
 //!
 //! The axis misalignment is estimated by rate-modulated turns; a recent one makes these turns
 //! unnecessary. Images without storage contain none of this code.
+
+mod flash;
+
+pub use flash::FlashStore;
 
 use drivers::fault::Fault;
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::mutex::Mutex;
-use embedded_storage_async::nor_flash::NorFlash;
 use orientation::alignment::Method;
 use orientation::alignment::rotating::Setting;
-use orientation::alignment::rotating::misalignment::{AxisMisalignment, BYTES};
+use orientation::alignment::rotating::misalignment::AxisMisalignment;
 use orientation::alignment::rotating::session::Procedure;
 use orientation::alignment::rotating::turn::SPEEDS;
-use orientation::attitude::restart::Remembered as Heading;
 use orientation::signal::Sample;
 use orientation::units::RadiansPerSecond;
-use sequential_storage::cache::{Cache, Uncached};
-use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::event::Event;
 use crate::ports::{Recorder, Store};
-use crate::settings;
 use crate::shared::{Channels, Shared, discard};
-
-/// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
-const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
-/// Size of the longest kind of item, bytes: a record of settings.
-const LONGEST: usize = settings::BYTES;
-const _: () = assert!(LONGEST >= BYTES && LONGEST >= Heading::BYTES);
-
-/// A store in pages of a flash that are reserved for it. A new item is written beside the old one;
-/// until it is complete, the old one is valid.
-pub struct FlashStore<F: NorFlash> {
-    /// The log-structured map in the flash.
-    map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
-}
-
-impl<F: NorFlash> FlashStore<F> {
-    /// Takes a flash and a range of at least two of its pages. `MapConfig::new` checks the range in
-    /// a constant when the image is built.
-    pub const fn new(flash: F, range: MapConfig<F>) -> Self {
-        Self { map: MapStorage::new(flash, range, Cache::new_uncached()) }
-    }
-
-    /// Releases the flash.
-    pub fn into_flash(self) -> F {
-        self.map.destroy().0
-    }
-}
-
-impl<F: NorFlash> Store for FlashStore<F> {
-    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
-        // A buffer takes memory only while it is used: a store is moved, which would copy one.
-        let mut buffer = [0; BUFFER];
-        let found = self.map.fetch_item::<[u8; N]>(&mut buffer, &slot).await;
-        found.map_err(|_| Fault::Bus)
-    }
-
-    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
-        let mut buffer = [0; BUFFER];
-        let kept = self.map.store_item(&mut buffer, &slot, item).await;
-        kept.map_err(|_| Fault::Bus)
-    }
-}
 
 /// A store that several parts of an instrument use, one after the other.
 pub type SharedStore<T> = Mutex<NoopRawMutex, T>;
@@ -77,10 +35,14 @@ impl<T: Store> Store for &SharedStore<T> {
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
         self.lock().await.save(slot, item).await
     }
+
+    async fn forget(&mut self, slot: u8) -> Result<(), Fault> {
+        self.lock().await.forget(slot).await
+    }
 }
 
 /// The slot of the heading; the slots of axis misalignments are the indices of speeds, that of the
-/// settings is [`settings::SLOT`].
+/// settings is [`settings::SLOT`](crate::settings::SLOT).
 pub const HEADING: u8 = 0x80;
 
 /// The date, and the permitted age of a calibration.

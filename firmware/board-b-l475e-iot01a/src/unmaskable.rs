@@ -1,0 +1,14 @@
+//! The handler of the non-maskable interrupt.
+#![expect(unsafe_code, reason = "its handler is unsafe to define")]
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::exception;
+use stm32::note_unreadable_row;
+
+/// A row of the store that cannot be read is an error of that read; anything else is a fault, which resets.
+#[exception]
+unsafe fn NonMaskableInt() {
+    if !note_unreadable_row() {
+        SCB::sys_reset();
+    }
+}
