@@ -155,7 +155,9 @@ async fn erase_page(offset: u32) -> Result<(), Trouble> {
     idle().await?;
     let _without_cache = WithoutCache::new();
     if pac::FLASH.cr().read().lock() {
-        KEYS.into_iter().for_each(|key| pac::FLASH.keyr().write_value(key));
+        for key in KEYS {
+            pac::FLASH.keyr().write_value(key);
+        }
     }
     // Errors of before are cleared by ones; with one of them nothing would begin.
     pac::FLASH.sr().modify(|_| {});
@@ -202,7 +204,8 @@ impl NorFlash for UpperBank<'_> {
     const ERASE_SIZE: usize = MAX_ERASE_SIZE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Trouble> {
-        if !(BANK <= from && from <= to && to <= 2 * BANK) || from % PAGE != 0 || to % PAGE != 0 {
+        let are_pages = from.is_multiple_of(PAGE) && to.is_multiple_of(PAGE);
+        if !(are_pages && BANK <= from && from <= to && to <= 2 * BANK) {
             return Err(Trouble::Refused);
         }
         for page in (from..to).step_by(MAX_ERASE_SIZE) {
