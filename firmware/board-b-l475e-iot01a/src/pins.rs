@@ -1,26 +1,24 @@
 //! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
 
 use drivers::lsm6dsl;
-use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::exti::{self, ExtiInput};
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::interrupt::typelevel;
 use embassy_stm32::peripherals::{
-    DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4,
+    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4,
     PA15, PB0, PB1, PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, ConfigError, UartTx};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma};
-use embassy_sync::mutex::Mutex;
 use embassy_time::Duration;
 use firmware::ports::Frames;
-use static_cell::StaticCell;
+use stm32::spi::Bus;
 use stm32::wiring::{
-    AxisPlatformWires, BaseBus, Bus, Buses, ConverterWires, FramesWires, Outlets, PlatformWires,
-    SpinWires, StageBus, VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, BaseBus, Buses, ConverterWires, FramesWires, Outlets, PlatformWires,
+    SpinWires, VehicleWires, sensor_settings, stage_settings,
 };
 
 use crate::clock;
@@ -33,8 +31,6 @@ bind_interrupts!(struct Interrupts {
     EXTI15_10 => exti::InterruptHandler<typelevel::EXTI15_10>;
     I2C2_EV => i2c::EventInterruptHandler<I2C2>;
     I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
-    DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
-    DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
     DMA1_CHANNEL4 => dma::InterruptHandler<DMA1_CH4>;
     DMA1_CHANNEL5 => dma::InterruptHandler<DMA1_CH5>;
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
@@ -69,16 +65,13 @@ impl Board {
     /// # Errors
     /// An invalid configuration of the serial port.
     pub fn new(p: Peripherals) -> Result<Self, ConfigError> {
-        static SENSORS: StaticCell<Bus> = StaticCell::new();
-        static STAGE: StaticCell<StageBus> = StaticCell::new();
-        let clock = clock::SYSTEM;
-        let (low, high) = (sensor_settings(clock), stage_settings(clock));
-        let sensors =
-            Spi::new(p.SPI1, p.PA5, p.PA7, p.PA6, p.DMA1_CH3, p.DMA1_CH2, Interrupts, low);
-        let stage = BlockingAsync::new(Spi::new_blocking(p.SPI2, p.PD1, p.PD4, p.PD3, high));
-        let sensors = SENSORS.init(Mutex::new(sensors));
-        let stage = STAGE.init(Mutex::new(stage));
-        let buses = Buses { sensors, stage, clock };
+        let sensors = Spi::new_blocking(p.SPI1, p.PA5, p.PA7, p.PA6, sensor_settings());
+        let stage = Spi::new_blocking(p.SPI2, p.PD1, p.PD4, p.PD3, stage_settings());
+        let buses = Buses {
+            sensors: Bus::First.taken(sensors),
+            stage: Bus::Second.taken(stage),
+            clock: clock::SYSTEM,
+        };
         let ready = ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts);
         let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
         Ok(Self {

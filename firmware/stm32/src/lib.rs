@@ -9,6 +9,7 @@ mod configuration;
 mod flash;
 mod ports;
 mod settings;
+pub mod spi;
 pub mod watchdog;
 pub mod wiring;
 

@@ -18,7 +18,8 @@ use firmware::settings;
 use crate::begun;
 use crate::configuration;
 use crate::configuration::PLATFORM;
-use crate::wiring::{BaseBus, ConverterWires, Device, Ready, StageDevice};
+use crate::spi::Device;
+use crate::wiring::{BaseBus, ConverterWires, Ready};
 
 /// Converter with its data-ready line.
 type Converter = Ads1262<Device, Ready, Delay>;
@@ -27,9 +28,9 @@ type Gyro = AnalogueGyro<Device, Ready, Delay>;
 /// Accelerometer on the platform, or in the vehicle.
 type Accelerometer = Adxl355<Device, Delay>;
 /// Encoder of an axis.
-type AxisEncoder = Mt6835<StageDevice, Delay>;
+type AxisEncoder = Mt6835<Device, Delay>;
 /// Motor of an axis.
-pub type AxisMotor = Tmc5160<StageDevice, Delay>;
+pub type AxisMotor = Tmc5160<Device, Delay>;
 /// IMU of the board on the base.
 pub type Base = BaseImu<BaseBus, Delay>;
 /// Sensors of a stage or a turntable, and of their base.
@@ -54,7 +55,7 @@ pub fn inputs<E, B>(
 }
 
 /// Encoder of an axis.
-pub fn encoder(wires: StageDevice) -> AxisEncoder {
+pub fn encoder(wires: Device) -> AxisEncoder {
     Mt6835::new(wires, Delay, mt6835::Configuration::default())
 }
 
@@ -104,7 +105,7 @@ fn accelerometer(bus: Device) -> Accelerometer {
 }
 
 /// Connects the motor to its wires.
-pub fn motor(wires: StageDevice) -> AxisMotor {
+pub fn motor(wires: Device) -> AxisMotor {
     Tmc5160::new(wires, Delay, drive())
 }
 

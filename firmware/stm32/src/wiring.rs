@@ -1,43 +1,23 @@
 //! Buses, chip selects and lines of a board, as each carrier uses them.
 //!
-//! **One clock polarity on each bus.** On the sensors' bus embassy switches the SPI off between two
-//! transfers, and a pull resistor alone holds the clock at its idle level (RM0351, SPI, clock phase and
-//! polarity). A device of the other polarity would see an additional edge while selected. So the
-//! ADS1262 and the ADXL355, which idle low, share one bus, the MT6835 and the TMC5160, which idle high,
-//! the other; the phases may differ.
+//! **One clock polarity on each bus.** While the interface is switched off to change mode or clock, a pull resistor
+//! alone holds the clock at its idle level (RM0351, SPI, clock phase and polarity). A device of the other polarity would
+//! see an additional edge. So the ADS1262 and the ADXL355, which idle low, share one bus, the MT6835 and the TMC5160,
+//! which idle high, the other; the phases may differ.
 
-use drivers::{ads1262, adxl355};
-use embassy_embedded_hal::adapter::BlockingAsync;
-use embassy_embedded_hal::shared_bus::asynch::spi::{SpiDevice, SpiDeviceWithConfig};
+use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
 use embassy_stm32::i2c::{self, I2c};
-use embassy_stm32::mode::{Async, Blocking};
+use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::FLASH;
-use embassy_stm32::spi::mode::Master;
-use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode, Spi};
-use embassy_stm32::time::Hertz;
+use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
 use embassy_stm32::usart::UartTx;
-use embassy_sync::mutex::Mutex;
-use firmware::crossing::Lock;
 use firmware::ports::Frames;
 
-/// Greatest bus clock of the TMC5160 with its own oscillator, Hz (data sheet rev. 1.14, 4.3); the
-/// MT6835 allows more.
-const TMC5160_HERTZ: u32 = 4_000_000;
+use crate::spi::{Bus, Device};
 
-/// The bus of the sensors. All its devices belong to one executor; the lock lets them be handed to it.
-pub type Bus = Mutex<Lock, Spi<'static, Async, Master>>;
-/// A sensor on its bus, with its own mode and clock.
-pub type Device = SpiDeviceWithConfig<'static, Lock, Spi<'static, Async, Master>, Output<'static>>;
-/// The SPI of the stage without DMA: the few bytes of a transfer take 20 µs, hardly more than to set
-/// up two DMA channels, which the IMU on the base has.
-type StageSpi = BlockingAsync<Spi<'static, Blocking, Master>>;
-/// The bus of encoders and motor drivers.
-pub type StageBus = Mutex<Lock, StageSpi>;
-/// An encoder or a motor driver on its bus; all have one mode and one clock.
-pub type StageDevice = SpiDevice<'static, Lock, StageSpi, Output<'static>>;
 /// The bus of the IMU on the base.
 pub type BaseBus = I2c<'static, Async, i2c::Master>;
 /// A data-ready line.
@@ -96,9 +76,9 @@ pub struct Outlets {
 /// Connections of an axis.
 pub struct AxisWires {
     /// Encoder MT6835.
-    pub encoder: StageDevice,
+    pub encoder: Device,
     /// Motor driver TMC5160.
-    pub motor: StageDevice,
+    pub motor: Device,
 }
 
 /// Connections of an ADS1262.
@@ -109,13 +89,13 @@ pub struct ConverterWires {
     pub ready: Ready,
 }
 
-/// The buses of a board at their final place in memory.
+/// The serial buses of a board.
 #[derive(Clone, Copy)]
 pub struct Buses {
     /// The bus of the sensors.
-    pub sensors: &'static Bus,
+    pub sensors: Bus,
     /// The bus of encoders and motor drivers.
-    pub stage: &'static StageBus,
+    pub stage: Bus,
     /// Clock that the buses divide, Hz.
     pub clock: u32,
 }
@@ -123,15 +103,13 @@ pub struct Buses {
 impl Buses {
     /// Connects an ADS1262 by its select pin and its data-ready line.
     pub fn converter(self, select: Peri<'static, impl Pin>, ready: Ready) -> ConverterWires {
-        let bus =
-            SpiDeviceWithConfig::new(self.sensors, unselected(select), sensor_settings(self.clock));
+        let bus = self.sensor(select, MODE_1, ads1262::GREATEST_BUS_HERTZ);
         ConverterWires { bus, ready }
     }
 
     /// Connects the ADXL355 by its select pin.
     pub fn accelerometer(self, select: Peri<'static, impl Pin>) -> Device {
-        let settings = settings(MODE_0, adxl355::BUS_HERTZ, self.clock);
-        SpiDeviceWithConfig::new(self.sensors, unselected(select), settings)
+        self.sensor(select, MODE_0, adxl355::GREATEST_BUS_HERTZ)
     }
 
     /// Connects the encoder and the motor driver of an axis by their select pins.
@@ -140,10 +118,16 @@ impl Buses {
         encoder: Peri<'static, impl Pin>,
         motor: Peri<'static, impl Pin>,
     ) -> AxisWires {
+        let device = |select, limit| Device::new(self.stage, select, MODE_3, limit, self.clock);
         AxisWires {
-            encoder: SpiDevice::new(self.stage, unselected(encoder)),
-            motor: SpiDevice::new(self.stage, unselected(motor)),
+            encoder: device(unselected(encoder), mt6835::GREATEST_BUS_HERTZ),
+            motor: device(unselected(motor), tmc5160::GREATEST_BUS_HERTZ),
         }
+    }
+
+    /// Connects a sensor with a mode and a greatest clock, Hz.
+    fn sensor(self, select: Peri<'static, impl Pin>, mode: Mode, limit: u32) -> Device {
+        Device::new(self.sensors, unselected(select), mode, limit, self.clock)
     }
 }
 
@@ -152,35 +136,24 @@ fn unselected(select: Peri<'static, impl Pin>) -> Output<'static> {
     Output::new(select, Level::High, Speed::Medium)
 }
 
-/// Settings of the sensors' bus as its converters use it, by the clock that it divides, Hz.
+/// How embassy sets up the pins of the sensors' bus.
 #[must_use]
-pub fn sensor_settings(clock: u32) -> spi::Config {
-    settings(MODE_1, ads1262::GREATEST_BUS_HERTZ, clock)
+pub fn sensor_settings() -> spi::Config {
+    settings(MODE_1)
 }
 
-/// Settings of the bus of encoders and motor drivers, by the clock that it divides, Hz.
+/// How embassy sets up the pins of the bus of encoders and motor drivers.
 #[must_use]
-pub fn stage_settings(clock: u32) -> spi::Config {
-    settings(MODE_3, TMC5160_HERTZ, clock)
+pub fn stage_settings() -> spi::Config {
+    settings(MODE_3)
 }
 
-/// Mode of a device, and the fastest division of a clock, Hz, not above its limit, Hz. A pull-up makes
-/// a broken line read as ones, which, unlike zeros, fail every checksum.
-fn settings(mode: Mode, limit: u32, clock: u32) -> spi::Config {
+/// Pins for devices of this mode. A pull-up makes a broken line read as ones, which, unlike zeros, fail every
+/// checksum.
+fn settings(mode: Mode) -> spi::Config {
     let mut settings = spi::Config::default();
     settings.mode = mode;
-    settings.frequency = within(limit, clock);
     settings.miso_pull = Pull::Up;
     settings.gpio_speed = Speed::Medium;
     settings
-}
-
-/// Fastest clock of a divider that is not above the limit, Hz. embassy itself takes the nearest
-/// divider, which may be faster than requested.
-const fn within(limit: u32, clock: u32) -> Hertz {
-    let mut divided = clock / 2;
-    while divided > limit {
-        divided /= 2;
-    }
-    Hertz(divided)
 }

@@ -40,8 +40,10 @@ use registers::{
     SHADOW, STANDBY, STATUS, Status,
 };
 
-/// Bus clock, Hz: the fastest of an 80 MHz controller with a margin to the chip's 10 MHz (SPI
-/// Characteristics).
+/// Fastest bus clock, Hz (SPI Characteristics).
+pub const GREATEST_BUS_HERTZ: u32 = 10_000_000;
+
+/// Bus clock that the budget is made for, Hz.
 pub const BUS_HERTZ: u32 = 5_000_000;
 
 /// Bytes of one sample: command and burst, then command and status.
@@ -194,8 +196,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn sample(&mut self) -> Result<(Frame, bool), Fault> {
         let mut is_fresh = false;
         for _ in 0..ATTEMPTS {
-            let mut burst = [0; BURST];
-            self.read_from(STATUS, &mut burst).await?;
+            let [_, burst @ ..] = self.read_from::<{ 1 + BURST }>(STATUS).await?;
             let frame = codec::frame(&burst)?;
             is_fresh |= frame.status.is_ready();
             if !self.status().await?.is_ready() {
@@ -207,8 +208,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     }
 
     async fn identify(&mut self) -> Result<(), Fault> {
-        let mut found = [0; 4];
-        self.read_from(DEVID_AD, &mut found).await?;
+        let [_, found @ ..] = self.read_from::<5>(DEVID_AD).await?;
         let [identity @ .., _revision] = found;
         let fault = Fault::Identity { found: u32::from_be_bytes(found) };
         if identity == IDENTITY { Ok(()) } else { Err(fault) }
@@ -217,17 +217,18 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     /// Keeps the factory settings as they are before the first software reset; two reads must agree.
     async fn keep_shadow(&mut self) -> Result<(), Fault> {
         if self.shadow.is_none() {
-            let mut shadows = [Shadow::default(); 2];
-            for shadow in &mut shadows {
-                self.read_from(SHADOW, shadow).await?;
-            }
-            let [shadow, again] = shadows;
-            if shadow != again {
+            let shadow = self.read_shadow().await?;
+            if shadow != self.read_shadow().await? {
                 return Err(Fault::Checksum);
             }
             self.shadow = Some(shadow);
         }
         Ok(())
+    }
+
+    async fn read_shadow(&mut self) -> Result<Shadow, Fault> {
+        let [_, shadow @ ..] = self.read_from::<6>(SHADOW).await?;
+        Ok(shadow)
     }
 
     /// Resets until the factory settings have loaded as after power-up: a race in the silicon up to
@@ -236,8 +237,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
         for _ in 0..RESETS {
             self.write(&[(RESET, RESET_CODE)]).await?;
             self.wait_loaded().await?;
-            let mut shadow = Shadow::default();
-            self.read_from(SHADOW, &mut shadow).await?;
+            let shadow = self.read_shadow().await?;
             if self.shadow == Some(shadow) {
                 return Ok(());
             }
@@ -293,24 +293,27 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
 
     /// Compares all writable registers with what they ought to hold.
     async fn check(&mut self) -> Result<(), Fault> {
-        let mut found = [0; SETTINGS];
-        self.read_from(OFFSET_X_H, &mut found).await?;
+        let [_, found @ ..] = self.read_from::<{ 1 + SETTINGS }>(OFFSET_X_H).await?;
         codec::compare(&found, &codec::settings(self.rate))?;
         self.reads_unchecked = 0;
         Ok(())
     }
 
     async fn status(&mut self) -> Result<Status, Fault> {
-        let mut status = [0];
-        self.read_from(STATUS, &mut status).await?;
-        Ok(Status(status[0]))
+        let [_, status] = self.read_from(STATUS).await?;
+        Ok(Status(status))
     }
 
-    /// Reads registers in a row, from `first` on.
-    async fn read_from(&mut self, first: u8, bytes: &mut [u8]) -> Result<(), Fault> {
-        let command = [first << 1 | 1];
-        let mut operations = [Operation::Write(&command), Operation::Read(bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
+    /// Reads registers in a row, from `first` on, behind a byte that means nothing: one transfer, which is what it
+    /// comes to on the bus.
+    async fn read_from<const N: usize>(&mut self, first: u8) -> Result<[u8; N], Fault> {
+        let mut bytes = [0; N];
+        if let [command, ..] = &mut bytes[..] {
+            *command = first << 1 | 1;
+        }
+        let mut operations = [Operation::TransferInPlace(&mut bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        Ok(bytes)
     }
 
     /// Writes registers, one after another.

@@ -35,7 +35,10 @@ use registers::{
     ZERO_HIGH, ZERO_LOW,
 };
 
-/// Bus clock, Hz; the chip allows 16 MHz (SPI Timing).
+/// Fastest bus clock, Hz (SPI Timing).
+pub const GREATEST_BUS_HERTZ: u32 = 16_000_000;
+
+/// Bus clock that the budget is made for, Hz.
 pub const BUS_HERTZ: u32 = 5_000_000;
 
 /// Bytes of a reading: a burst and one register.
@@ -188,10 +191,12 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     }
 
     async fn burst(&mut self) -> Result<[u8; 4], Fault> {
-        let mut bytes = [0; 4];
-        let mut operations = [Operation::Write(&BURST), Operation::Read(&mut bytes)];
+        let [high, low] = BURST;
+        let mut bytes = [high, low, 0, 0, 0, 0];
+        let mut operations = [Operation::TransferInPlace(&mut bytes)];
         self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
-        Ok(bytes)
+        let [_, _, frame @ ..] = bytes;
+        Ok(frame)
     }
 
     async fn register(&mut self, register: u16) -> Result<u8, Fault> {

@@ -45,7 +45,10 @@ use self::units::Velocity;
 use crate::fault::Fault;
 use crate::pause::pause;
 
-/// The bus clock that the budget is made for, Hz; the limit is 4 MHz (4.3).
+/// Fastest bus clock with the internal oscillator, Hz (4.3).
+pub const GREATEST_BUS_HERTZ: u32 = 4_000_000;
+
+/// Bus clock that the budget is made for, Hz.
 pub const BUS_HERTZ: u32 = 2_000_000;
 
 /// Bytes of a status: seven registers and one datagram to fetch the last.
