@@ -4,6 +4,7 @@
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::scale::Scale;
 use drivers::adxl355::Adxl355;
+use drivers::data_ready::{DataReady, Edge};
 use drivers::fault::Fault;
 use drivers::lsm6dsl::Lsm6dsl;
 use drivers::mt6835::Mt6835;
@@ -11,7 +12,6 @@ use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::MICROSTEPS_PER_TURN;
 use drivers::tmc5160::units::Velocity;
 use embedded_hal_async::delay::DelayNs;
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::I2c;
 use embedded_hal_async::spi::SpiDevice;
 use orientation::signal::sway::CoarseSensors;
@@ -34,14 +34,14 @@ pub struct AnalogueGyro<S, R, D> {
     pub limit: AngularRate,
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for AnalogueGyro<S, R, D> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> Startable for AnalogueGyro<S, R, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
         self.converter.start()
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
-    fn ready(&mut self) -> impl Future<Output = Result<(), Fault>> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
+    fn ready(&mut self) -> impl Future<Output = Result<Edge, Fault>> {
         self.converter.ready()
     }
 
@@ -55,7 +55,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
     fn arm(&mut self) -> impl Future<Output = Result<(), Fault>> {
         self.converter.arm()
     }
@@ -65,7 +65,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for Ads1262<S, R, D> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> Startable for Ads1262<S, R, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
         Ads1262::start(self)
     }
@@ -73,8 +73,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for Ads1262<S, R, D> {
 
 /// Any sensor with an analogue output behind a converter; its reading is the converter's code,
 /// without a unit.
-impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for Ads1262<S, R, D> {
-    fn ready(&mut self) -> impl Future<Output = Result<(), Fault>> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> Gyro<Code> for Ads1262<S, R, D> {
+    fn ready(&mut self) -> impl Future<Output = Result<Edge, Fault>> {
         Ads1262::ready(self)
     }
 
@@ -85,7 +85,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for Ads1262<S, R, D> {
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> InStep<Code> for Ads1262<S, R, D> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> InStep<Code> for Ads1262<S, R, D> {
     fn arm(&mut self) -> impl Future<Output = Result<(), Fault>> {
         Ads1262::arm(self)
     }

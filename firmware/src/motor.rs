@@ -82,19 +82,17 @@ impl<'a, M: Actuator> Motor<'a, M> {
     /// # Errors
     /// [`Break::Lost`] if the driver had to be started again, [`Break::Refused`] if it is given up.
     pub(crate) async fn ask(&mut self, request: Command) -> Result<(), Break> {
-        let restarts = self.actuator.restarts();
         loop {
-            let begun = Instant::now();
             let outcome = self.actuator.device.execute(request).await;
-            match self.actuator.checked(begun, outcome) {
+            match self.actuator.checked(outcome) {
                 Ok(motion) => {
                     self.motion = motion.unwrap_or(self.motion);
                     return Ok(());
                 }
-                Err(symptom) => self.actuator.mend(symptom, self.shared).await?,
-            }
-            if self.actuator.restarts() != restarts {
-                return Err(Break::Lost);
+                Err(symptom) if self.actuator.mend(symptom, self.shared).await? => {
+                    return Err(Break::Lost);
+                }
+                Err(_) => {}
             }
         }
     }

@@ -4,6 +4,7 @@
 //! Every exchange must end within bounded time, except [`Gyro::ready`], which may wait for ever and
 //! may be dropped at any time.
 
+use drivers::data_ready::Edge;
 use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::alignment::{Azimuth, Method};
@@ -68,8 +69,9 @@ pub struct RateReading<V = AngularRate> {
 
 /// The precise gyro, or another sensor behind a converter.
 pub trait Gyro<V = AngularRate>: Startable {
-    /// Waits until a conversion is ready. The future may be dropped at any time without loss.
-    async fn ready(&mut self) -> Result<(), Fault>;
+    /// Waits until a conversion is ready that has not been read, and returns its end. The future may be dropped at
+    /// any time without loss.
+    async fn ready(&mut self) -> Result<Edge, Fault>;
 
     /// Reads the conversion that is ready.
     async fn read(&mut self) -> Result<RateReading<V>, Fault>;

@@ -8,8 +8,8 @@ use orientation::words;
 
 /// Number of consecutive readings that may be lost on the bus before the device is started again.
 const LOST_IN_A_ROW: u8 = 3;
-/// Number of restarts that a device may need in one session. A device that needs more is defective,
-/// and its gaps would cost more dwells than a session may repeat.
+/// Number of restarts that a device may need without a minute of work between them. A device that
+/// needs more is defective, and its gaps would cost more dwells than a session may repeat.
 const RESTARTS: u8 = 5;
 /// Time after which a device that was given up is tried again while an azimuth is kept.
 pub(crate) const RETRY: Duration = Duration::from_secs(10);
@@ -23,8 +23,6 @@ pub enum Symptom {
     Silent,
     /// The device repeats the same reading.
     Stuck,
-    /// An exchange on the bus takes far too long.
-    Slow,
     /// The reading is impossible, as it differs too much from the one before.
     Jumped,
     /// The device does not convert synchronously with the others.
@@ -37,7 +35,6 @@ words! { Symptom:
     Self::Chip(fault) => "{}", fault;
     Self::Silent => "no data in time";
     Self::Stuck => "the same reading again and again";
-    Self::Slow => "its bus hangs";
     Self::Jumped => "too far from the one before";
     Self::OutOfStep => "out of step with the others";
     Self::Saturated => "at the limit of its range for too long";
@@ -47,6 +44,7 @@ impl From<Symptom> for Trouble {
     fn from(symptom: Symptom) -> Self {
         match symptom {
             Symptom::Chip(Fault::Bus) => Self::Bus,
+            Symptom::Chip(Fault::Hung) => Self::Slow,
             Symptom::Chip(Fault::Checksum) => Self::Checksum,
             Symptom::Chip(Fault::Reset) => Self::Resets,
             Symptom::Chip(Fault::Identity { .. }) => Self::Identity,
@@ -55,7 +53,6 @@ impl From<Symptom> for Trouble {
             Symptom::Chip(Fault::Alarm { .. }) => Self::Alarm,
             Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
             Symptom::Stuck | Symptom::Jumped => Self::Stuck,
-            Symptom::Slow => Self::Slow,
             Symptom::OutOfStep => Self::OutOfStep,
             Symptom::Saturated => Self::Saturated,
         }
@@ -87,12 +84,6 @@ pub struct RetryBudget {
 }
 
 impl RetryBudget {
-    /// Number of restarts so far.
-    #[must_use]
-    pub fn restarts(&self) -> u8 {
-        self.restarts
-    }
-
     /// Records a good reading, which ends a failure.
     pub fn succeeded(&mut self) {
         self.lost = 0;
@@ -100,14 +91,20 @@ impl RetryBudget {
         self.cause = None;
     }
 
-    /// Records a failed reading and returns the reaction: bus errors are repeated up to three
-    /// times, everything else needs a restart, at most five times. A saturated device is given up.
+    /// Forgives the restarts of a device that has worked for long since the latest one.
+    pub fn forgive(&mut self) {
+        self.restarts = 0;
+    }
+
+    /// Records a failed reading and returns the reaction: bus errors, and transfers that hung, are
+    /// repeated up to three times, everything else needs a restart, at most five times. A saturated
+    /// device is given up.
     pub fn failed(&mut self, symptom: Symptom) -> Remedy {
         if symptom == Symptom::Saturated {
             return Remedy::GiveUp(symptom.into());
         }
         let cause = *self.cause.get_or_insert(symptom);
-        let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Checksum));
+        let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Hung | Fault::Checksum));
         if passing && self.lost < LOST_IN_A_ROW {
             self.lost += 1;
             return Remedy::Drop;
@@ -120,17 +117,16 @@ impl RetryBudget {
         Remedy::Restart
     }
 
-    /// Selects the symptom that explains a failure best. A bus error, or a device that became
-    /// silent, stuck or slow, explains what follows, so the first symptom counts; in other cases
+    /// Selects the symptom that explains a failure best. An error of the bus, or a device that
+    /// became silent or stuck, explains what follows, so the first symptom counts; in other cases
     /// the last one counts. A wrong identity of a device that has worked means that it does not
     /// answer any more.
     fn reason(&self, first: Symptom, last: Symptom) -> Symptom {
         match (first, last) {
             (
-                Symptom::Chip(Fault::Bus | Fault::Checksum)
+                Symptom::Chip(Fault::Bus | Fault::Hung | Fault::Checksum)
                 | Symptom::Silent
-                | Symptom::Stuck
-                | Symptom::Slow,
+                | Symptom::Stuck,
                 _,
             ) => first,
             (_, Symptom::Chip(Fault::Identity { .. })) if self.has_worked => Symptom::Silent,

@@ -159,7 +159,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     async fn read(&mut self, shared: &Shared<'_>) -> Result<(), Symptom> {
         let begun = Instant::now();
         let outcome = self.base.device.read().await;
-        match self.base.checked(begun, outcome)? {
+        match self.base.checked(outcome)? {
             Some(reading) => {
                 shared.observer.sensed(begun, &reading);
                 self.push(begun, reading)
@@ -206,16 +206,15 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     /// # Errors
     /// The sensors are given up although their readings are being subtracted in an alignment.
     async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
-        let restarts = self.base.restarts();
         let outcome = self.base.mend(symptom, shared).await;
-        if self.base.restarts() != restarts {
+        if outcome != Ok(false) {
             self.silent = Instant::now();
         }
         let is_subtracted = self.compensates && matches!(self.sway.decision, Decision::Swaying(..));
         match outcome {
             Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
             Err(_) => self.lose(shared),
-            Ok(()) => {}
+            Ok(_) => {}
         }
         Ok(())
     }

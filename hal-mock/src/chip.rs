@@ -97,6 +97,11 @@ pub struct ReadyLine {
     pub active: bool,
     /// When the line becomes active again, where the chip brings that about without an access.
     pub next: Option<Instant>,
+    /// When a conversion last made it active, or would have where it was so already; none where none did, or where
+    /// the chip is no converter.
+    pub latest: Option<Instant>,
+    /// Number of conversions that did; it wraps.
+    pub count: u32,
 }
 
 /// A chip with serial interface in an environment `E`.

@@ -48,6 +48,7 @@
 
 mod clock;
 mod pins;
+mod priorities;
 mod unmaskable;
 
 use defmt_rtt as _;
@@ -109,6 +110,7 @@ async fn main(spawner: Spawner) {
     let has_crystal = !watchdog::crystal_failed(reason);
     watchdog::arm();
     let peripherals = clock::start(has_crystal);
+    priorities::set();
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
     let board = defmt::unwrap!(Board::new(peripherals));

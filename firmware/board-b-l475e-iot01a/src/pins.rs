@@ -1,20 +1,19 @@
 //! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
 
 use drivers::lsm6dsl;
-use embassy_stm32::exti::{self, ExtiInput};
-use embassy_stm32::gpio::{Level, Output, Pull, Speed};
+use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::i2c::{self, I2c};
-use embassy_stm32::interrupt::typelevel;
 use embassy_stm32::peripherals::{
-    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4,
-    PA15, PB0, PB1, PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
+    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4, PA15, PB0, PB1, PB2,
+    PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, ConfigError, UartTx};
-use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma};
+use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use embassy_time::Duration;
 use firmware::ports::Frames;
+use stm32::edges::{self, Line};
 use stm32::spi::Bus;
 use stm32::wiring::{
     AxisPlatformWires, BaseBus, Buses, ConverterWires, FramesWires, Outlets, PlatformWires,
@@ -24,17 +23,42 @@ use stm32::wiring::{
 use crate::clock;
 
 bind_interrupts!(struct Interrupts {
-    EXTI0 => exti::InterruptHandler<typelevel::EXTI0>;
-    EXTI1 => exti::InterruptHandler<typelevel::EXTI1>;
-    EXTI3 => exti::InterruptHandler<typelevel::EXTI3>;
-    EXTI4 => exti::InterruptHandler<typelevel::EXTI4>;
-    EXTI15_10 => exti::InterruptHandler<typelevel::EXTI15_10>;
     I2C2_EV => i2c::EventInterruptHandler<I2C2>;
     I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
     DMA1_CHANNEL4 => dma::InterruptHandler<DMA1_CH4>;
     DMA1_CHANNEL5 => dma::InterruptHandler<DMA1_CH5>;
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
 });
+
+/// The edges of the data-ready lines on pins 0.
+#[interrupt]
+fn EXTI0() {
+    edges::take(1 << 0);
+}
+
+/// The edges of the data-ready lines on pins 1.
+#[interrupt]
+fn EXTI1() {
+    edges::take(1 << 1);
+}
+
+/// The edges of the data-ready lines on pins 3.
+#[interrupt]
+fn EXTI3() {
+    edges::take(1 << 3);
+}
+
+/// The edges of the data-ready lines on pins 4.
+#[interrupt]
+fn EXTI4() {
+    edges::take(1 << 4);
+}
+
+/// The edges of the data-ready lines on pins 10 to 15.
+#[interrupt]
+fn EXTI15_10() {
+    edges::take(0x3F << 10);
+}
 
 /// Longest transfer of the IMU on the base before the bus counts as broken; the usual ones take 0.4 ms.
 const BASE_TIMEOUT: Duration = Duration::from_millis(5);
@@ -72,7 +96,7 @@ impl Board {
             stage: Bus::Second.taken(stage),
             clock: clock::SYSTEM,
         };
-        let ready = ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts);
+        let ready = Line::new(p.PD14, p.EXTI14);
         let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
         Ok(Self {
             buses,
@@ -120,9 +144,9 @@ impl Board {
     /// Connections in a vehicle.
     pub fn vehicle(self) -> VehicleWires {
         let Self { buses, converter, accelerometer, outlets, selects, ready, lines, .. } = self;
-        let line = ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts);
+        let line = Line::new(ready.0, lines.0);
         let right = buses.converter(selects.0, line);
-        let line = ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts);
+        let line = Line::new(ready.1, lines.1);
         let down = buses.converter(selects.1, line);
         let accelerometer = buses.accelerometer(accelerometer);
         VehicleWires { converters: [converter, right, down], accelerometer, outlets }
@@ -131,13 +155,13 @@ impl Board {
     /// Connections on a spinning body.
     pub fn spinning_body(self) -> SpinWires {
         let Self { buses, converter, outlets, selects, ready, lines, .. } = self;
-        let line = ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts);
+        let line = Line::new(ready.0, lines.0);
         let right = buses.converter(selects.0, line);
-        let line = ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts);
+        let line = Line::new(ready.1, lines.1);
         let up = buses.converter(selects.1, line);
-        let line = ExtiInput::new(ready.2, lines.2, Pull::Up, Interrupts);
+        let line = Line::new(ready.2, lines.2);
         let force_up = buses.converter(selects.2, line);
-        let line = ExtiInput::new(ready.3, lines.3, Pull::Up, Interrupts);
+        let line = Line::new(ready.3, lines.3);
         let force_right = buses.converter(selects.3, line);
         let converters = [converter, up, right, force_up, force_right];
         SpinWires { converters, outlets }

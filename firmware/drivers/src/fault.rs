@@ -1,5 +1,6 @@
 //! The reasons why a chip gives no valid reading, with the remedy for each.
 
+use embedded_hal_async::spi::{Error, ErrorKind};
 use orientation::words;
 
 /// A failed exchange with a chip.
@@ -7,6 +8,8 @@ use orientation::words;
 pub enum Fault {
     /// The bus reported an error: repeat the transfer.
     Bus,
+    /// The bus did not end a transfer within its time, and was started again: repeat the transfer.
+    Hung,
     /// A checksum was wrong: repeat the transfer.
     Checksum,
     /// The chip has restarted and lost its configuration: start it again.
@@ -34,6 +37,7 @@ pub enum Fault {
 
 words! { Fault:
     Self::Bus => "bus error";
+    Self::Hung => "its bus hangs";
     Self::Checksum => "wrong checksum";
     Self::Reset => "it has restarted";
     Self::Identity { found } => "wrong identity {:#x}", found;
@@ -41,6 +45,14 @@ words! { Fault:
     Self::NotAsWritten { register } => "register {:#x} does not hold what was written", register;
     Self::NotReady => "not ready in time";
     Self::Alarm { status } => "alarm, status {:#x}", status;
+}
+
+impl Fault {
+    /// The fault of a transfer on a serial bus. A bus tells a transfer that it has not ended within its time by an
+    /// error of another than the usual kinds.
+    pub(crate) fn of_transfer(error: impl Error) -> Self {
+        if error.kind() == ErrorKind::Other { Self::Hung } else { Self::Bus }
+    }
 }
 
 /// Compares registers, as read back from the address `first` on, with what was written to them.

@@ -17,6 +17,7 @@
 
 pub mod ads1262;
 pub mod adxl355;
+pub mod data_ready;
 pub mod fault;
 pub mod lsm6dsl;
 pub mod mt6835;

@@ -15,6 +15,7 @@ pub mod fault;
 pub mod flash;
 pub mod hold;
 pub mod keep;
+pub mod line;
 pub mod mount;
 pub mod scenario;
 pub mod spin;
@@ -44,6 +45,7 @@ use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::tmc5160::{Oscillator, Tmc5160 as MotorDriverChip};
 
 use self::fault::{Injection, PortWrapper};
+use self::line::ObservedLine;
 use self::scenario::Scenario;
 use firmware::chips::AnalogueGyro;
 use firmware::ports::Sensors;
@@ -98,7 +100,7 @@ fn board_around<'a>(
 type Bus<'a, A> = <A as PortWrapper>::Spi<SpiPort<'a>>;
 
 /// A simulated data-ready line with a wrapper around it.
-type Line<'a, A> = <A as PortWrapper>::Line<ReadyPin<'a>>;
+type Line<'a, A> = ObservedLine<'a, <A as PortWrapper>::Line<ReadyPin<'a>>>;
 
 /// A converter behind simulated ports.
 type SimulatedConverter<'a, A> = Ads1262<Bus<'a, A>, Line<'a, A>, Delay>;
@@ -158,7 +160,8 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
         hertz: u32,
         configuration: Converter,
     ) -> SimulatedConverter<'a, A> {
-        let ready = self.1.line(select, ReadyPin::new(self.0, select));
+        let line = self.1.line(select, ReadyPin::new(self.0, select));
+        let ready = ObservedLine::new(self.0, select, line);
         Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
     }
 

@@ -62,9 +62,8 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         if !self.due.is_due() || self.absent.is_some_and(|until| Instant::now() < until) {
             return Ok(None);
         }
-        let begun = Instant::now();
         let outcome = self.accelerometer.device.read().await;
-        match self.judge(begun, outcome) {
+        match self.judge(outcome) {
             Ok(reading) => {
                 self.absent = None;
                 return Ok(reading.is_new.then_some(reading));
@@ -78,7 +77,7 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
                     self.renew();
                     self.absent = Some(Instant::now() + RETRY);
                 }
-                outcome => outcome?,
+                outcome => drop(outcome?),
             },
         }
         Ok(None)
@@ -86,12 +85,8 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
 
     /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an
     /// accelerometer that has stopped.
-    fn judge(
-        &mut self,
-        begun: Instant,
-        outcome: Result<ForceReading, Fault>,
-    ) -> Result<ForceReading, Symptom> {
-        let reading = self.accelerometer.checked(begun, outcome)?;
+    fn judge(&mut self, outcome: Result<ForceReading, Fault>) -> Result<ForceReading, Symptom> {
+        let reading = self.accelerometer.checked(outcome)?;
         self.plausibility.judge(reading.force, reading.is_clipped, self.due.divider)?;
         Ok(reading)
     }

@@ -1,14 +1,14 @@
-//! Converters in step: awaited together, read in succession, restarted where one loses synchronism.
+//! Converters in step: awaited and read in succession, restarted where one loses synchronism.
 //!
 //! They share one clock and are started in succession, again whenever one of them had to be
 //! restarted. A converter that converts at other times than the others is detected by its
 //! data-ready line.
 
-use core::cell::Cell;
+use core::task::Poll;
 
-use drivers::fault::Fault;
-use embassy_futures::join::join_array;
-use embassy_time::{Duration, Instant, Timer, with_timeout};
+use drivers::data_ready::Edge;
+use embassy_futures::poll_once;
+use embassy_time::{Duration, Timer, with_timeout};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::math;
@@ -23,17 +23,14 @@ use crate::shared::Shared;
 /// line is no reason for a restart.
 const MOST_OUT_OF_STEP: u8 = 3;
 
-/// Arrival of a conversion: its end, or the fault of the chip; none while it is awaited.
-type Arrival = Cell<Option<Result<Instant, Fault>>>;
-
 /// Group of `N` converters with sensors that measure values `V`.
 pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
     /// Converters with their checks.
     converters: [Rates<'a, C, V>; N],
     /// Channels to the other tasks.
     shared: &'a Shared<'a>,
-    /// Sample period.
-    period: Duration,
+    /// Sample period, µs.
+    period: u32,
     /// Time without a conversion after which a converter counts as silent.
     silence: Duration,
     /// Number of successive conversions that were out of step.
@@ -54,13 +51,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             let name = names.next().unwrap_or(Device::Gyro);
             Rates::new(converter, name, sample_rate)
         });
-        Self {
-            converters: taken,
-            shared,
-            period: Duration::from_micros(period.into()),
-            silence: silence(period),
-            out_of_step: 0,
-        }
+        Self { converters: taken, shared, period, silence: silence(period), out_of_step: 0 }
     }
 
     /// Starts all converters, and their conversions in step.
@@ -92,29 +83,36 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         self.out_of_step = 0;
     }
 
-    /// Waits for a conversion of every converter; returns the end of each, or none after a fault.
-    pub(super) async fn conversions(&mut self) -> Result<Option<[Instant; N]>, Refusal> {
-        let arrivals = [const { Arrival::new(None) }; N];
+    /// Waits for a conversion of every converter; returns the ends, or none after a fault. They end
+    /// together, and an end that has come is returned at once, so one is awaited after the other.
+    pub(super) async fn conversions(&mut self) -> Result<Option<[Edge; N]>, Refusal> {
+        let (mut ends, mut come) = ([Edge::default(); N], 0);
+        let all = async {
+            for (end, converter) in ends.iter_mut().zip(&mut self.converters) {
+                *end = converter.gyro.device.ready().await.map_err(Symptom::Chip)?;
+                come += 1;
+            }
+            Ok(())
+        };
+        if let Err(symptom) = with_timeout(self.silence, all).await.unwrap_or(Err(Symptom::Silent))
         {
-            let mut each = arrivals.iter();
-            // There are as many arrivals as converters, so the default is never used.
-            let none = Arrival::new(None);
-            let waits = self
-                .converters
-                .each_mut()
-                .map(|converter| arrive(converter, each.next().unwrap_or(&none)));
-            // A missing conversion is detected below.
-            let _ = with_timeout(self.silence, join_array(waits)).await;
+            return self.mend(come, symptom).await;
         }
-        let mut times = [Instant::MIN; N];
-        for (index, (time, arrival)) in times.iter_mut().zip(&arrivals).enumerate() {
-            *time = match arrival.get() {
-                Some(Ok(at)) => at,
-                Some(Err(fault)) => return self.mend(index, Symptom::Chip(fault)).await,
-                None => return self.mend(index, Symptom::Silent).await,
-            };
+        self.catch_up(&mut ends);
+        Ok(Some(ends))
+    }
+
+    /// Looks again at converters whose end was seen just before the others ended another conversion.
+    fn catch_up(&mut self, ends: &mut [Edge; N]) {
+        let latest = ends.iter().map(|end| end.at.0).max().unwrap_or(0);
+        let near = latest.saturating_sub(u64::from(self.period / 4));
+        for (converter, end) in self.converters.iter_mut().zip(ends) {
+            if end.at.0 < near
+                && let Poll::Ready(Ok(later)) = poll_once(converter.gyro.device.ready())
+            {
+                *end = later;
+            }
         }
-        Ok(Some(times))
     }
 
     /// Values of the conversions; all are read, even if one fails.
@@ -133,10 +131,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
     /// Logs a converter's symptom and repairs it. A restarted converter has lost its step, so all
     /// are started again.
     async fn mend<T>(&mut self, index: usize, symptom: Symptom) -> Result<Option<T>, Refusal> {
-        let device = &mut self.converters[index].gyro;
-        let restarts = device.restarts();
-        device.mend(symptom, self.shared).await?;
-        if self.converters[index].gyro.restarts() != restarts {
+        if self.converters[index].gyro.mend(symptom, self.shared).await? {
             self.begin().await;
         }
         Ok(None)
@@ -144,12 +139,8 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
 
     /// Whether all converted in step. Otherwise all are read again half a period later, when no
     /// conversion is near; if that does not help, the deviating one is restarted.
-    pub(super) async fn are_in_step(
-        &mut self,
-        times: [Instant; N],
-        time: Instant,
-    ) -> Result<bool, Refusal> {
-        let Some(index) = self.outlier(times, time) else {
+    pub(super) async fn are_in_step(&mut self, ends: &[Edge; N]) -> Result<bool, Refusal> {
+        let Some(index) = self.outlier(ends) else {
             self.out_of_step = 0;
             return Ok(true);
         };
@@ -158,7 +149,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             self.mend::<()>(index, Symptom::OutOfStep).await?;
         } else {
             self.shared.lose(self.converters[index].gyro.name, Symptom::OutOfStep);
-            Timer::after(self.period / 2).await;
+            Timer::after_micros(u64::from(self.period / 2)).await;
             self.values().await?;
         }
         Ok(false)
@@ -166,20 +157,16 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
 
     /// Converter whose conversion ended furthest from the median, where that is more than a quarter
     /// of a period: the majority is right.
-    fn outlier(&self, times: [Instant; N], middle: Instant) -> Option<usize> {
-        let beside = |index: &usize| times[*index].max(middle) - times[*index].min(middle);
-        (0..N).max_by_key(beside).filter(|index| beside(index) > self.period / 4)
+    fn outlier(&self, ends: &[Edge; N]) -> Option<usize> {
+        let Edge { at: middle, .. } = middle(ends);
+        let beside = |index: &usize| ends[*index].at.0.abs_diff(middle.0);
+        (0..N).max_by_key(beside).filter(|index| beside(index) > u64::from(self.period / 4))
     }
 }
 
-/// Stores the time at which a conversion ended.
-async fn arrive<C: InStep<V>, V: Quantity>(converter: &mut Rates<'_, C, V>, arrival: &Arrival) {
-    let outcome = converter.gyro.device.ready().await;
-    arrival.set(Some(outcome.map(|()| Instant::now())));
-}
-
-/// Median of an odd number of times.
-pub(super) fn middle<const N: usize>(mut times: [Instant; N]) -> Instant {
+/// Median of the ends of an odd number of conversions, with the count of the first converter.
+pub(super) fn middle<const N: usize>(ends: &[Edge; N]) -> Edge {
+    let mut times = ends.map(|end| end.at);
     math::sort(&mut times, |a, b| a < b);
-    times[N / 2]
+    Edge { at: times[N / 2], count: ends[0].count }
 }

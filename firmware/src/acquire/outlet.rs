@@ -1,6 +1,7 @@
 //! Outlet of samples: queued for the session, counted, and reported where they are missing or late.
 
-use embassy_time::{Duration, Instant};
+use drivers::data_ready::Edge;
+use embassy_time::Duration;
 
 use crate::event::Event;
 use crate::shared::{Channels, Shared};
@@ -46,10 +47,11 @@ impl<'a, S> Outlet<'a, S> {
         }
     }
 
-    /// Counts and reports samples that are missing before one of this time, or that are late.
-    pub(super) fn judge(&mut self, time: Instant) {
+    /// Counts and reports samples that are missing before one of a conversion with this end, or that
+    /// are late.
+    pub(super) fn judge(&mut self, end: Edge) {
         let shared = self.shared();
-        match self.timeline.judge(time) {
+        match self.timeline.judge(end) {
             Arrival::InTime => {}
             Arrival::Late(microseconds) => {
                 shared.count(|health| health.late += 1);

@@ -1,6 +1,7 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
-use embassy_time::{Duration, Instant, with_timeout};
+use drivers::data_ready::Edge;
+use embassy_time::{Duration, with_timeout};
 use orientation::device::Device;
 use orientation::units::AngularRate;
 
@@ -11,9 +12,6 @@ use crate::ports::{Gyro, Quantity, RateReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
-/// Divisor of a period: a conversion that is returned within this part of it had ended before.
-const AT_ONCE: u32 = 16;
-
 /// State of a gyro's conversions.
 pub(super) struct Rates<'a, G, V = AngularRate> {
     /// Gyro with its retry budget.
@@ -22,8 +20,6 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     plausibility: Plausibility<V>,
     /// Sample period.
     pub(super) period: Duration,
-    /// End of the latest conversion.
-    latest: Option<Instant>,
     /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
@@ -41,7 +37,6 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             gyro: Guarded::new(gyro, name),
             plausibility: Plausibility::new(sample_rate),
             period,
-            latest: None,
             has_clipped: false,
         }
     }
@@ -54,38 +49,18 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     }
 
     /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.
-    pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Instant, Symptom> {
-        let asked = Instant::now();
+    pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Edge, Symptom> {
         match with_timeout(silence, self.gyro.device.ready()).await {
-            Ok(Ok(())) => {
-                let ended = self.ended(asked, Instant::now());
-                self.latest = Some(ended);
-                Ok(ended)
-            }
-            Ok(Err(fault)) => Err(Symptom::Chip(fault)),
+            Ok(end) => end.map_err(Symptom::Chip),
             Err(_) => Err(Symptom::Silent),
-        }
-    }
-
-    /// End of a conversion that was awaited from `asked` on and is present at `now`. One that was
-    /// present without a wait ended before, while another bus was read: it ended when it was due
-    /// after the previous one.
-    fn ended(&self, asked: Instant, now: Instant) -> Instant {
-        match self.latest {
-            Some(latest) if now - asked < self.period / AT_ONCE => {
-                let periods = (now - latest).as_micros() / self.period.as_micros();
-                now.min(latest + self.period * (periods.max(1) as u32))
-            }
-            _ => now,
         }
     }
 
     /// Returns a new rate, checked for saturation and repetition; none where it is not new, or the
     /// symptom to repair.
     pub(super) async fn read(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
-        let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
-        let RateReading { rate, is_new } = self.gyro.checked(begun, outcome)?;
+        let RateReading { rate, is_new } = self.gyro.checked(outcome)?;
         if !is_new {
             return Ok(None);
         }

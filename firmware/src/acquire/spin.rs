@@ -4,7 +4,6 @@
 //! one moment: a conversion is a mean, and belongs to its middle. From middle to middle a gyro has
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
 
-use embassy_time::Duration;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::SpinSample;
@@ -33,8 +32,8 @@ pub struct SpinAcquisition<'a, C> {
     converters: Group<'a, C, CHANNELS, Code>,
     /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
-    /// Time from the middle of a conversion to its end, rounded to nearest.
-    half: Duration,
+    /// Time from the middle of a conversion to its end, µs, rounded to nearest.
+    half: u64,
     /// Outlet of samples.
     outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
@@ -55,7 +54,7 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
         Self {
             converters: Group::new(converters, NAMES, rate, period, &channels.shared),
             configuration,
-            half: Duration::from_micros(libm::round(0.5e6 / rate) as u64),
+            half: libm::round(0.5e6 / rate) as u64,
             outlet: Outlet::new(period, channels),
             before: None,
             carried: [0; GYROS],
@@ -93,15 +92,15 @@ impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
     }
 
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
-        let Some(times) = self.converters.conversions().await? else { return Ok(None) };
-        let time = middle(times);
+        let Some(ends) = self.converters.conversions().await? else { return Ok(None) };
         let codes = self.converters.values().await?;
-        if !self.converters.are_in_step(times, time).await? {
+        if !self.converters.are_in_step(&ends).await? {
             return Ok(None);
         }
         let Some(codes) = codes else { return Ok(None) };
-        self.outlet.judge(time);
-        let time = Instant((time - self.half).as_micros());
+        let end = middle(&ends);
+        self.outlet.judge(end);
+        let time = Instant(end.at.0.saturating_sub(self.half));
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 

@@ -116,22 +116,24 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
 
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let shared = self.outlet.shared();
-        let time = match self.rates.conversion(self.silence).await {
-            Ok(time) => time,
-            Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|()| None),
+        let end = match self.rates.conversion(self.silence).await {
+            Ok(end) => end,
+            Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|_| None),
         };
+        let ended = Instant::from_micros(end.at.0);
+        let late = Instant::now() - ended;
         let rate = match self.rates.read(shared).await {
             Ok(rate) => rate,
-            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None)?,
+            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|_| None)?,
         };
         self.compensation.follow(false, shared).await?;
-        self.coarse.turn(time, rate);
+        self.coarse.turn(ended, rate);
         self.pass_on();
         if !self.compensation.is_decided() {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
-        let shown = self.pointing.read().await?;
+        let shown = self.pointing.read(late).await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
         self.compensation.follow(true, shared).await?;
         self.pass_on();
@@ -140,14 +142,14 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             self.coarse.feel(reading.force, bias_sigma, shared);
         }
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
-        self.outlet.judge(time);
+        self.outlet.judge(end);
         let aim = self.pointing.aim(shown);
         self.coarse.point(self.pointing.elevation());
         if let Some(reading) = force.filter(|_| on_base.is_none()) {
             self.coarse.compare(reading.force, aim.heading, shared);
         }
         Ok(Some(Sample {
-            time: orientation::units::Instant(time.as_micros()),
+            time: end.at,
             stage: aim.heading,
             rate: self.compensation.compensated(rate, aim.heading),
             force: force.map(|reading| reading.force),

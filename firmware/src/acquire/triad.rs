@@ -4,12 +4,11 @@
 //! lost conversion is unknown; such a sample is not passed on, and the jump in time reports the
 //! loss to the session.
 
-use embassy_time::{Duration, Instant};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::TRIAD;
 use orientation::navigation::Motion;
 use orientation::signal::InertialSample;
-use orientation::units::SpecificForce;
+use orientation::units::{Instant, SpecificForce};
 
 use super::forces::Forces;
 use super::in_step::{Group, middle};
@@ -25,7 +24,8 @@ pub struct TriadAcquisition<'a, G, A> {
     forces: Forces<'a, A>,
     mean: Mean,
     outlet: Outlet<'a, InertialSample>,
-    period: Duration,
+    /// Nominal sample period, µs.
+    period: u32,
     /// Remainders of the rotation in whole steps, 10⁻¹⁸ rad.
     carried: [i64; 3],
     /// End of the latest conversions.
@@ -47,7 +47,7 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
             outlet: Outlet::new(period, channels),
-            period: Duration::from_micros(period.into()),
+            period,
             carried: [0; 3],
             latest: None,
         }
@@ -55,11 +55,10 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
 
     /// Length of the conversions that ended at this time, µs: the time since the previous ones, or
     /// the nominal period where that is unknown.
-    fn lasted(&mut self, time: Instant) -> u32 {
-        let since = self.latest.replace(time).map_or(Duration::MAX, |latest| time - latest);
-        let beside = since.max(self.period) - since.min(self.period);
-        let lasted = if beside <= self.period / 4 { since } else { self.period };
-        lasted.as_micros() as u32
+    fn lasted(&mut self, end: Instant) -> u32 {
+        let since = self.latest.replace(end).map_or(u64::MAX, |latest| end.0 - latest.0);
+        let since = u32::try_from(since).unwrap_or(u32::MAX);
+        if since.abs_diff(self.period) <= self.period / 4 { since } else { self.period }
     }
 }
 
@@ -76,20 +75,19 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
     }
 
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
-        let Some(times) = self.gyros.conversions().await? else { return Ok(None) };
-        let time = middle(times);
-        let lasted = self.lasted(time);
+        let Some(ends) = self.gyros.conversions().await? else { return Ok(None) };
+        let end = middle(&ends);
+        let lasted = self.lasted(end.at);
         let rates = self.gyros.values().await?;
-        if !self.gyros.are_in_step(times, time).await? {
+        if !self.gyros.are_in_step(&ends).await? {
             return Ok(None);
         }
         let reading = self.forces.read(self.outlet.shared()).await?;
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
-        self.outlet.judge(time);
+        self.outlet.judge(end);
         let turned = increments(rates, lasted, &mut self.carried);
-        let time = orientation::units::Instant(time.as_micros());
-        let sample = InertialSample { time, turned, force };
+        let sample = InertialSample { time: end.at, turned, force };
         self.outlet.shared().move_on(Motion::Moved(sample));
         Ok(Some(sample))
     }

@@ -6,6 +6,7 @@
 #![no_std]
 
 mod configuration;
+pub mod edges;
 mod flash;
 mod ports;
 mod settings;

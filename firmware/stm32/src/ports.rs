@@ -18,13 +18,14 @@ use firmware::settings;
 use crate::begun;
 use crate::configuration;
 use crate::configuration::PLATFORM;
+use crate::edges::Line;
 use crate::spi::Device;
-use crate::wiring::{BaseBus, ConverterWires, Ready};
+use crate::wiring::{BaseBus, ConverterWires};
 
 /// Converter with its data-ready line.
-type Converter = Ads1262<Device, Ready, Delay>;
+type Converter = Ads1262<Device, Line, Delay>;
 /// Gyro behind its converter.
-type Gyro = AnalogueGyro<Device, Ready, Delay>;
+type Gyro = AnalogueGyro<Device, Line, Delay>;
 /// Accelerometer on the platform, or in the vehicle.
 type Accelerometer = Adxl355<Device, Delay>;
 /// Encoder of an axis.

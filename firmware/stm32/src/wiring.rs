@@ -7,7 +7,6 @@
 
 use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
-use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
 use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::mode::Async;
@@ -16,12 +15,11 @@ use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
 use embassy_stm32::usart::UartTx;
 use firmware::ports::Frames;
 
+use crate::edges::Line;
 use crate::spi::{Bus, Device};
 
 /// The bus of the IMU on the base.
 pub type BaseBus = I2c<'static, Async, i2c::Master>;
-/// A data-ready line.
-pub type Ready = ExtiInput<'static, Async>;
 /// The serial port for status lines.
 pub type Link = UartTx<'static, Async>;
 
@@ -86,7 +84,7 @@ pub struct ConverterWires {
     /// The chip on its bus.
     pub bus: Device,
     /// Data-ready line of the chip, low when a conversion is ready.
-    pub ready: Ready,
+    pub ready: Line,
 }
 
 /// The serial buses of a board.
@@ -102,7 +100,7 @@ pub struct Buses {
 
 impl Buses {
     /// Connects an ADS1262 by its select pin and its data-ready line.
-    pub fn converter(self, select: Peri<'static, impl Pin>, ready: Ready) -> ConverterWires {
+    pub fn converter(self, select: Peri<'static, impl Pin>, ready: Line) -> ConverterWires {
         let bus = self.sensor(select, MODE_1, ads1262::GREATEST_BUS_HERTZ);
         ConverterWires { bus, ready }
     }

@@ -82,6 +82,8 @@ pub struct Ads1262 {
     course: Course,
     /// When a conversion has ended in its course, and its voltage, V.
     waiting: Option<(Instant, f64)>,
+    /// End of the latest conversion, and the number of conversions.
+    ended: (Option<Instant>, u32),
     /// Conversions that a newer one replaced before they were read.
     pub overwritten: u64,
     /// Whether a clock is found at the pins, which the status byte shows.
@@ -106,6 +108,7 @@ impl Default for Ads1262 {
             is_ready: false,
             course: Course::default(),
             waiting: None,
+            ended: (None, 0),
             overwritten: 0,
             has_external_clock: false,
             chip_fault: ChipFault::default(),
@@ -201,6 +204,8 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
             Selected::Own(volts) => volts,
         };
         running.count += 1;
+        let (_, count) = self.ended;
+        self.ended = (Some(now), count.wrapping_add(1));
         self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);
         if self.waiting.is_some() {
             self.release();
@@ -230,7 +235,8 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
 
     fn ready_line(&self) -> ReadyLine {
         let active = self.is_ready || self.waiting.is_some();
-        ReadyLine { active, next: self.running.map(|running| running.next()) }
+        let (latest, count) = self.ended;
+        ReadyLine { active, next: self.running.map(|running| running.next()), latest, count }
     }
 
     fn power_cycle(&mut self, now: Instant) {

@@ -405,7 +405,7 @@ impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
             return ReadyLine::default();
         }
         let next = self.measuring.map(|measuring| measuring.next());
-        ReadyLine { active: self.pin_falls.is_some(), next }
+        ReadyLine { active: self.pin_falls.is_some(), next, ..ReadyLine::default() }
     }
 
     fn power_cycle(&mut self, now: Instant) {

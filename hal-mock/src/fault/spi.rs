@@ -12,8 +12,8 @@ use crate::spi::{length, received, sent};
 /// stop the clock.
 const BYTE: Duration = Duration::from_micros(8);
 
-/// How long a transfer hangs.
-const HANG: Duration = Duration::from_millis(300);
+/// How long a transfer hangs until its bus gives it up.
+const HANG: Duration = Duration::from_millis(1);
 
 /// Kinds of transactions whose latest reply is remembered, and the longest reply.
 const KINDS: usize = 4;
@@ -39,7 +39,7 @@ pub enum BusFault {
         /// 0xff or 0x00, where a line floats or is shorted.
         level: u8,
     },
-    /// The transfer takes 300 ms longer; a controller that gives up before has sent nothing.
+    /// The transfer does not begin, and is given up by its bus after a millisecond.
     Hang,
 }
 
@@ -155,7 +155,7 @@ impl<S: SpiDevice> SpiDevice for FaultySpi<S> {
             }
             Some(BusFault::Hang) => {
                 Timer::after(HANG).await;
-                self.pass(operations).await
+                Err(ErrorKind::Other)
             }
         }
     }

@@ -493,9 +493,9 @@ impl ErrorType for Stuck {
 
 impl SpiDevice for Stuck {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
-        let byte = self.0.ok_or(ErrorKind::Other)?;
+        let byte = self.0.ok_or(ErrorKind::Overrun)?;
         for operation in operations {
-            if let Operation::Read(bytes) = operation {
+            if let Operation::TransferInPlace(bytes) = operation {
                 bytes.fill(byte);
             }
         }

@@ -2,14 +2,16 @@
 
 use std::cell::RefCell;
 
+use drivers::data_ready::Edge;
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_io_async::{ErrorKind, ErrorType, Write};
 use firmware::calibration::{Calibration, Harmonics};
 use firmware::event::Event;
+use firmware::guarded::Guarded;
 use firmware::health::Health;
 use firmware::link;
-use firmware::ports::Observer;
+use firmware::ports::{Observer, Startable};
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::status::Status;
@@ -18,46 +20,98 @@ use host::virtual_time;
 use orientation::alignment::{Azimuth, Progress, Solution};
 use orientation::attitude::{State, Trust};
 use orientation::device::{Device, Trouble};
-use orientation::units::{Angle, Radians, Seconds};
+use orientation::units::{self, Angle, Radians, Seconds};
 use proptest::prelude::*;
 
-fn at(microseconds: u64) -> Instant {
-    Instant::from_micros(microseconds)
+/// The end of a conversion by a line whose edges are not counted.
+fn timed(microseconds: u64) -> Edge {
+    Edge { at: units::Instant(microseconds), count: 0 }
 }
 
 #[test]
 fn samples_a_period_apart_are_in_time_and_a_quarter_is_forgiven() {
     let mut timeline = Timeline::new(2500);
     let times = [0, 2500, 5000 + 600, 7500 - 25, 10_000];
-    assert!(times.iter().all(|time| timeline.judge(at(*time)) == Arrival::InTime));
+    assert!(times.iter().all(|time| timeline.judge(timed(*time)) == Arrival::InTime));
 }
 
 #[test]
 fn a_sample_beside_its_time_is_late_or_early_by_what_it_is_beside() {
     let mut timeline = Timeline::new(2500);
-    assert_eq!(timeline.judge(at(0)), Arrival::InTime);
-    assert_eq!(timeline.judge(at(3400)), Arrival::Late(900));
-    assert_eq!(timeline.judge(at(5000)), Arrival::Late(-900));
+    assert_eq!(timeline.judge(timed(0)), Arrival::InTime);
+    assert_eq!(timeline.judge(timed(3400)), Arrival::Late(900));
+    assert_eq!(timeline.judge(timed(5000)), Arrival::Late(-900));
 }
 
 #[test]
 fn every_missing_sample_is_counted_however_many() {
     for missing in [1_u32, 2, 3, 40, 100_000] {
         let mut timeline = Timeline::new(417);
-        timeline.judge(at(0));
+        timeline.judge(timed(0));
         let gap = u64::from(missing + 1) * 417 + 30;
-        assert_eq!(timeline.judge(at(gap)), Arrival::Missing(missing));
+        assert_eq!(timeline.judge(timed(gap)), Arrival::Missing(missing));
     }
 }
 
 #[test]
+fn over_a_long_gap_the_count_is_better_than_a_clock_that_is_two_per_cent_off() {
+    for conversions in [40_u32, 250, 5000] {
+        let mut timeline = Timeline::new(2500);
+        timeline.judge(Edge { count: u32::MAX - 2, ..timed(0) });
+        let end =
+            Edge { count: conversions.wrapping_sub(3), ..timed(u64::from(conversions) * 2550) };
+        assert_eq!(timeline.judge(end), Arrival::Missing(conversions - 1));
+    }
+}
+
+#[test]
+fn the_count_of_a_converter_that_stood_still_is_not_taken_for_the_samples_that_are_missing() {
+    let mut timeline = Timeline::new(2500);
+    timeline.judge(timed(0));
+    assert_eq!(timeline.judge(Edge { count: 3, ..timed(250_000) }), Arrival::Missing(99));
+}
+
+/// A device that always starts.
+struct Willing;
+
+impl Startable for Willing {
+    async fn start(&mut self) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// Faults that end in a restart until the device is given up, with this time between them; at most a hundred.
+fn restarts_with(pause: Duration) -> usize {
+    let run = async {
+        let shared = Shared::new(&());
+        let mut willing = Willing;
+        let mut device = Guarded::new(&mut willing, Device::Encoder);
+        for restarts in 0..100 {
+            if device.mend(Symptom::Stuck, &shared).await.is_err() {
+                return restarts;
+            }
+            Timer::after(pause).await;
+        }
+        100
+    };
+    virtual_time::run(run).expect("it ends")
+}
+
+#[test]
+fn restarts_are_forgiven_to_a_device_that_has_worked_for_a_minute_since_the_latest() {
+    assert_eq!(restarts_with(Duration::from_secs(59)), 5);
+    assert_eq!(restarts_with(Duration::from_secs(60)), 100);
+}
+
+#[test]
 fn a_failing_bus_costs_three_readings_before_the_device_is_started_again() {
-    let mut retry_budget = RetryBudget::default();
-    let bus = Symptom::Chip(Fault::Bus);
-    let remedies = [(); 5].map(|()| retry_budget.failed(bus));
-    let [a, b, c, d, e] = remedies;
-    assert_eq!([a, b, c], [Remedy::Drop; 3]);
-    assert_eq!([d, e], [Remedy::Restart, Remedy::Drop]);
+    for fault in [Fault::Bus, Fault::Hung] {
+        let mut retry_budget = RetryBudget::default();
+        let remedies = [(); 5].map(|()| retry_budget.failed(Symptom::Chip(fault)));
+        let [a, b, c, d, e] = remedies;
+        assert_eq!([a, b, c], [Remedy::Drop; 3]);
+        assert_eq!([d, e], [Remedy::Restart, Remedy::Drop]);
+    }
 }
 
 #[test]

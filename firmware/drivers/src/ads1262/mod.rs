@@ -30,9 +30,9 @@ pub mod scale;
 use core::time::Duration;
 
 use embedded_hal_async::delay::DelayNs;
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{MODE_1, Mode, Operation, SpiDevice};
 
+use crate::data_ready::{DataReady, Edge};
 use crate::fault::Fault;
 use crate::pause::pause;
 use codec::{Conversion, FRAME, Status};
@@ -103,7 +103,7 @@ impl<S, R, D> Ads1262<S, R, D> {
     }
 }
 
-impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
+impl<S: SpiDevice, R: DataReady, D: DelayNs> Ads1262<S, R, D> {
     /// Resets, identifies, tests and configures the chip and begins conversions: from any state,
     /// in 60 ms and two conversions. The gyro is not measured before the test voltage was, in both
     /// directions, through the configured filter and gain.
@@ -124,13 +124,13 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         self.run(&self.configuration.image()).await
     }
 
-    /// Waits until a conversion is ready that has not been read. The future may be dropped at any
-    /// time without loss. It has no time limit of its own, so the caller sets one.
+    /// Waits until a conversion is ready that has not been read, and returns its end. The future may be dropped at
+    /// any time without loss. It has no time limit of its own, so the caller sets one.
     ///
     /// # Errors
     /// [`Fault::Bus`] if the line cannot be observed.
-    pub async fn ready(&mut self) -> Result<(), Fault> {
-        self.ready.wait_for_low().await.map_err(|_| Fault::Bus)
+    pub fn ready(&mut self) -> impl Future<Output = Result<Edge, Fault>> {
+        self.ready.edge()
     }
 
     /// Reads the newest conversion, at any time.
@@ -215,11 +215,11 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
 
     async fn transfer(&mut self, bytes: &mut [u8]) -> Result<(), Fault> {
         let mut operations = [Operation::TransferInPlace(bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), Fault> {
         let mut operations = [Operation::Write(bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)
     }
 }

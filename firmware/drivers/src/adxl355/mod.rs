@@ -312,7 +312,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
             *command = first << 1 | 1;
         }
         let mut operations = [Operation::TransferInPlace(&mut bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)?;
         Ok(bytes)
     }
 
@@ -321,7 +321,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
         for (register, value) in contents {
             let bytes = [register << 1, *value];
             let mut operations = [Operation::Write(&bytes)];
-            self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+            self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)?;
         }
         Ok(())
     }

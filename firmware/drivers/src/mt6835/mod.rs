@@ -194,7 +194,7 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         let [high, low] = BURST;
         let mut bytes = [high, low, 0, 0, 0, 0];
         let mut operations = [Operation::TransferInPlace(&mut bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)?;
         let [_, _, frame @ ..] = bytes;
         Ok(frame)
     }
@@ -202,7 +202,7 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     async fn register(&mut self, register: u16) -> Result<u8, Fault> {
         let mut bytes = codec::read(register);
         let mut operations = [Operation::TransferInPlace(&mut bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)?;
         let [.., value] = bytes;
         Ok(value)
     }
@@ -210,6 +210,6 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     async fn write(&mut self, register: u16, value: u8) -> Result<(), Fault> {
         let bytes = codec::write(register, value);
         let mut operations = [Operation::Write(&bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
+        self.spi.transaction(&mut operations).await.map_err(Fault::of_transfer)
     }
 }

@@ -72,7 +72,7 @@ impl<S: SpiDevice> Link<S> {
                 let datagram = pass.datagram(place);
                 let mut bytes = datagram.unwrap_or(codec::read(IOIN));
                 let mut operations = [Operation::TransferInPlace(&mut bytes)];
-                self.0.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+                self.0.transaction(&mut operations).await.map_err(Fault::of_transfer)?;
                 let (status, data) = codec::reply(bytes);
                 seen |= status;
                 let differs = place.checked_sub(1).and_then(|last| pass.take(last, data));

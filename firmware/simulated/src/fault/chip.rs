@@ -33,7 +33,7 @@ pub enum ChipFault {
     BusOnce,
     /// The bus reports errors from some time on.
     BusAlways,
-    /// One transfer takes 300 ms.
+    /// One transfer hangs until its bus gives it up.
     Hang,
 }
 

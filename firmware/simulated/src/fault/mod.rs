@@ -77,7 +77,7 @@ pub enum Fault {
     Chip(Device, ChipFault),
     /// A motor, its encoder's magnet or its cable fails; the device is the motor.
     Axis(Device, AxisFault),
-    /// Every transfer of the gyro's converter takes 300 ms.
+    /// Every transfer of the gyro's converter hangs until its bus gives it up.
     GyroHang,
     /// The conversions of the right gyro come late from then on.
     OutOfStep,

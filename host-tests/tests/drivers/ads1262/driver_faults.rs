@@ -2,15 +2,15 @@
 
 use drivers::ads1262::Ads1262 as Driver;
 use drivers::ads1262::configuration::Configuration;
+use drivers::data_ready::{DataReady, Edge};
 use drivers::fault::Fault;
 use embassy_time::{Delay, Duration, Instant, with_timeout};
-use embedded_hal::digital::ErrorType as PinErrorType;
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use hal_mock::ads1262::{Ads1262, ChipFault};
 use hal_mock::chip::{Rig as _, Select};
+use hal_mock::fault::{BusFault, FaultPlan, FaultySpi, When};
 
-use super::rig::{Device, Input, Rig, device, rig, run, violations};
+use super::rig::{Device, Input, Rig, device, port, rig, run, violations};
 
 /// A chip that is sick before it is started.
 fn started(inject: impl FnOnce(&mut Ads1262)) -> Result<(), Fault> {
@@ -175,7 +175,7 @@ impl ErrorType for Sick {
 
 impl SpiDevice for Sick {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
-        let byte = self.0.ok_or(ErrorKind::Other)?;
+        let byte = self.0.ok_or(ErrorKind::Overrun)?;
         for operation in operations {
             match operation {
                 Operation::Read(bytes)
@@ -191,25 +191,9 @@ impl SpiDevice for Sick {
 /// A line that cannot be observed.
 struct Cut;
 
-impl PinErrorType for Cut {
-    type Error = embedded_hal::digital::ErrorKind;
-}
-
-impl Wait for Cut {
-    async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
-        Err(embedded_hal::digital::ErrorKind::Other)
-    }
-    async fn wait_for_low(&mut self) -> Result<(), Self::Error> {
-        Err(embedded_hal::digital::ErrorKind::Other)
-    }
-    async fn wait_for_rising_edge(&mut self) -> Result<(), Self::Error> {
-        Err(embedded_hal::digital::ErrorKind::Other)
-    }
-    async fn wait_for_falling_edge(&mut self) -> Result<(), Self::Error> {
-        Err(embedded_hal::digital::ErrorKind::Other)
-    }
-    async fn wait_for_any_edge(&mut self) -> Result<(), Self::Error> {
-        Err(embedded_hal::digital::ErrorKind::Other)
+impl DataReady for Cut {
+    async fn edge(&mut self) -> Result<Edge, Fault> {
+        Err(Fault::Bus)
     }
 }
 
@@ -227,4 +211,16 @@ fn a_sick_bus_is_reported() {
             assert_eq!(device.ready().await, Err(Fault::Bus));
         });
     }
+}
+
+#[test]
+fn a_transfer_that_its_bus_gave_up_is_told_from_one_that_failed() {
+    run(async {
+        let rig = rig(Input::default());
+        let hangs = FaultPlan { fault: BusFault::Hang, when: When::always(Instant::MIN) };
+        let bus = FaultySpi::new(port(&rig, 5_000_000), Some(hangs));
+        let mut device = Driver::new(bus, Cut, Delay, Configuration::default());
+        assert_eq!(device.start().await, Err(Fault::Hung));
+        assert_eq!(device.read().await, Err(Fault::Hung));
+    });
 }

@@ -10,6 +10,7 @@ use hal_mock::ads1262::Ads1262;
 use hal_mock::chip::{Select, Single, SpiChip};
 use hal_mock::environment::AnalogueInput;
 use hal_mock::spi::{ReadyPin, SpiPort};
+use simulated::line::ObservedLine;
 
 /// Bus clock of these tests, Hz.
 pub const HERTZ: u32 = 8_000_000;
@@ -36,7 +37,7 @@ impl AnalogueInput for Input {
 }
 
 pub type Rig = RefCell<Single<Ads1262, Input>>;
-pub type Device<'a> = Driver<SpiPort<'a>, ReadyPin<'a>, Delay>;
+pub type Device<'a> = Driver<SpiPort<'a>, ObservedLine<'a, ReadyPin<'a>>, Delay>;
 
 pub fn rig(input: Input) -> Rig {
     RefCell::new(Single { chip: Ads1262::default(), environment: input })
@@ -47,7 +48,8 @@ pub fn port(rig: &Rig, hertz: u32) -> SpiPort<'_> {
 }
 
 pub fn device(rig: &Rig, configuration: Configuration) -> Device<'_> {
-    Driver::new(port(rig, HERTZ), ReadyPin::new(rig, Select::Gyro), Delay, configuration)
+    let ready = ObservedLine::new(rig, Select::Gyro, ReadyPin::new(rig, Select::Gyro));
+    Driver::new(port(rig, HERTZ), ready, Delay, configuration)
 }
 
 /// Sends bytes and gives the reply.

@@ -52,7 +52,7 @@ impl SpiDevice for Tap<'_> {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let Self(port, wire) = self;
         if wire.broken.get() {
-            return Err(ErrorKind::Other);
+            return Err(ErrorKind::Overrun);
         }
         let [Operation::TransferInPlace(bytes)] = operations else {
             panic!("one datagram at a time")

@@ -18,6 +18,7 @@ use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::tmc5160::{Oscillator, Tmc5160};
 use hal_mock::violation::Misuse;
 use hal_mock::wires::SpiWires;
+use simulated::line::ObservedLine;
 
 use super::bench::{Bench, WirePort};
 use crate::support::rig::{run, violations};
@@ -63,7 +64,7 @@ impl Errand for Convert {
     type Outcome = Vec<bool>;
 
     async fn run(bus: impl SpiDevice<Error = ErrorKind>, rig: &Rig<Ads1262>) -> Vec<bool> {
-        let ready = ReadyPin::new(rig, CHIP);
+        let ready = ObservedLine::new(rig, CHIP, ReadyPin::new(rig, CHIP));
         let mut driver = ads1262::Ads1262::new(bus, ready, Delay, Converter::default());
         driver.start().await.expect("the chip is well");
         let mut read = Vec::new();

@@ -57,7 +57,7 @@ impl SpiChip<Plant<'_>> for Metronome {
     }
 
     fn ready_line(&self) -> ReadyLine {
-        ReadyLine { active: !self.seen.is_empty(), next: self.next_event() }
+        ReadyLine { active: !self.seen.is_empty(), next: self.next_event(), ..ReadyLine::default() }
     }
 
     fn power_cycle(&mut self, now: Instant) {

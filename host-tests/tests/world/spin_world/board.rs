@@ -10,10 +10,11 @@ use hal_mock::chip::{Rig, Select};
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::spin::plant::{CHIPS, SpinBoard, SpinPlant, SpinPlantConfiguration};
+use simulated::line::ObservedLine;
 
 use super::{G, assert_near};
 
-type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ReadyPin<'a>, Delay>;
+type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ObservedLine<'a, ReadyPin<'a>>, Delay>;
 
 /// 100 turns a second.
 const SPIN: f64 = 200.0 * std::f64::consts::PI;
@@ -25,7 +26,8 @@ fn board<'a>() -> RefCell<SpinBoard<'a>> {
 fn converter<'a, 'b>(board: &'a RefCell<SpinBoard<'b>>, select: Select) -> Converter<'a, 'b> {
     let configuration = Configuration { rate: DataRate::Sps14400, ..Configuration::default() };
     let bus = SpiPort::new(board, select, 8_000_000);
-    Ads1262::new(bus, ReadyPin::new(board, select), Delay, configuration)
+    let ready = ObservedLine::new(board, select, ReadyPin::new(board, select));
+    Ads1262::new(bus, ready, Delay, configuration)
 }
 
 fn run<T>(future: impl Future<Output = T>) -> T {

@@ -14,10 +14,11 @@ use hal_mock::vehicle::plant::{
     CHIPS, GYROS, VehicleBoard, VehiclePlant, VehiclePlantConfiguration,
 };
 use hal_mock::vehicle::{Leg, Stop, VehicleConfiguration};
+use simulated::line::ObservedLine;
 
 use super::{EARTH, assert_near, sway, wave};
 
-type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ReadyPin<'a>, Delay>;
+type Converter<'a, 'b> = Ads1262<SpiPort<'a>, ObservedLine<'a, ReadyPin<'a>>, Delay>;
 
 /// Swaying fast enough that a conversion at 100 SPS is not what is felt at its end: 0.3° at 3 Hz.
 fn legs() -> [Leg; 1] {
@@ -37,7 +38,8 @@ fn board(legs: &[Leg]) -> RefCell<VehicleBoard<'_>> {
 fn converter<'a, 'b>(board: &'a RefCell<VehicleBoard<'b>>, select: Select) -> Converter<'a, 'b> {
     let configuration = Configuration { rate: DataRate::Sps100, ..Configuration::default() };
     let bus = SpiPort::new(board, select, 5_000_000);
-    Ads1262::new(bus, ReadyPin::new(board, select), Delay, configuration)
+    let ready = ObservedLine::new(board, select, ReadyPin::new(board, select));
+    Ads1262::new(bus, ready, Delay, configuration)
 }
 
 fn run<T>(future: impl Future<Output = T>) -> T {
