@@ -7,14 +7,24 @@
 //!
 //! Each reading also goes to the attitude keeper.
 //!
-//! A base unit that fails is started again as any other device. If it is given up, a session that
-//! does not need it continues without it.
+//! ```text
+//!  acquisition ─asks─▶ Compensation ─wanted─▶ BaseUnit ─▶ sensors
+//!              ◀─reading, rate less sway─┘ ◀─reading─┘
+//! ```
+//!
+//! The sensors are read, and started again where they fail, beside acquisition, which waits for a
+//! reading until the next conversion at the longest: a bus that hangs costs no other sensor a sample.
+//! If the base unit is given up, a session that does not need it continues without it.
+
+use core::cell::{Cell, RefCell};
+use core::future::{pending, poll_fn};
+use core::task::Poll;
 
 use embassy_time::Instant;
 use micromath::F32Ext;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
-use orientation::signal::sway::{Decision, Sway, SwayNoise};
+use orientation::signal::sway::{CoarseSensors, Decision, Sway, SwayNoise};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::event::Event;
@@ -44,25 +54,13 @@ pub trait CompensatesSway {
         Ok(())
     }
 
-    /// Whether the decision for or against the compensation has been taken.
-    fn is_decided(&self) -> bool {
-        true
-    }
-
-    /// Reads the sensors at one of two moments of every sample: before its angle is read if their
-    /// readings are subtracted, after it if they are only kept, since on a platform that turns the
-    /// angle must not be late.
-    ///
-    /// # Errors
-    /// The sensors are given up while their readings are being subtracted.
-    async fn follow(&mut self, _is_angle_read: bool, _: &Shared<'_>) -> Result<(), Refusal> {
-        Ok(())
-    }
-
-    /// The reading of the latest [`Self::follow`] and its time; each reading is returned once.
-    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
-        None
-    }
+    /// What acquisition compensates with, if there are sensors, and the future that reads them beside
+    /// acquisition. It ends where they are given up while their readings are being subtracted. It is
+    /// to be polled wherever acquisition is, before it and again where a reading is wanted then.
+    fn parts<'s>(
+        &'s mut self,
+        shared: &'s Shared<'_>,
+    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's);
 
     /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
     fn period(&self, sample: u32) -> u32 {
@@ -71,173 +69,142 @@ pub trait CompensatesSway {
 
     /// Restores the full retry budget of the sensors.
     fn renew(&mut self) {}
+}
 
-    /// The rate along a horizontal axis at this heading, less the sway.
-    fn compensated(&mut self, rate: AngularRate, _heading: Angle) -> AngularRate {
-        rate
+impl CompensatesSway for NoBase {
+    fn parts<'s>(
+        &'s mut self,
+        _: &'s Shared<'_>,
+    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's) {
+        (None, pending())
     }
 }
 
-impl CompensatesSway for NoBase {}
+/// What the base unit does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Unit {
+    /// Nothing.
+    Idle,
+    /// It is asked for a reading.
+    Wanted,
+    /// It takes a reading, or starts the sensors again.
+    Busy,
+}
 
-/// The compensation of sway by coarse sensors on the base.
-pub struct SwayCompensation<'a, B> {
-    /// The base unit with its retry budget.
-    base: Guarded<'a, B>,
-    /// Decimation of its readings.
-    due: Decimator,
-    /// Estimator of the sway.
-    sway: Sway,
-    /// Time of the latest new reading that was not saturated.
-    latest: Instant,
-    /// Begin of the present silence: the latest new reading or the latest start.
-    silent: Instant,
-    /// Counter of identical readings, by which a stuck unit is found.
-    readings: RepeatCounter<[AngularRate; 3]>,
-    /// The latest reading with its time, for the attitude keeper.
-    fresh: Option<(Instant, BaseReading)>,
-    /// The latest reading, until it has been held once.
-    held: Option<BaseReading>,
-    /// Stage angle to which `axis` belongs.
-    stage: Angle,
-    /// Cosine and sine of that angle.
-    axis: [f32; 2],
+/// What is known of the sway, and what acquisition and the base unit tell each other.
+pub struct Compensation {
     /// Whether the sway is observed and subtracted at all.
     compensates: bool,
+    /// Decimation of the readings.
+    due: Cell<Decimator>,
+    /// Estimator of the sway.
+    sway: RefCell<Sway>,
+    /// The latest reading with its time, for the attitude keeper.
+    fresh: Cell<Option<(Instant, BaseReading)>>,
+    /// A stage angle with its cosine and sine.
+    axis: Cell<(Angle, [f32; 2])>,
     /// Time at which the base unit was given up.
-    lost: Option<Instant>,
+    lost: Cell<Option<Instant>>,
+    /// What the base unit does.
+    unit: Cell<Unit>,
 }
 
-impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
-    /// Takes the base unit; nothing is started yet.
-    pub fn new(device: &'a mut B) -> Self {
-        let (sensors, divider) = (device.sensors(), device.divider());
+impl Compensation {
+    /// Nothing is known of the sway yet.
+    fn new(sensors: CoarseSensors, divider: u32, compensates: bool) -> Self {
         Self {
-            base: Guarded::new(device, Device::Base),
-            due: Decimator::new(divider),
-            sway: Sway::new(sensors),
-            latest: Instant::MIN,
-            silent: Instant::MIN,
-            readings: RepeatCounter::new(),
-            fresh: None,
-            held: None,
-            stage: Angle(0),
-            axis: [1.0, 0.0],
-            compensates: true,
-            lost: None,
+            compensates,
+            due: Cell::new(Decimator::new(divider)),
+            sway: RefCell::new(Sway::new(sensors)),
+            fresh: Cell::new(None),
+            axis: Cell::new((Angle(0), [1.0, 0.0])),
+            lost: Cell::new(None),
+            unit: Cell::new(Unit::Idle),
         }
     }
 
-    /// Takes a base unit whose readings are for the attitude keeper alone: the alignment begins at
-    /// once, and nothing is subtracted.
-    pub fn for_keeping(device: &'a mut B) -> Self {
-        Self { compensates: false, ..Self::new(device) }
+    /// Whether the decision for or against the compensation has been taken.
+    pub(crate) fn is_decided(&self) -> bool {
+        !self.compensates
+            || self.lost.get().is_some()
+            || self.sway.borrow().decision != Decision::Watching
     }
 
-    /// Reads the sensors where a reading is due, and starts them again where they fail.
-    ///
-    /// # Errors
-    /// The sensors are given up while their readings are being subtracted.
-    async fn take(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if self.is_absent(shared) || !self.due.is_due() {
-            return Ok(());
+    /// Asks for a reading where one is due, at one of two moments of every sample: before its angle is
+    /// read if the readings are subtracted, after it if they are only kept, since on a platform that
+    /// turns the angle must not be late. A base unit that is still busy is not asked; returns whether it
+    /// was.
+    pub(crate) fn asks(&self, is_angle_read: bool, shared: &Shared<'_>) -> bool {
+        if self.compensates == is_angle_read || self.is_absent(shared) {
+            return false;
         }
-        let was_decided = self.is_decided();
-        if let Err(symptom) = self.read(shared).await {
-            self.mend(symptom, shared).await?;
+        let mut due = self.due.get();
+        let is_due = due.is_due();
+        self.due.set(due);
+        let asks = is_due && self.unit.get() == Unit::Idle;
+        if asks {
+            self.unit.set(Unit::Wanted);
         }
-        if !was_decided {
-            self.report(shared);
-        }
-        Ok(())
+        asks
     }
 
-    /// Takes a reading if there is a new one.
-    ///
-    /// # Errors
-    /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
-    async fn read(&mut self, shared: &Shared<'_>) -> Result<(), Symptom> {
-        let begun = Instant::now();
-        let outcome = self.base.device.read().await;
-        match self.base.checked(outcome)? {
-            Some(reading) => {
-                shared.observer.sensed(begun, &reading);
-                self.push(begun, reading)
-            }
-            None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
-            None => {
-                self.hold(begun);
-                Ok(())
-            }
-        }
+    /// Whether the base unit was asked, and has not been polled since then.
+    pub(crate) fn is_wanted(&self) -> bool {
+        self.unit.get() == Unit::Wanted
     }
 
-    /// Repeats the latest rates for the keeper where no new output falls between two readings,
-    /// which happens now and then when both rates are nearly equal. Repeats once only, and marks
-    /// the specific force as invalid.
-    fn hold(&mut self, at: Instant) {
-        if let Some(reading) = self.held.take() {
-            self.fresh = Some((at, BaseReading { is_clipped: true, ..reading }));
-        }
+    /// Waits for the reading that was asked for.
+    pub(crate) async fn answered(&self) {
+        self.until(|unit| unit == Unit::Idle).await;
     }
 
-    /// Passes a reading to the estimator of sway. A saturated reading is omitted; the gap after it
-    /// makes the estimator begin anew.
-    fn push(&mut self, at: Instant, reading: BaseReading) -> Result<(), Symptom> {
-        let BaseReading { rate, force, is_clipped } = reading;
-        self.silent = at;
-        if self.readings.push(rate) >= STUCK {
-            self.readings = RepeatCounter::new();
-            return Err(Symptom::Stuck);
-        }
-        self.fresh = Some((at, reading));
-        self.held = Some(reading);
-        if !is_clipped {
-            let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
-            self.latest = at;
-            self.sway.push(seconds, rate, force);
-        }
-        Ok(())
+    /// Waits for a state of the base unit. Acquisition and base unit are polled together, so neither
+    /// wakes the other.
+    async fn until(&self, is_so: fn(Unit) -> bool) {
+        poll_fn(|_| if is_so(self.unit.get()) { Poll::Ready(()) } else { Poll::Pending }).await;
     }
 
-    /// Starts the sensors again where necessary, and continues without them where the session
-    /// permits.
-    ///
-    /// # Errors
-    /// The sensors are given up although their readings are being subtracted in an alignment.
-    async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
-        let outcome = self.base.mend(symptom, shared).await;
-        if outcome != Ok(false) {
-            self.silent = Instant::now();
-        }
-        let is_subtracted = self.compensates && matches!(self.sway.decision, Decision::Swaying(..));
-        match outcome {
-            Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
-            Err(_) => self.lose(shared),
-            Ok(_) => {}
-        }
-        Ok(())
+    /// The latest reading and its time; each is returned once.
+    pub(crate) fn reading(&self) -> Option<(Instant, BaseReading)> {
+        self.fresh.take()
     }
 
-    /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
-    fn lose(&mut self, shared: &Shared<'_>) {
-        if !self.is_decided() {
-            shared.sway.set(SwayNoise::UNMEASURED);
+    /// The rate along a horizontal axis at this heading, less the sway.
+    pub(crate) fn compensated(&self, rate: AngularRate, heading: Angle) -> AngularRate {
+        if rate.is_saturated() || !self.compensates {
+            return rate;
         }
-        self.lost = Some(Instant::now());
+        AngularRate(rate.0.saturating_sub(self.swaying(heading)))
+    }
+
+    /// Contribution of the sway to the gyro's rate at a stage angle, nrad/s.
+    fn swaying(&self, stage: Angle) -> i32 {
+        let (last, mut axis) = self.axis.get();
+        if (stage - last).0.cast_signed().unsigned_abs() > KEPT {
+            let theta = stage.0.cast_signed() as f32 * STEP;
+            axis = [F32Ext::cos(theta), F32Ext::sin(theta)];
+            self.axis.set((stage, axis));
+        }
+        (self.sway.borrow().along(axis) * 1e9) as i32
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
-    fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
-        if self.lost.is_some_and(|lost| shared.is_holding() && lost.elapsed() >= RETRY) {
-            self.renew();
+    fn is_absent(&self, shared: &Shared<'_>) -> bool {
+        let lost = self.lost.get();
+        lost.is_some_and(|lost| !shared.is_holding() || lost.elapsed() < RETRY)
+    }
+
+    /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
+    fn lose(&self, shared: &Shared<'_>) {
+        if !self.is_decided() {
+            shared.sway.set(SwayNoise::UNMEASURED);
         }
-        self.lost.is_some()
+        self.lost.set(Some(Instant::now()));
     }
 
     /// Reports the decision; called when the decision may have been taken.
     fn report(&self, shared: &Shared<'_>) {
-        let (noise, event) = match self.sway.decision {
+        let (noise, event) = match self.sway.borrow().decision {
             Decision::Watching => return,
             Decision::Still(size) => {
                 (SwayNoise::NONE, Event::BaseStill(f64::from(size.angle) * DEGREES))
@@ -252,53 +219,196 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         shared.sway.set(noise);
         shared.report(event);
     }
+}
 
-    /// Contribution of the sway to the gyro's rate at a stage angle, nrad/s.
-    fn swaying(&mut self, stage: Angle) -> i32 {
-        if (stage - self.stage).0.cast_signed().unsigned_abs() > KEPT {
-            self.stage = stage;
-            let theta = stage.0.cast_signed() as f32 * STEP;
-            self.axis = [F32Ext::cos(theta), F32Ext::sin(theta)];
+/// The compensation of sway by coarse sensors on the base.
+pub struct SwayCompensation<'a, B> {
+    /// The sensors.
+    unit: BaseUnit<'a, B>,
+    /// What is known by them.
+    compensation: Compensation,
+}
+
+impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
+    /// Takes the base unit; nothing is started yet.
+    pub fn new(device: &'a mut B) -> Self {
+        Self::with(device, true)
+    }
+
+    /// Takes a base unit whose readings are for the attitude keeper alone: the alignment begins at
+    /// once, and nothing is subtracted.
+    pub fn for_keeping(device: &'a mut B) -> Self {
+        Self::with(device, false)
+    }
+
+    fn with(device: &'a mut B, compensates: bool) -> Self {
+        let compensation = Compensation::new(device.sensors(), device.divider(), compensates);
+        Self { unit: BaseUnit::new(device), compensation }
+    }
+}
+
+/// The base unit with the checks of its readings.
+struct BaseUnit<'a, B> {
+    /// The base unit with its retry budget.
+    base: Guarded<'a, B>,
+    /// Time of the latest new reading that was not saturated.
+    latest: Instant,
+    /// Begin of the present silence: the latest new reading or the latest start.
+    silent: Instant,
+    /// Counter of identical readings, by which a stuck unit is found.
+    readings: RepeatCounter<[AngularRate; 3]>,
+    /// The latest reading, until it has been held once.
+    held: Option<BaseReading>,
+}
+
+impl<'a, B: BaseSensors> BaseUnit<'a, B> {
+    /// Takes the device.
+    fn new(device: &'a mut B) -> Self {
+        Self {
+            base: Guarded::new(device, Device::Base),
+            latest: Instant::MIN,
+            silent: Instant::MIN,
+            readings: RepeatCounter::new(),
+            held: None,
         }
-        (self.sway.along(self.axis) * 1e9) as i32
+    }
+
+    /// Takes readings whenever they are wanted; returns why the sensors were given up while their
+    /// readings were being subtracted.
+    async fn serve(&mut self, known: &Compensation, shared: &Shared<'_>) -> Refusal {
+        // A reading that was under way when acquisition last ended is lost.
+        known.unit.set(Unit::Idle);
+        loop {
+            known.until(|unit| unit == Unit::Wanted).await;
+            known.unit.set(Unit::Busy);
+            if known.lost.take().is_some() {
+                self.base.renew();
+            }
+            let outcome = self.take(known, shared).await;
+            known.unit.set(Unit::Idle);
+            if let Err(reason) = outcome {
+                return reason;
+            }
+        }
+    }
+
+    /// Takes a reading, and starts the sensors again where they fail.
+    ///
+    /// # Errors
+    /// The sensors are given up while their readings are being subtracted.
+    async fn take(&mut self, known: &Compensation, shared: &Shared<'_>) -> Result<(), Refusal> {
+        let was_decided = known.is_decided();
+        if let Err(symptom) = self.read(known, shared).await {
+            self.mend(symptom, known, shared).await?;
+        }
+        if !was_decided {
+            known.report(shared);
+        }
+        Ok(())
+    }
+
+    /// Takes a reading if there is a new one.
+    ///
+    /// # Errors
+    /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
+    async fn read(&mut self, known: &Compensation, shared: &Shared<'_>) -> Result<(), Symptom> {
+        let begun = Instant::now();
+        let outcome = self.base.device.read().await;
+        match self.base.checked(outcome)? {
+            Some(reading) => {
+                shared.observer.sensed(begun, &reading);
+                self.push(begun, reading, known)
+            }
+            None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
+            None => {
+                self.hold(begun, known);
+                Ok(())
+            }
+        }
+    }
+
+    /// Repeats the latest rates for the keeper where no new output falls between two readings,
+    /// which happens now and then when both rates are nearly equal. Repeats once only, and marks
+    /// the specific force as invalid.
+    fn hold(&mut self, at: Instant, known: &Compensation) {
+        if let Some(reading) = self.held.take() {
+            known.fresh.set(Some((at, BaseReading { is_clipped: true, ..reading })));
+        }
+    }
+
+    /// Passes a reading to the estimator of sway. A saturated reading is omitted; the gap after it
+    /// makes the estimator begin anew.
+    fn push(
+        &mut self,
+        at: Instant,
+        reading: BaseReading,
+        known: &Compensation,
+    ) -> Result<(), Symptom> {
+        let BaseReading { rate, force, is_clipped } = reading;
+        self.silent = at;
+        if self.readings.push(rate) >= STUCK {
+            self.readings = RepeatCounter::new();
+            return Err(Symptom::Stuck);
+        }
+        known.fresh.set(Some((at, reading)));
+        self.held = Some(reading);
+        if !is_clipped {
+            let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
+            self.latest = at;
+            known.sway.borrow_mut().push(seconds, rate, force);
+        }
+        Ok(())
+    }
+
+    /// Starts the sensors again where necessary, and continues without them where the session
+    /// permits.
+    ///
+    /// # Errors
+    /// The sensors are given up although their readings are being subtracted in an alignment.
+    async fn mend(
+        &mut self,
+        symptom: Symptom,
+        known: &Compensation,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refusal> {
+        let outcome = self.base.mend(symptom, shared).await;
+        if outcome != Ok(false) {
+            self.silent = Instant::now();
+        }
+        let is_swaying = matches!(known.sway.borrow().decision, Decision::Swaying(..));
+        let is_subtracted = known.compensates && is_swaying;
+        match outcome {
+            Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
+            Err(_) => known.lose(shared),
+            Ok(_) => {}
+        }
+        Ok(())
     }
 }
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
-        self.lost = None;
-        if self.base.start(shared).await.is_err() {
-            self.lose(shared);
+        self.compensation.lost.set(None);
+        if self.unit.base.start(shared).await.is_err() {
+            self.compensation.lose(shared);
         }
-        self.silent = Instant::now();
+        self.unit.silent = Instant::now();
         Ok(())
     }
 
-    fn is_decided(&self) -> bool {
-        !self.compensates || self.lost.is_some() || self.sway.decision != Decision::Watching
-    }
-
-    async fn follow(&mut self, is_angle_read: bool, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if self.compensates == is_angle_read { Ok(()) } else { self.take(shared).await }
-    }
-
-    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
-        self.fresh.take()
+    fn parts<'s>(
+        &'s mut self,
+        shared: &'s Shared<'_>,
+    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's) {
+        (Some(&self.compensation), self.unit.serve(&self.compensation, shared))
     }
 
     fn period(&self, sample: u32) -> u32 {
-        self.due.divider * sample
+        self.compensation.due.get().divider * sample
     }
 
     fn renew(&mut self) {
-        self.base.renew();
-        self.lost = None;
-    }
-
-    fn compensated(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
-        if rate.is_saturated() || !self.compensates {
-            return rate;
-        }
-        AngularRate(rate.0.saturating_sub(self.swaying(heading)))
+        self.unit.base.renew();
+        self.compensation.lost.set(None);
     }
 }

@@ -14,10 +14,11 @@ use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use embassy_time::Duration;
 use firmware::ports::Frames;
 use stm32::edges::{self, Line};
+use stm32::i2c::BaseBus;
 use stm32::spi::Bus;
 use stm32::wiring::{
-    AxisPlatformWires, BaseBus, Buses, ConverterWires, FramesWires, Outlets, PlatformWires,
-    SpinWires, VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, Buses, ConverterWires, FramesWires, Outlets, PlatformWires, SpinWires,
+    VehicleWires, sensor_settings, stage_settings,
 };
 
 use crate::clock;
@@ -178,10 +179,12 @@ struct BasePins {
 impl BasePins {
     /// Connects the IMU.
     fn connect(self) -> BaseBus {
+        const FREQUENCY: Hertz = Hertz(lsm6dsl::BUS_HERTZ);
         let Self { bus, pins: (clock, data), channels: (sending, receiving) } = self;
         let mut settings = i2c::Config::default();
-        settings.frequency = Hertz(lsm6dsl::BUS_HERTZ);
+        settings.frequency = FREQUENCY;
         settings.timeout = BASE_TIMEOUT;
-        I2c::new(bus, clock, data, sending, receiving, Interrupts, settings)
+        let bus = I2c::new(bus, clock, data, sending, receiving, Interrupts, settings);
+        BaseBus::new(bus, FREQUENCY)
     }
 }

@@ -14,6 +14,7 @@ use orientation::device::Device;
 use orientation::math;
 use orientation::units::AngularRate;
 
+use super::fairly;
 use super::rates::{Rates, silence};
 use crate::ports::{InStep, Quantity};
 use crate::retry_budget::Symptom;
@@ -94,7 +95,8 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             }
             Ok(())
         };
-        if let Err(symptom) = with_timeout(self.silence, all).await.unwrap_or(Err(Symptom::Silent))
+        if let Err(symptom) =
+            with_timeout(self.silence, fairly(all)).await.unwrap_or(Err(Symptom::Silent))
         {
             return self.mend(come, symptom).await;
         }

@@ -27,7 +27,10 @@ pub use stage::{on_mount, on_stage};
 pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;
+use core::future::poll_fn;
+use core::pin::pin;
 
+use embassy_futures::yield_now;
 use orientation::alignment::refusal::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
@@ -54,19 +57,11 @@ pub trait Source<'a> {
     /// A sensor is given up.
     async fn start(&mut self) -> Result<(), Refusal>;
 
-    /// Takes the next sample; [`None`] where a reading was lost.
+    /// Takes samples and hands them over without end.
     ///
     /// # Errors
-    /// A sensor is given up.
-    async fn sample(&mut self) -> Result<Option<Self::Sample>, Refusal>;
-
-    /// Continues without the sensor that was given up, where the others suffice for a while.
-    ///
-    /// # Errors
-    /// The reason, where they do not.
-    async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
-        Err(reason)
-    }
+    /// A sensor is given up without which the others do not suffice.
+    async fn run(&mut self) -> Result<Infallible, Refusal>;
 
     /// Restores the full retry budget of all sensors.
     fn renew(&mut self);
@@ -87,13 +82,24 @@ pub async fn acquire<'a>(source: &mut impl Source<'a>) {
 /// Starts the sensors and samples until one is given up.
 async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible, Refusal> {
     source.start().await?;
-    loop {
-        match source.sample().await {
-            Ok(Some(sample)) => source.outlet().hand_over(sample),
-            Ok(None) => {}
-            Err(reason) => source.do_without(reason).await?,
-        }
+    source.run().await
+}
+
+/// Awaits conversions. Where they were there at once, the tasks beside go first: conversions that come
+/// faster than they are read would leave them no time, since no transfer of a serial bus yields.
+async fn fairly<T>(conversions: impl Future<Output = T>) -> T {
+    let mut conversions = pin!(conversions);
+    let mut has_waited = false;
+    let come = poll_fn(|context| {
+        let polled = conversions.as_mut().poll(context);
+        has_waited |= polled.is_pending();
+        polled
+    });
+    let come = come.await;
+    if !has_waited {
+        yield_now().await;
     }
+    come
 }
 
 /// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,

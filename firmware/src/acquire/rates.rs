@@ -1,11 +1,13 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
 use drivers::data_ready::Edge;
+use drivers::fault::Fault;
+use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, with_timeout};
 use orientation::device::Device;
 use orientation::units::AngularRate;
 
-use super::{Plausibility, SILENCE};
+use super::{Plausibility, SILENCE, fairly};
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::ports::{Gyro, Quantity, RateReading};
@@ -20,6 +22,8 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     plausibility: Plausibility<V>,
     /// Sample period.
     pub(super) period: Duration,
+    /// A conversion that ended while something else was awaited.
+    next: Option<Result<Edge, Fault>>,
     /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
@@ -37,7 +41,17 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             gyro: Guarded::new(gyro, name),
             plausibility: Plausibility::new(sample_rate),
             period,
+            next: None,
             has_clipped: false,
+        }
+    }
+
+    /// Waits for something else, until the next conversion at the longest.
+    pub(super) async fn until_next(&mut self, awaited: impl Future<Output = ()>) {
+        if self.next.is_none()
+            && let Either::Second(end) = select(awaited, self.gyro.device.ready()).await
+        {
+            self.next = Some(end);
         }
     }
 
@@ -50,16 +64,23 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
 
     /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.
     pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Edge, Symptom> {
-        match with_timeout(silence, self.gyro.device.ready()).await {
+        if let Some(end) = self.next.take() {
+            return end.map_err(Symptom::Chip);
+        }
+        match with_timeout(silence, fairly(self.gyro.device.ready())).await {
             Ok(end) => end.map_err(Symptom::Chip),
             Err(_) => Err(Symptom::Silent),
         }
     }
 
     /// Returns a new rate, checked for saturation and repetition; none where it is not new, or the
-    /// symptom to repair.
+    /// symptom to repair. After a transfer that its bus has given up, the conversion is still there.
     pub(super) async fn read(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
-        let outcome = self.gyro.device.read().await;
+        let mut outcome = self.gyro.device.read().await;
+        if outcome == Err(Fault::Hung) {
+            shared.lose(self.gyro.name, Symptom::Chip(Fault::Hung));
+            outcome = self.gyro.device.read().await;
+        }
         let RateReading { rate, is_new } = self.gyro.checked(outcome)?;
         if !is_new {
             return Ok(None);

@@ -4,6 +4,8 @@
 //! one moment: a conversion is a mean, and belongs to its middle. From middle to middle a gyro has
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
 
+use core::convert::Infallible;
+
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::SpinSample;
@@ -78,6 +80,23 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
         let force = [SpinForce(of_up.steps(up)), SpinForce(of_right.steps(right))];
         (!force.iter().any(|force| force.is_saturated())).then_some(force)
     }
+
+    /// Takes the next sample; [`None`] where a reading was lost.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
+        let Some(ends) = self.converters.conversions().await? else { return Ok(None) };
+        let codes = self.converters.values().await?;
+        if !self.converters.are_in_step(&ends).await? {
+            return Ok(None);
+        }
+        let Some(codes) = codes else { return Ok(None) };
+        let end = middle(&ends);
+        self.outlet.judge(end);
+        let time = Instant(end.at.0.saturating_sub(self.half));
+        Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
+    }
 }
 
 impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
@@ -91,17 +110,12 @@ impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
         self.converters.start()
     }
 
-    async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
-        let Some(ends) = self.converters.conversions().await? else { return Ok(None) };
-        let codes = self.converters.values().await?;
-        if !self.converters.are_in_step(&ends).await? {
-            return Ok(None);
+    async fn run(&mut self) -> Result<Infallible, Refusal> {
+        loop {
+            if let Some(sample) = self.sample().await? {
+                self.outlet.hand_over(sample);
+            }
         }
-        let Some(codes) = codes else { return Ok(None) };
-        let end = middle(&ends);
-        self.outlet.judge(end);
-        let time = Instant(end.at.0.saturating_sub(self.half));
-        Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 
     fn renew(&mut self) {

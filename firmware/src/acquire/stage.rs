@@ -4,6 +4,11 @@
 //! accelerometer with every n-th sample: between, the stage cannot have turned far, and the force
 //! is only averaged. Without a valid rate and a valid angle there is no sample.
 
+use core::convert::Infallible;
+use core::future::poll_fn;
+use core::pin::pin;
+use core::task::Poll;
+
 use embassy_time::{Duration, Instant, Ticker};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
@@ -19,7 +24,7 @@ use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
 use crate::retry_budget::RETRY;
 use crate::shared::Channels;
-use crate::sway::CompensatesSway;
+use crate::sway::{CompensatesSway, Compensation};
 
 /// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
 pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
@@ -31,7 +36,7 @@ pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     let (harmonics, latest) = (configuration.encoder, &channels.shared.angles.outer);
     let shared = &channels.shared;
     let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
-    Acquisition::new(gyro, accelerometer, shaft, base, configuration, channels)
+    OnBase::new(gyro, accelerometer, shaft, base, configuration, channels)
 }
 
 /// The sensors of a two-frame mount as a source of samples; nothing is started yet.
@@ -43,78 +48,136 @@ pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
 ) -> impl Source<'a, Sample = Sample> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let shafts = FrameShafts::new(encoder, configuration, frames, &channels.shared);
-    Acquisition::new(gyro, accelerometer, shafts, base, configuration, channels)
+    OnBase::new(gyro, accelerometer, shafts, base, configuration, channels)
+}
+
+/// Acquisition of the sensors of the stage path, and of those on the base beside it.
+struct OnBase<'a, G, A, P, S> {
+    acquisition: Acquisition<'a, G, A, P>,
+    base: &'a mut S,
 }
 
 /// Acquisition of the sensors of the stage path.
-struct Acquisition<'a, G, A, P, S> {
+struct Acquisition<'a, G, A, P> {
     rates: Rates<'a, G>,
     forces: Forces<'a, A>,
     pointing: P,
-    compensation: &'a mut S,
     coarse: Coarse,
     outlet: Outlet<'a, Sample>,
     silence: Duration,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition<'a, G, A, P, S> {
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> OnBase<'a, G, A, P, S> {
     /// Takes the sensors; nothing is started yet.
     fn new(
         gyro: &'a mut G,
         accelerometer: &'a mut A,
         pointing: P,
-        compensation: &'a mut S,
+        base: &'a mut S,
         configuration: &Configuration,
         channels: &'a Channels<'a>,
     ) -> Self {
         let Configuration { sample_rate, force_divider, .. } = *configuration;
         let period = period(sample_rate);
-        let coarse = Coarse::new(compensation.period(period), period);
-        Self {
+        let acquisition = Acquisition {
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
-            compensation,
-            coarse,
+            coarse: Coarse::new(base.period(period), period),
             outlet: Outlet::new(period, channels),
             silence: silence(period),
-        }
+        };
+        Self { acquisition, base }
+    }
+}
+
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
+    for OnBase<'a, G, A, P, S>
+{
+    type Sample = Sample;
+
+    fn outlet(&mut self) -> &mut Outlet<'a, Sample> {
+        &mut self.acquisition.outlet
     }
 
+    async fn start(&mut self) -> Result<(), Refusal> {
+        let Self { acquisition, base } = self;
+        let shared = acquisition.outlet.shared();
+        acquisition.forces.accelerometer.start(shared).await?;
+        acquisition.pointing.start().await?;
+        base.start(shared).await?;
+        acquisition.rates.gyro.start(shared).await
+    }
+
+    /// Reads the sensors on the base beside the others, so that none waits for a bus of theirs that
+    /// hangs.
+    async fn run(&mut self) -> Result<Infallible, Refusal> {
+        let Self { acquisition, base } = self;
+        let (compensation, serving) = base.parts(acquisition.outlet.shared());
+        let (mut serving, mut sampling) = (pin!(serving), pin!(acquisition.run(compensation)));
+        poll_fn(|context| {
+            loop {
+                if let Poll::Ready(reason) = serving.as_mut().poll(context) {
+                    return Poll::Ready(Err(reason));
+                }
+                if let Poll::Ready(ended) = sampling.as_mut().poll(context) {
+                    return Poll::Ready(ended);
+                }
+                if !compensation.is_some_and(Compensation::is_wanted) {
+                    return Poll::Pending;
+                }
+            }
+        })
+        .await
+    }
+
+    fn renew(&mut self) {
+        self.acquisition.renew();
+        self.base.renew();
+    }
+}
+
+impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
     /// Restores the full retry budget of the precise gyro and the sensors beside it.
-    fn renew_precise(&mut self) {
+    fn renew(&mut self) {
         self.rates.renew();
         self.forces.renew();
         self.pointing.renew();
     }
 
-    /// Passes a coarse reading on to attitude and heading.
-    fn pass_on(&mut self) {
-        let shared = self.outlet.shared();
-        if let Some((at, reading)) = self.compensation.reading() {
-            self.coarse.pass_on(at, &reading, shared);
+    /// Takes samples and hands them over without end.
+    async fn run(&mut self, base: Option<&Compensation>) -> Result<Infallible, Refusal> {
+        loop {
+            match self.sample(base).await {
+                Ok(Some(sample)) => self.outlet.hand_over(sample),
+                Ok(None) => {}
+                Err(reason) => self.do_without(reason, base).await?,
+            }
         }
     }
-}
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
-    for Acquisition<'a, G, A, P, S>
-{
-    type Sample = Sample;
-
-    fn outlet(&mut self) -> &mut Outlet<'a, Sample> {
-        &mut self.outlet
+    /// Asks for a coarse reading at one of the two moments of a sample, waits for it until the next
+    /// conversion at the longest, and passes it on to attitude and heading.
+    async fn follow(&mut self, is_angle_read: bool, base: Option<&Compensation>) {
+        let Some(base) = base else { return };
+        if base.asks(is_angle_read, self.outlet.shared()) {
+            self.rates.until_next(base.answered()).await;
+        }
+        self.pass_on(base);
     }
 
-    async fn start(&mut self) -> Result<(), Refusal> {
-        let shared = self.outlet.shared();
-        self.forces.accelerometer.start(shared).await?;
-        self.pointing.start().await?;
-        self.compensation.start(shared).await?;
-        self.rates.gyro.start(shared).await
+    /// Passes a coarse reading on to attitude and heading.
+    fn pass_on(&mut self, base: &Compensation) {
+        if let Some((at, reading)) = base.reading() {
+            self.coarse.pass_on(at, &reading, self.outlet.shared());
+        }
     }
 
-    async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
+    /// Takes the next sample; [`None`] where a reading was lost.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn sample(&mut self, base: Option<&Compensation>) -> Result<Option<Sample>, Refusal> {
         let shared = self.outlet.shared();
         let end = match self.rates.conversion(self.silence).await {
             Ok(end) => end,
@@ -126,17 +189,15 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             Ok(rate) => rate,
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|_| None)?,
         };
-        self.compensation.follow(false, shared).await?;
         self.coarse.turn(ended, rate);
-        self.pass_on();
-        if !self.compensation.is_decided() {
+        self.follow(false, base).await;
+        if !base.is_none_or(Compensation::is_decided) {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         let shown = self.pointing.read(late).await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
-        self.compensation.follow(true, shared).await?;
-        self.pass_on();
+        self.follow(true, base).await;
         let on_base = self.pointing.force_on_base();
         if let Some((reading, bias_sigma)) = force.zip(on_base) {
             self.coarse.feel(reading.force, bias_sigma, shared);
@@ -151,7 +212,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         Ok(Some(Sample {
             time: end.at,
             stage: aim.heading,
-            rate: self.compensation.compensated(rate, aim.heading),
+            rate: base.map_or(rate, |base| base.compensated(rate, aim.heading)),
             force: force.map(|reading| reading.force),
             temperature: force.map(|reading| reading.temperature),
             elevation: aim.elevation.filter(|_| force.is_some()),
@@ -160,7 +221,11 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
 
     /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
     /// the others may be tried again.
-    async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
+    async fn do_without(
+        &mut self,
+        reason: Refusal,
+        base: Option<&Compensation>,
+    ) -> Result<(), Refusal> {
         let shared = self.outlet.shared();
         if !shared.is_holding() {
             return Err(reason);
@@ -170,20 +235,18 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
-            self.compensation.follow(false, shared).await?;
-            self.compensation.follow(true, shared).await?;
-            self.pass_on();
+            if let Some(base) = base {
+                if base.asks(false, shared) || base.asks(true, shared) {
+                    base.answered().await;
+                }
+                self.pass_on(base);
+            }
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.is_idle() {
                 shared.fail(reason);
             }
         }
-        self.renew_precise();
+        self.renew();
         Ok(())
-    }
-
-    fn renew(&mut self) {
-        self.renew_precise();
-        self.compensation.renew();
     }
 }

@@ -4,6 +4,8 @@
 //! lost conversion is unknown; such a sample is not passed on, and the jump in time reports the
 //! loss to the session.
 
+use core::convert::Infallible;
+
 use orientation::alignment::refusal::Refusal;
 use orientation::device::TRIAD;
 use orientation::navigation::Motion;
@@ -60,20 +62,11 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
         let since = u32::try_from(since).unwrap_or(u32::MAX);
         if since.abs_diff(self.period) <= self.period / 4 { since } else { self.period }
     }
-}
 
-impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> {
-    type Sample = InertialSample;
-
-    fn outlet(&mut self) -> &mut Outlet<'a, InertialSample> {
-        &mut self.outlet
-    }
-
-    async fn start(&mut self) -> Result<(), Refusal> {
-        self.forces.accelerometer.start(self.outlet.shared()).await?;
-        self.gyros.start().await
-    }
-
+    /// Takes the next sample; [`None`] where a reading was lost.
+    ///
+    /// # Errors
+    /// A sensor is given up.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
         let Some(ends) = self.gyros.conversions().await? else { return Ok(None) };
         let end = middle(&ends);
@@ -90,6 +83,27 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
         let sample = InertialSample { time: end.at, turned, force };
         self.outlet.shared().move_on(Motion::Moved(sample));
         Ok(Some(sample))
+    }
+}
+
+impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> {
+    type Sample = InertialSample;
+
+    fn outlet(&mut self) -> &mut Outlet<'a, InertialSample> {
+        &mut self.outlet
+    }
+
+    async fn start(&mut self) -> Result<(), Refusal> {
+        self.forces.accelerometer.start(self.outlet.shared()).await?;
+        self.gyros.start().await
+    }
+
+    async fn run(&mut self) -> Result<Infallible, Refusal> {
+        loop {
+            if let Some(sample) = self.sample().await? {
+                self.outlet.hand_over(sample);
+            }
+        }
     }
 
     fn renew(&mut self) {

@@ -59,6 +59,7 @@ impl Noted {
     }
 
     /// The latest edge. Where another one comes in between, it is read again.
+    #[inline(never)]
     fn latest(&self) -> Edge {
         loop {
             let count = self.count.load(Ordering::Acquire);
@@ -105,11 +106,14 @@ impl Line {
 
     /// The latest edge, where it has not been returned before and its conversion was not read meanwhile, which lifts
     /// the line.
+    #[inline]
     fn unread(&mut self) -> Option<Edge> {
+        if self.noted.count.load(Ordering::Acquire) == self.returned {
+            return None;
+        }
         let edge = self.noted.latest();
-        let is_new = edge.count != self.returned;
         self.returned = edge.count;
-        Some(edge).filter(|_| is_new && self.pin.is_low())
+        Some(edge).filter(|_| self.pin.is_low())
     }
 }
 
@@ -120,7 +124,7 @@ impl DataReady for Line {
                 return Poll::Ready(edge);
             }
             self.noted.waiting.register(context.waker());
-            // One that came before that has woken nobody.
+            // One that has come meanwhile has woken nobody.
             self.unread().map_or(Poll::Pending, Poll::Ready)
         });
         Ok(edge.await)

@@ -8,6 +8,7 @@
 mod configuration;
 pub mod edges;
 mod flash;
+pub mod i2c;
 mod ports;
 mod settings;
 pub mod spi;
@@ -43,7 +44,8 @@ use orientation::attitude::{Keeper, Setting};
 use orientation::signal::{Sample, Timed};
 use static_cell::StaticCell;
 
-use wiring::{BaseBus, Link};
+use i2c::BaseBus;
+use wiring::Link;
 
 /// Executors above the thread, which has what may wait: conclusions, plans, link and store.
 #[derive(Clone, Copy)]

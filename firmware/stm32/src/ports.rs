@@ -19,8 +19,9 @@ use crate::begun;
 use crate::configuration;
 use crate::configuration::PLATFORM;
 use crate::edges::Line;
+use crate::i2c::BaseBus;
 use crate::spi::Device;
-use crate::wiring::{BaseBus, ConverterWires};
+use crate::wiring::ConverterWires;
 
 /// Converter with its data-ready line.
 type Converter = Ads1262<Device, Line, Delay>;

@@ -8,7 +8,6 @@
 use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
-use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::FLASH;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
@@ -16,10 +15,9 @@ use embassy_stm32::usart::UartTx;
 use firmware::ports::Frames;
 
 use crate::edges::Line;
+use crate::i2c::BaseBus;
 use crate::spi::{Bus, Device};
 
-/// The bus of the IMU on the base.
-pub type BaseBus = I2c<'static, Async, i2c::Master>;
 /// The serial port for status lines.
 pub type Link = UartTx<'static, Async>;
 

@@ -169,7 +169,7 @@ impl Controller {
         self.exti.reset();
         (self.dma, self.i2c) = (Default::default(), I2c::new());
         self.timer = Timer::new(self.hertz);
-        self.spi = [Spi::new(), Spi::new()];
+        self.spi.iter_mut().for_each(Spi::reset);
         self.watchdog = Watchdog::default();
         if reason == ResetReason::Supply {
             self.debug = [0; 4];

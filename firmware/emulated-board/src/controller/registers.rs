@@ -5,7 +5,7 @@ use super::gpio::Port;
 use super::i2c::I2c;
 use super::map::{Peripheral, peripheral};
 use super::power::Power;
-use super::spi::Spi;
+
 use super::timer::Timer;
 use super::{Controller, Memory, Refused, ResetReason};
 use crate::time::Time;
@@ -142,11 +142,11 @@ impl Controller {
                     self.ports[bit as usize] = Port::new(bit as usize);
                     self.drive(bit as usize, now);
                 }
-                (0x38, 14) => self.spi[1] = Spi::new(),
+                (0x38, 14) => self.spi[1].reset(),
                 (0x38, 22) => self.i2c = I2c::new(),
                 (0x38, 28) => self.power = Power::default(),
                 (0x40, 0) => self.exti.reset_ports(),
-                (0x40, 12) => self.spi[0] = Spi::new(),
+                (0x40, 12) => self.spi[0].reset(),
                 (0x40, 14) => self.usart.reset(),
                 (0x40, 16) => self.timer = Timer::new(self.hertz),
                 _ => {}

@@ -56,6 +56,8 @@ pub struct Spi {
     overrun: Overrun,
     /// Whether the next byte never begins: a fault that is injected, until the interface is disabled in that state.
     pub hangs: bool,
+    /// Whether no byte ever begins, whatever is done: the same fault, for good.
+    pub is_stuck: bool,
     /// Whether a byte waits because of it.
     is_hung: bool,
     /// Bytes that were lost because the buffer was full.
@@ -66,6 +68,11 @@ impl Spi {
     /// The registers after a reset.
     pub fn new() -> Self {
         Self { control: [0, BYTE], ..Self::default() }
+    }
+
+    /// A reset, which mends no fault for good.
+    pub fn reset(&mut self) {
+        *self = Self { is_stuck: self.is_stuck, ..Self::new() };
     }
 
     /// Whether it is enabled; then it masters its bus.
@@ -91,7 +98,7 @@ impl Spi {
         if self.shifting.is_some() || !self.is_on() {
             return None;
         }
-        if self.hangs {
+        if self.hangs || self.is_stuck {
             self.is_hung = !self.sending.is_empty();
             return None;
         }

@@ -1,4 +1,4 @@
-//! Samples have the times of their conversions, so that none that came in time seems to be missing or late.
+//! Samples have the time at which their conversions ended, whatever the tasks did then.
 
 use firmware::platform::Platform;
 
