@@ -54,7 +54,6 @@ mod unmaskable;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_stm32::interrupt;
-use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_time::Instant;
 use firmware::platform::Platform;
 use panic_probe as _;
@@ -69,11 +68,7 @@ static ACQUISITION: InterruptExecutor = InterruptExecutor::new();
 /// Executor of motors and keeper.
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
-/// Priorities of these executors: below all interrupts of devices and of the clock, which only wake tasks, and have
-/// the greatest, and above the thread.
-const PRIORITIES: [Priority; 2] = [Priority::P6, Priority::P8];
-
-/// Polls the tasks of acquisition. The peripheral of this interrupt, a single-wire protocol master, is not used.
+/// Polls the tasks of acquisition.
 #[interrupt]
 fn SWPMI1() {
     #[expect(unsafe_code, reason = "only the interrupt of the executor may poll it")]
@@ -83,7 +78,7 @@ fn SWPMI1() {
     }
 }
 
-/// Polls the tasks of motors and keeper. The peripheral of this interrupt, for touch keys, is not used.
+/// Polls the tasks of motors and keeper.
 #[interrupt]
 fn TSC() {
     #[expect(unsafe_code, reason = "only the interrupt of the executor may poll it")]
@@ -95,13 +90,8 @@ fn TSC() {
 
 /// Starts the executors above the thread.
 fn executors() -> Executors {
-    let [acquisition, control] = PRIORITIES;
-    interrupt::SWPMI1.set_priority(acquisition);
-    interrupt::TSC.set_priority(control);
-    Executors {
-        acquisition: ACQUISITION.start(interrupt::SWPMI1),
-        control: CONTROL.start(interrupt::TSC),
-    }
+    let [acquisition, control] = priorities::EXECUTORS;
+    Executors { acquisition: ACQUISITION.start(acquisition), control: CONTROL.start(control) }
 }
 
 #[embassy_executor::main]

@@ -4,7 +4,9 @@
 //! |--:|---|---|
 //! | 0 | edges of the data-ready lines | a stamp is as late as its interrupt: nothing but a critical section may come first |
 //! | 2 | alarms of the time driver, the bus of the base, direct memory access | they move data and wake tasks, which may take some microseconds |
-//! | thread | the executor and all its tasks | |
+//! | 6 | the executor of acquisition | what is read belongs to the moment of its conversion |
+//! | 8 | the executor of control: motors and keeper | they must not wait for a conclusion, but may work for a millisecond |
+//! | thread | the executor of the thread: aligner, conclusions, link, store | |
 
 use embassy_stm32::interrupt::{Interrupt, InterruptExt, Priority};
 
@@ -22,8 +24,15 @@ const OTHERS: [Interrupt; 6] = [
     Interrupt::DMA2_CHANNEL6,
 ];
 
+/// The executors of acquisition and of control. The peripherals of these interrupts are not used: a master of a
+/// single-wire protocol, and a controller of touch keys.
+pub const EXECUTORS: [Interrupt; 2] = [Interrupt::SWPMI1, Interrupt::TSC];
+
 /// Sets the priorities.
 pub fn set() {
     EDGES.into_iter().for_each(|interrupt| interrupt.set_priority(Priority::P0));
     OTHERS.into_iter().for_each(|interrupt| interrupt.set_priority(Priority::P2));
+    let [acquisition, control] = EXECUTORS;
+    acquisition.set_priority(Priority::P6);
+    control.set_priority(Priority::P8);
 }

@@ -48,7 +48,8 @@ impl Error for Hung {
     }
 }
 
-/// A serial bus of the controller. All its devices belong to one executor, so it needs no lock.
+/// A serial bus of the controller. The devices of one executor need no lock, since a transaction never yields;
+/// those of an executor that another one on the same bus interrupts are [uninterrupted](Device::uninterrupted).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bus {
     /// SPI1.
@@ -132,6 +133,8 @@ pub struct Device {
     control: Cr1,
     /// Turns of waiting within which a byte must pass.
     turns: u16,
+    /// Whether its transactions run with interrupts off.
+    is_uninterrupted: bool,
 }
 
 impl Device {
@@ -152,7 +155,26 @@ impl Device {
             Phase::CaptureOnSecondTransition => Cpha::SECOND_EDGE,
         });
         control.set_spe(true);
-        Self { bus, select, control, turns }
+        Self { bus, select, control, turns, is_uninterrupted: false }
+    }
+
+    /// The device with transactions that nothing interrupts, as it must be where a task of higher priority has another
+    /// device on the same bus. Five bytes of a TMC5160 take 20 µs.
+    #[must_use]
+    pub fn uninterrupted(self) -> Self {
+        Self { is_uninterrupted: true, ..self }
+    }
+
+    /// Performs a transaction.
+    fn transact(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Hung> {
+        self.bus.configure(self.control);
+        self.select.set_low();
+        let outcome = operations.iter_mut().try_for_each(|operation| self.perform(operation));
+        if outcome.is_err() {
+            self.bus.reset();
+        }
+        self.select.set_high();
+        outcome
     }
 
     /// Exchanges bytes in place.
@@ -199,14 +221,11 @@ impl ErrorType for Device {
 impl SpiDevice for Device {
     /// Never yields.
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Hung> {
-        self.bus.configure(self.control);
-        self.select.set_low();
-        let outcome = operations.iter_mut().try_for_each(|operation| self.perform(operation));
-        if outcome.is_err() {
-            self.bus.reset();
+        if self.is_uninterrupted {
+            critical_section::with(|_| self.transact(operations))
+        } else {
+            self.transact(operations)
         }
-        self.select.set_high();
-        outcome
     }
 }
 

@@ -117,7 +117,8 @@ impl Buses {
         let device = |select, limit| Device::new(self.stage, select, MODE_3, limit, self.clock);
         AxisWires {
             encoder: device(unselected(encoder), mt6835::GREATEST_BUS_HERTZ),
-            motor: device(unselected(motor), tmc5160::GREATEST_BUS_HERTZ),
+            // The encoder belongs to acquisition, which interrupts the task of the motor.
+            motor: device(unselected(motor), tmc5160::GREATEST_BUS_HERTZ).uninterrupted(),
         }
     }
 
