@@ -14,7 +14,7 @@ use orientation::device::Device;
 use orientation::math;
 use orientation::units::AngularRate;
 
-use super::fairly;
+use super::Pace;
 use super::rates::{Rates, silence};
 use crate::ports::{InStep, Quantity};
 use crate::retry_budget::Symptom;
@@ -23,6 +23,9 @@ use crate::shared::Shared;
 /// Number of successive conversions that may be out of step: a single lost edge of a data-ready
 /// line is no reason for a restart.
 const MOST_OUT_OF_STEP: u8 = 3;
+/// Time by which conversions may end apart in any case, µs: they are begun one after the other, some
+/// 8 µs each, and a critical section may delay the stamps of some.
+const APART: u64 = 50;
 
 /// Group of `N` converters with sensors that measure values `V`.
 pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
@@ -36,6 +39,8 @@ pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
     silence: Duration,
     /// Number of successive conversions that were out of step.
     out_of_step: u8,
+    /// Pace at which conversions are read.
+    pace: Pace,
 }
 
 impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
@@ -52,7 +57,8 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             let name = names.next().unwrap_or(Device::Gyro);
             Rates::new(converter, name, sample_rate)
         });
-        Self { converters: taken, shared, period, silence: silence(period), out_of_step: 0 }
+        let (silence, pace) = (silence(period), Pace::default());
+        Self { converters: taken, shared, period, silence, out_of_step: 0, pace }
     }
 
     /// Starts all converters, and their conversions in step.
@@ -87,6 +93,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
     /// Waits for a conversion of every converter; returns the ends, or none after a fault. They end
     /// together, and an end that has come is returned at once, so one is awaited after the other.
     pub(super) async fn conversions(&mut self) -> Result<Option<[Edge; N]>, Refusal> {
+        self.pace.rest().await;
         let (mut ends, mut come) = ([Edge::default(); N], 0);
         let all = async {
             for (end, converter) in ends.iter_mut().zip(&mut self.converters) {
@@ -96,7 +103,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             Ok(())
         };
         if let Err(symptom) =
-            with_timeout(self.silence, fairly(all)).await.unwrap_or(Err(Symptom::Silent))
+            with_timeout(self.silence, self.pace.note(all)).await.unwrap_or(Err(Symptom::Silent))
         {
             return self.mend(come, symptom).await;
         }
@@ -107,7 +114,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
     /// Looks again at converters whose end was seen just before the others ended another conversion.
     fn catch_up(&mut self, ends: &mut [Edge; N]) {
         let latest = ends.iter().map(|end| end.at.0).max().unwrap_or(0);
-        let near = latest.saturating_sub(u64::from(self.period / 4));
+        let near = latest.saturating_sub(self.apart());
         for (converter, end) in self.converters.iter_mut().zip(ends) {
             if end.at.0 < near
                 && let Poll::Ready(Ok(later)) = poll_once(converter.gyro.device.ready())
@@ -157,12 +164,17 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         Ok(false)
     }
 
-    /// Converter whose conversion ended furthest from the median, where that is more than a quarter
-    /// of a period: the majority is right.
+    /// Time by which conversions that are in step may end apart, µs: a quarter of a period.
+    fn apart(&self) -> u64 {
+        APART.max(u64::from(self.period / 4))
+    }
+
+    /// Converter whose conversion ended furthest from the median, where that is too far: the
+    /// majority is right.
     fn outlier(&self, ends: &[Edge; N]) -> Option<usize> {
         let Edge { at: middle, .. } = middle(ends);
         let beside = |index: &usize| ends[*index].at.0.abs_diff(middle.0);
-        (0..N).max_by_key(beside).filter(|index| beside(index) > u64::from(self.period / 4))
+        (0..N).max_by_key(beside).filter(|index| beside(index) > self.apart())
     }
 }
 

@@ -30,7 +30,7 @@ use core::convert::Infallible;
 use core::future::poll_fn;
 use core::pin::pin;
 
-use embassy_futures::yield_now;
+use embassy_time::{Duration, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
@@ -85,21 +85,42 @@ async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible,
     source.run().await
 }
 
-/// Awaits conversions. Where they were there at once, the tasks beside go first: conversions that come
-/// faster than they are read would leave them no time, since no transfer of a serial bus yields.
-async fn fairly<T>(conversions: impl Future<Output = T>) -> T {
-    let mut conversions = pin!(conversions);
-    let mut has_waited = false;
-    let come = poll_fn(|context| {
-        let polled = conversions.as_mut().poll(context);
-        has_waited |= polled.is_pending();
-        polled
-    });
-    let come = come.await;
-    if !has_waited {
-        yield_now().await;
+/// Number of successive conversions that had waited for acquisition after which it rests: they come
+/// faster than they are read.
+const MOST_BEHIND: u8 = 8;
+/// How long it rests then, as long as it takes to read a few: no transfer of a serial bus yields, so
+/// that what has less priority would never get its turn.
+const REST: Duration = Duration::from_millis(1);
+
+/// Pace at which conversions are read.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pace {
+    /// Number of successive conversions that had waited.
+    behind: u8,
+}
+
+impl Pace {
+    /// Rests where too many conversions in a row have waited.
+    async fn rest(&mut self) {
+        if self.behind == MOST_BEHIND {
+            Timer::after(REST).await;
+            self.behind = 0;
+        }
     }
-    come
+
+    /// Awaits conversions, and notes whether they had waited.
+    async fn note<T>(&mut self, conversions: impl Future<Output = T>) -> T {
+        self.behind += 1;
+        let mut conversions = pin!(conversions);
+        poll_fn(|context| {
+            let polled = conversions.as_mut().poll(context);
+            if polled.is_pending() {
+                self.behind = 0;
+            }
+            polled
+        })
+        .await
+    }
 }
 
 /// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,

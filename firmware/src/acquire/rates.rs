@@ -7,7 +7,7 @@ use embassy_time::{Duration, with_timeout};
 use orientation::device::Device;
 use orientation::units::AngularRate;
 
-use super::{Plausibility, SILENCE, fairly};
+use super::{Pace, Plausibility, SILENCE};
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::ports::{Gyro, Quantity, RateReading};
@@ -24,6 +24,8 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) period: Duration,
     /// A conversion that ended while something else was awaited.
     next: Option<Result<Edge, Fault>>,
+    /// Pace at which conversions are read.
+    pace: Pace,
     /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
@@ -42,6 +44,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             plausibility: Plausibility::new(sample_rate),
             period,
             next: None,
+            pace: Pace::default(),
             has_clipped: false,
         }
     }
@@ -67,7 +70,8 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         if let Some(end) = self.next.take() {
             return end.map_err(Symptom::Chip);
         }
-        match with_timeout(silence, fairly(self.gyro.device.ready())).await {
+        self.pace.rest().await;
+        match with_timeout(silence, self.pace.note(self.gyro.device.ready())).await {
             Ok(end) => end.map_err(Symptom::Chip),
             Err(_) => Err(Symptom::Silent),
         }
