@@ -53,10 +53,13 @@ fn limits(budget: &str) -> io::Result<String> {
     };
     let flash = sum(&[".vector_table", ".text", ".etalon", ".rodata", ".data"]);
     let ram = sum(&[".data", ".bss", ".uninit"]);
+    let sram2 = sum(&[".outlasting"]);
     Ok(format!(
         "ASSERT({flash} <= {}, \"the image takes more flash than budget.toml allows\");\n\
-         ASSERT({ram} <= {}, \"the statics take more RAM than budget.toml allows\");\n",
+         ASSERT({ram} <= {}, \"the statics take more of SRAM1 than budget.toml allows\");\n\
+         ASSERT({sram2} <= {}, \"the statics take more of SRAM2 than budget.toml allows\");\n",
         limit("board_flash_bytes")?,
-        limit("board_static_ram_bytes")?
+        limit("board_static_ram_bytes")?,
+        limit("board_sram2_bytes")?
     ))
 }

@@ -7,6 +7,8 @@ use std::env;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=../../memory.x");
+    // Functions of the same code are one.
+    println!("cargo::rustc-link-arg-bins=--icf=all");
     for script in ["link.x", "defmt.x", "budget.x"] {
         println!("cargo::rustc-link-arg-bins=-T{script}");
     }

@@ -14,7 +14,7 @@ use embedded_io_async::Write;
 use heapless::String;
 
 use crate::event::Event;
-use crate::shared::Shared;
+use crate::shared::{Channels, Shared, discard};
 
 /// Time between two lines.
 const PERIOD: Duration = Duration::from_secs(1);
@@ -37,11 +37,42 @@ pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
     }
 }
 
+/// Whether the link takes a line in time.
+async fn is_taken<L: Write>(link: &mut L, line: &[u8]) -> bool {
+    matches!(with_timeout(LONGEST, link.write_all(line)).await, Ok(Ok(())))
+}
+
+/// Sends words, one after the other; nobody counts those that the link does not take in time.
+pub async fn say<L: Write>(link: &mut L, words: &[&str]) {
+    for words in words {
+        let _ = is_taken(link, words.as_bytes()).await;
+    }
+}
+
+/// Says every second why nothing begins, without end.
+pub async fn refuse<L: Write>(link: &mut L, reason: &str) -> ! {
+    loop {
+        say(link, &[reason, "\r\n"]).await;
+        Timer::after(PERIOD).await;
+    }
+}
+
+/// Repeats the conclusion every second without end, and passes by the samples that still come.
+pub async fn repeat<L: Write, S>(link: &mut L, channels: &Channels<'_, S>) -> ! {
+    loop {
+        let sending = async {
+            Timer::after(PERIOD).await;
+            send(link, &channels.shared).await;
+        };
+        select(sending, discard(channels)).await;
+    }
+}
+
 /// Sends one status line. If the link does not take the line in time, the line is discarded and
 /// counted; the first loss is also reported as an event.
 pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let line = line(shared);
-    if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {
+    if !is_taken(link, line.as_bytes()).await {
         if shared.health.get().unsent == 0 {
             shared.report(Event::LinkSilent);
         }

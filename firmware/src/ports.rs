@@ -14,6 +14,7 @@ use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, Metres, MetresPerSecond, SpecificForce, Temperature};
 
+use crate::check_ins::CheckIns;
 use crate::event::Event;
 
 /// A device that can be started, and started again after a failure.
@@ -308,6 +309,11 @@ pub trait Observer {
 
     /// A new reading of the coarse sensors on the base at a time of the instrument's clock.
     fn sensed(&self, _: Instant, _: &BaseReading) {}
+
+    /// Where the parts check in; [`None`] where nobody looks.
+    fn check_ins(&self) -> Option<&CheckIns> {
+        None
+    }
 }
 
 /// An observer that ignores everything.

@@ -20,6 +20,7 @@ use orientation::alignment::Method;
 use orientation::signal::Timed;
 
 use crate::align::align;
+use crate::check_ins::Part;
 use crate::health::Health;
 use crate::keep::{Keep, remember};
 use crate::link;
@@ -66,9 +67,10 @@ pub async fn operate<M: Mechanism, K: Keep>(
         });
         let kept = pin!(keeping.keep(aiding, shared));
         // The navigator is polled last, so that it takes only what the aligner has taken.
-        select3(pin!(beside), turning, kept).await;
+        let turning = shared.checked(Part::Mechanism, turning);
+        select3(pin!(beside), turning, shared.checked(Part::Keeper, kept)).await;
     }
-    mechanism.park(meanwhile).await;
+    shared.checked(Part::Mechanism, pin!(mechanism.park(meanwhile))).await;
 }
 
 /// Where results go: link, recorder, and the store of what outlasts a loss of supply.
@@ -95,5 +97,7 @@ pub async fn find<L: Write, R: Recorder<S>, T: Store, S: Timed>(
     let reporting = pin!(link::run(link, shared));
     let watching = pin!(watch(shared));
     let storing = pin!(remember(&mut store, shared));
-    select4(aligning, reporting, watching, storing).await;
+    // The link wakes all of them once a second.
+    let aligning = shared.checked(Part::Aligner, aligning);
+    select4(aligning, shared.checked(Part::Link, reporting), watching, storing).await;
 }

@@ -15,6 +15,7 @@ use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{self, Angle};
 
+use crate::check_ins::{CheckIns, Checked, Part};
 use crate::crossing::{AnyObserver, Common, Lock};
 use crate::event::Event;
 use crate::health::Health;
@@ -126,6 +127,8 @@ pub struct Shared<'a> {
     pub status: Common<Status>,
     /// Receiver of events.
     pub observer: &'a AnyObserver<'a>,
+    /// Where the parts check in.
+    check_ins: Option<&'a CheckIns>,
 }
 
 impl<'a> Shared<'a> {
@@ -156,7 +159,13 @@ impl<'a> Shared<'a> {
             health: Common::default(),
             status: Common::new(Status::Starting),
             observer,
+            check_ins: observer.check_ins(),
         }
+    }
+
+    /// A part that checks in with every poll.
+    pub fn checked<F: Future + Unpin>(&self, part: Part, future: F) -> Checked<'a, F> {
+        Checked::new(self.check_ins, part, future)
     }
 
     /// Gives the aligner an order. One that it has not obeyed yet goes first, unless it is replaced

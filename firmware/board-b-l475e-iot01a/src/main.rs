@@ -47,18 +47,26 @@
 #![no_main]
 
 mod clock;
+mod crash;
 mod pins;
 mod priorities;
+mod stack;
 mod unmaskable;
 
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_stm32::interrupt;
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant, block_for};
+use firmware::link;
 use firmware::platform::Platform;
-use panic_probe as _;
-use stm32::{Executors, PLATFORM, spinning, stepwise, stops, turning, watchdog};
+use firmware::postmortem::Last;
+use stm32::watchdog::Reason;
+use stm32::wiring::{Clock, Link};
+use stm32::{
+    BoardLog, Executors, PLATFORM, brown_out, spinning, stepwise, stops, turning, watchdog,
+};
 
+use crash::RUN;
 use pins::Board;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
@@ -94,33 +102,77 @@ fn executors() -> Executors {
     Executors { acquisition: ACQUISITION.start(acquisition), control: CONTROL.start(control) }
 }
 
+/// The log, and where the parts check in.
+static LOG: BoardLog = BoardLog(&RUN.check_ins);
+
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    stack::guard();
     let reason = watchdog::reason();
-    let has_crystal = !watchdog::crystal_failed(reason);
+    let last = RUN.begin();
     watchdog::arm();
-    let peripherals = clock::start(has_crystal);
+    let peripherals = clock::start();
+    spawner.spawn(defmt::unwrap!(watchdog::feed(&RUN)));
+    // Log and link tell of the last reset once the crystal oscillates, or is known not to.
+    let was_dead = last.is_some_and(|last| last.record.is_crystal_dead);
+    let has_crystal = clock::follow_crystal(was_dead).await;
+    let mut record = RUN.record().unwrap_or_default();
+    record.is_crystal_dead = !has_crystal;
+    RUN.note(&record);
     priorities::set();
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
-    spawner.spawn(defmt::unwrap!(watchdog::feed()));
-    let board = defmt::unwrap!(Board::new(peripherals));
-    let executors = executors();
+    set_brown_out_level(reason);
+    let board = Board::new(peripherals, &LOG, Clock { has_crystal });
+    let (board, mut link) = defmt::unwrap!(board);
+    if let Some(last) = last {
+        tell(&last, reason, &mut link).await;
+    }
+    spawner.spawn(defmt::unwrap!(stack::watch()));
+    run(spawner, board, link);
+}
+
+/// Has the option bytes hold the level of the supply below which the board is reset: once, for a controller as it is
+/// delivered.
+fn set_brown_out_level(reason: Reason) {
+    if brown_out::is_set() {
+        return;
+    }
+    if reason == Reason::OptionBytes {
+        return defmt::error!("board: the option bytes do not take the brown-out level");
+    }
+    defmt::info!("board: sets its brown-out level, and starts again");
+    // The probe takes the line before the reset.
+    block_for(Duration::from_millis(10));
+    brown_out::set();
+}
+
+/// Tells log and link how the last run ended, unless it did so on purpose.
+async fn tell(last: &Last, reason: Reason, link: &mut Link) {
+    let how = last.how(reason == Reason::Watchdog, reason == Reason::Supply);
+    let Some(how) = how else { return };
+    last.lines(how).iter().flatten().for_each(|line| defmt::warn!("board: {}", line));
+    link::say(link, &["last reset: ", how.brief(), " in ", last.part(), "\r\n"]).await;
+}
+
+/// Runs the program of the carrier.
+fn run(spawner: Spawner, board: Board, link: Link) {
+    let above = executors();
     // Tasks that are never spawned are not in the image.
     match PLATFORM {
         Platform::Stage => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(executors, board.axis())));
+            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(above, board.axis(), link)));
         }
         Platform::TwoFrame => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(executors, board.two_frames())));
+            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(above, board.two_frames(), link)));
         }
         Platform::Turntable => {
-            spawner.spawn(defmt::unwrap!(turning::align(executors, board.axis())));
+            spawner.spawn(defmt::unwrap!(turning::align(above, board.axis(), link)));
         }
         Platform::Vehicle => {
-            spawner.spawn(defmt::unwrap!(stops::align(executors, board.vehicle())));
+            spawner.spawn(defmt::unwrap!(stops::align(above, board.vehicle(), link)));
         }
         Platform::Spin => {
-            spawner.spawn(defmt::unwrap!(spinning::follow(executors, board.spinning_body())));
+            spawner.spawn(defmt::unwrap!(spinning::follow(above, board.spinning_body(), link)));
         }
     }
 }

@@ -13,12 +13,13 @@ use embassy_stm32::usart::{self, ConfigError, UartTx};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use embassy_time::Duration;
 use firmware::ports::Frames;
+use stm32::BoardLog;
 use stm32::edges::{self, Line};
 use stm32::i2c::BaseBus;
 use stm32::spi::Bus;
 use stm32::wiring::{
-    AxisPlatformWires, Buses, ConverterWires, FramesWires, Outlets, PlatformWires, SpinWires,
-    VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, Buses, Clock, ConverterWires, FramesWires, Link, Outlets, PlatformWires,
+    SpinWires, VehicleWires, sensor_settings, stage_settings,
 };
 
 use crate::clock;
@@ -85,11 +86,15 @@ pub struct Board {
 }
 
 impl Board {
-    /// Connects all that several carriers have.
+    /// Connects all that several carriers have, and the link for status lines.
     ///
     /// # Errors
     /// An invalid configuration of the serial port.
-    pub fn new(p: Peripherals) -> Result<Self, ConfigError> {
+    pub fn new(
+        p: Peripherals,
+        log: &'static BoardLog,
+        timing: Clock,
+    ) -> Result<(Self, Link), ConfigError> {
         let sensors = Spi::new_blocking(p.SPI1, p.PA5, p.PA7, p.PA6, sensor_settings());
         let stage = Spi::new_blocking(p.SPI2, p.PD1, p.PD4, p.PD3, stage_settings());
         let buses = Buses {
@@ -99,10 +104,10 @@ impl Board {
         };
         let ready = Line::new(p.PD14, p.EXTI14);
         let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
-        Ok(Self {
+        let board = Self {
             buses,
             converter: buses.converter(p.PA2, ready),
-            outlets: Outlets { link, flash: p.FLASH },
+            outlets: Outlets { flash: p.FLASH, log, clock: timing },
             accelerometer: p.PA15,
             axis: (p.PD0, p.PD5),
             motor_enable: p.PD2,
@@ -114,7 +119,8 @@ impl Board {
             selects: (p.PB2, p.PA4, p.PA3, p.PB4),
             ready: (p.PB0, p.PB1, p.PC4, p.PC3),
             lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
-        })
+        };
+        Ok((board, link))
     }
 
     /// Connections of a stage or a turntable.

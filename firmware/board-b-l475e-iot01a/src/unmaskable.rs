@@ -1,14 +1,15 @@
 //! The handler of the non-maskable interrupt.
 #![expect(unsafe_code, reason = "its handler is unsafe to define")]
 
-use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
 use stm32::note_unreadable_row;
 
-/// A row of the store that cannot be read is an error of that read; anything else is a fault, which resets.
+use crate::crash;
+
+/// A row of the store that cannot be read is an error of that read; anything else ends the run.
 #[exception]
 unsafe fn NonMaskableInt() {
     if !note_unreadable_row() {
-        SCB::sys_reset();
+        crash::unhandled(2);
     }
 }

@@ -50,6 +50,7 @@ words! { Fault:
 impl Fault {
     /// The fault of a transfer on a serial bus. A bus tells a transfer that it has not ended within its time by an
     /// error of another than the usual kinds.
+    #[expect(clippy::needless_pass_by_value, reason = "it is what an error is mapped by")]
     pub(crate) fn of_transfer(error: impl Error) -> Self {
         if error.kind() == ErrorKind::Other { Self::Hung } else { Self::Bus }
     }

@@ -10,7 +10,7 @@ use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
 pub struct Image {
     /// Bytes of the flash from its beginning.
     pub flash: Vec<u8>,
-    /// First address above the statics; the stack ends there.
+    /// Lowest address of the stack.
     pub stack_end: u32,
     /// First address above the stack, which grows down from it.
     pub stack_start: u32,

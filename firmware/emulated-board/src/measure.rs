@@ -8,7 +8,7 @@ use crate::image::Image;
 use crate::processor::blocks::Blocks;
 
 /// Parts of paths of sources, with what they belong to; the first that is found holds.
-const PATHS: [(&str, Origin); 26] = [
+const PATHS: [(&str, Origin); 25] = [
     ("/firmware/orientation/", Origin::Methods),
     ("/firmware/drivers/", Origin::Drivers),
     ("/firmware/stm32/src/edges.rs", Origin::Peripherals),
@@ -34,7 +34,6 @@ const PATHS: [(&str, Origin); 26] = [
     ("sequential-storage", Origin::Store),
     ("defmt", Origin::Log),
     ("heapless", Origin::Channels),
-    ("panic-probe", Origin::Log),
 ];
 
 /// The origin of a source.

@@ -19,6 +19,9 @@ use crate::world::World;
 /// How often the probe looks, and the link is served.
 const LOOK: Time = Time::microseconds(1000);
 
+/// What the start of an image paints the stack with, where it does (cortex-m-rt, `STACK_PAINT_VALUE`).
+const PAINT: u8 = 0xCC;
+
 /// What is executed.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
@@ -101,14 +104,20 @@ impl Execution {
         let Image { stack_start, stack_end, .. } = *self.image;
         let mut stack = vec![0; (stack_start - stack_end) as usize];
         self.processor.peek(stack_end, &mut stack);
-        let untouched = stack.iter().take_while(|byte| **byte == RAM_FILL).count();
+        let untouched = stack.iter().take_while(|byte| [RAM_FILL, PAINT].contains(byte)).count();
         stack_start - stack_end - untouched as u32
     }
 
-    /// Takes the supply of the controller away for a moment: RAM is lost, what is written into the flash is torn. The
-    /// chips keep theirs.
+    /// Has the supply of the controller break down for a moment: below the level at which it is reset, where it is set
+    /// above the lowest one not below the least at which RAM keeps its content. What is written into the flash is torn.
+    /// The chips keep theirs.
     pub fn lose_supply(&mut self) {
         self.processor.reset(ResetReason::Supply);
+    }
+
+    /// Takes the supply of the controller away for good, and gives it again: RAM is lost, too.
+    pub fn switch_off(&mut self) {
+        self.processor.switch_off();
     }
 }
 

@@ -27,7 +27,7 @@ const fn nibble_remainders() -> [u32; 16] {
 
 /// The CRC-32 of words as little-endian bytes, 60 instructions a word.
 #[inline]
-pub(crate) fn crc32(words: impl Iterator<Item = u32>) -> u32 {
+pub fn crc32(words: impl Iterator<Item = u32>) -> u32 {
     let mut crc = u32::MAX;
     for word in words {
         // The remainder is linear: a little-endian word enters whole.

@@ -34,6 +34,7 @@ use embassy_time::{Duration, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
+use crate::check_ins::Part;
 use crate::repeat_counter::{RepeatCounter, STUCK};
 use crate::retry_budget::Symptom;
 use outlet::Outlet;
@@ -70,9 +71,9 @@ pub trait Source<'a> {
 /// Acquires samples without end. Where a sensor is given up, reports the reason, which ends the
 /// session, and, while an azimuth is held, tries again later.
 pub async fn acquire<'a>(source: &mut impl Source<'a>) {
+    let shared = source.outlet().shared();
     loop {
-        let Err(reason) = sample_for_ever(source).await;
-        let shared = source.outlet().shared();
+        let Err(reason) = shared.checked(Part::Acquisition, pin!(sample_for_ever(source))).await;
         shared.fail(reason);
         shared.rest().await;
         source.renew();

@@ -5,6 +5,7 @@
 //! [`PLATFORM`], which is chosen when the image is built.
 #![no_std]
 
+pub mod brown_out;
 mod configuration;
 pub mod edges;
 mod flash;
@@ -24,28 +25,36 @@ pub use configuration::PLATFORM;
 pub use flash::note_unreadable_row;
 
 use core::future::pending;
+use core::pin::pin;
 
 use embassy_executor::SendSpawner;
 use embassy_futures::select::select;
-use embassy_time::Timer;
+use embassy_stm32::Peri;
+use embassy_stm32::peripherals::FLASH;
+use embassy_time::{Duration, Instant, Timer};
 use firmware::acquire::{acquire, on_stage};
+use firmware::check_ins::{CheckIns, Checked, Part};
+use firmware::event::Event;
 use firmware::keep::{Keep, Keeping};
 use firmware::link;
 use firmware::log::DefmtLog;
 use firmware::mechanism::Mechanism;
-use firmware::ports::{Recorder, Store};
+use firmware::not_begun::NotBegun;
+use firmware::ports::{Observer, Recorder, Store};
 use firmware::run::{Outside, find, operate};
 use firmware::settings::Settings;
-use firmware::shared::{Shared, discard};
+use firmware::shared::Shared;
 use firmware::sway::SwayCompensation;
 use orientation::alignment::Method;
-use orientation::alignment::setup::SetupError;
 use orientation::attitude::{Keeper, Setting};
 use orientation::signal::{Sample, Timed};
 use static_cell::StaticCell;
 
 use i2c::BaseBus;
 use wiring::Link;
+
+/// Longest time between two polls of the parts that are to check in.
+const CHECK_IN: Duration = Duration::from_secs(1);
 
 /// Executors above the thread, which has what may wait: conclusions, plans, link and store.
 #[derive(Clone, Copy)]
@@ -59,13 +68,30 @@ pub struct Executors {
 /// The channels between the instrument's parts.
 type Channels<S = Sample> = firmware::shared::Channels<'static, S>;
 
+/// What the thread is given: a method, the flash for what is to be kept, and the channels.
+type Begun<M, S = Sample> = (&'static mut M, Peri<'static, FLASH>, &'static Channels<S>);
+
 /// The IMU on the base, which measures its motion.
 type OnBase = SwayCompensation<'static, ports::Base>;
 
+/// The observer of the instrument on a board: the log, and where the parts check in.
+#[derive(Debug)]
+pub struct BoardLog(pub &'static CheckIns);
+
+impl Observer for BoardLog {
+    fn event(&self, at: Instant, event: &Event) {
+        DefmtLog.event(at, event);
+    }
+
+    fn check_ins(&self) -> Option<&CheckIns> {
+        Some(self.0)
+    }
+}
+
 /// Channels of the instrument on a platform, at their final place in memory.
-fn channels() -> &'static Channels {
+fn channels(log: &'static BoardLog) -> &'static Channels {
     static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    CHANNELS.init_with(|| Channels::new(&DefmtLog))
+    CHANNELS.init_with(|| Channels::new(log))
 }
 
 /// Connects the IMU on the base.
@@ -88,11 +114,6 @@ fn keeper(setting: &Setting) -> &'static mut Keeper {
     KEEPER.init_with(|| Keeper::new(setting))
 }
 
-/// What a session begins with; logs why, if it cannot begin.
-fn begun<T>(checked: Result<T, SetupError>) -> Option<T> {
-    checked.inspect_err(|error| defmt::error!("board: no session: {}", error)).ok()
-}
-
 /// Task that acquires samples on a stage or a turntable for ever.
 #[embassy_executor::task]
 async fn stage_acquisition(mut inputs: ports::Inputs<OnBase>, channels: &'static Channels) {
@@ -101,29 +122,39 @@ async fn stage_acquisition(mut inputs: ports::Inputs<OnBase>, channels: &'static
 
 /// Serves the mechanism and keeps the attitude, for ever.
 async fn control(mechanism: &mut impl Mechanism, keeping: impl Keep, shared: &Shared<'static>) {
-    let until = (shared.over.wait(), pending());
+    let until = (wait(shared), pending());
     operate(mechanism, keeping, &(), shared, until).await;
     pending().await
+}
+
+/// Waits for the end of all. Once a second the parts beside it are woken, to check in.
+async fn wait(shared: &Shared<'static>) {
+    let waking = async {
+        loop {
+            Timer::after(CHECK_IN).await;
+        }
+    };
+    select(shared.over.wait(), waking).await;
 }
 
 /// Aligns, reports over the link and stores what is to be kept; then reports the conclusion without end. It never
 /// returns, because the peripherals would be dropped: the link would lose its last bytes.
 async fn find_and_report<S: Timed>(
     method: &mut dyn Method<S>,
-    mut link: Link,
+    link: &mut Link,
     recorder: &mut impl Recorder<S>,
     store: impl Store,
     channels: &'static Channels<S>,
-) {
+) -> ! {
     let shared = &channels.shared;
-    find(method, &(), Outside { link: &mut link, recorder, store }, channels).await;
+    find(method, &(), Outside { link, recorder, store }, channels).await;
     shared.over.signal(());
     defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
-    let reporting = async {
-        loop {
-            Timer::after_secs(1).await;
-            link::send(&mut link, shared).await;
-        }
-    };
-    select(reporting, discard(channels)).await;
+    shared.checked(Part::Link, pin!(link::repeat(link, channels))).await
+}
+
+/// Says why nothing begins: once in the log, every second over the link.
+async fn refuse(reason: NotBegun, link: &mut Link, log: &BoardLog) -> ! {
+    defmt::error!("board: {}", reason);
+    Checked::new(log.check_ins(), Part::Link, pin!(link::refuse(link, reason.brief()))).await
 }

@@ -14,8 +14,8 @@ use firmware::chips::{AnalogueGyro, BaseImu};
 use firmware::platform::Platform;
 use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 use firmware::settings;
+use orientation::alignment::setup::SetupError;
 
-use crate::begun;
 use crate::configuration;
 use crate::configuration::PLATFORM;
 use crate::edges::Line;
@@ -44,16 +44,18 @@ pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
 pub type Spinning = SpinSensors<Converter>;
 
-/// Connects the sensors on a stage, a turntable or two frames to their wires; logs why, if the gyro's
-/// scale factor does not allow it.
+/// Connects the sensors on a stage, a turntable or two frames to their wires.
+///
+/// # Errors
+/// A scale factor of the gyro that does not allow it.
 pub fn inputs<E, B>(
     (wires, settings): (ConverterWires, &settings::Gyro),
     force: Device,
     encoder: E,
     base: B,
-) -> Option<Sensors<Gyro, Accelerometer, E, B>> {
+) -> Result<Sensors<Gyro, Accelerometer, E, B>, SetupError> {
     let gyro = gyro(converter(wires, configuration::CONVERTER), settings)?;
-    Some(Sensors { gyro, accelerometer: accelerometer(force), encoder, base })
+    Ok(Sensors { gyro, accelerometer: accelerometer(force), encoder, base })
 }
 
 /// Encoder of an axis.
@@ -72,16 +74,18 @@ pub fn base(bus: BaseBus) -> Base {
     }
 }
 
-/// Connects the sensors of a vehicle to their wires; logs why, if the gyros' scale factor does not allow
-/// it.
+/// Connects the sensors of a vehicle to their wires.
+///
+/// # Errors
+/// A scale factor of the gyros that does not allow it.
 pub fn triad(
     (converters, settings): ([ConverterWires; 3], &settings::Gyro),
     accelerometer: Device,
-) -> Option<Triad> {
+) -> Result<Triad, SetupError> {
     let gyro = |wires| gyro(converter(wires, configuration::CONVERTER).clocked(), settings);
     let [forward, right, down] = converters.map(gyro);
     let gyros = [forward?, right?, down?];
-    Some(VehicleSensors { gyros, accelerometer: self::accelerometer(accelerometer) })
+    Ok(VehicleSensors { gyros, accelerometer: self::accelerometer(accelerometer) })
 }
 
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
@@ -95,10 +99,10 @@ fn converter(wires: ConverterWires, configuration: Conversion) -> Converter {
     Ads1262::new(wires.bus, wires.ready, Delay, configuration)
 }
 
-/// Gyro with its scale and saturation limit; logs why, if it has no scale.
-fn gyro(converter: Converter, settings: &settings::Gyro) -> Option<Gyro> {
-    let scale = begun(settings.scale(configuration::CONVERTER.gain))?;
-    Some(AnalogueGyro { converter, scale, limit: settings.limit() })
+/// Gyro with its scale and saturation limit.
+fn gyro(converter: Converter, settings: &settings::Gyro) -> Result<Gyro, SetupError> {
+    let scale = settings.scale(configuration::CONVERTER.gain)?;
+    Ok(AnalogueGyro { converter, scale, limit: settings.limit() })
 }
 
 /// Accelerometer with the output rate of this carrier.

@@ -3,8 +3,8 @@
 //!
 //! A record of settings in the last two pages of the flash ([`firmware::settings`]), which no image reaches,
 //! takes the place of all of them; the log of a start says which hold. With a record that must not be used,
-//! or cannot be read, nothing begins: the log says why, and the link stays silent. Pages that hold something
-//! else than a store are erased, which the log says, too.
+//! or cannot be read, nothing begins: log and link say why. Pages that hold something else than a store are
+//! erased, which the log says, too.
 //!
 //! | what | where to get it |
 //! |---|---|
@@ -24,8 +24,10 @@
 //! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
 
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
+use embassy_futures::block_on;
 use embassy_stm32::Peri;
 use embassy_stm32::peripherals::FLASH;
+use firmware::not_begun::NotBegun;
 use firmware::settings;
 use firmware::settings::{
     CarrierSchedule, Gyro, Settings, SpinSchedule, StageSchedule, TurntableSchedule,
@@ -39,7 +41,6 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE, Radians, RadiansPerSecond, Seconds, TURN};
 use orientation::words::Rounded;
 
-use crate::begun;
 use crate::configuration::{CONVERTER, period};
 use crate::flash::store;
 
@@ -156,15 +157,18 @@ pub fn spin() -> Settings<SpinSchedule> {
     of_image(SpinSchedule { course, pitch })
 }
 
-/// Settings of the record in the flash, or those of the image where there is none; logs which. `None`
-/// where they must not be used, for the reason that is logged. Pages that hold no store are erased, which is
-/// logged, too.
-pub async fn load<C: CarrierSchedule>(
+/// Settings of the record in the flash, or those of the image where there is none; logs which. Pages that hold no
+/// store are erased, which is logged, too.
+///
+/// # Errors
+/// Settings that must not be used.
+pub fn load<C: CarrierSchedule>(
     flash: &mut Peri<'static, FLASH>,
     of_image: fn() -> Settings<C>,
-) -> Option<Settings<C>> {
+) -> Result<Settings<C>, NotBegun> {
     let mut store = store(flash.reborrow());
-    match store.take_over().await {
+    // Nothing else runs yet that the thread would keep waiting, and no task needs room for these futures.
+    match block_on(store.take_over()) {
         Ok(false) => {}
         Ok(true) => defmt::warn!("board: the flash held no store, and was erased for one"),
         Err(fault) => defmt::error!(
@@ -172,17 +176,13 @@ pub async fn load<C: CarrierSchedule>(
             fault
         ),
     }
-    let (settings, source) = match settings::load(&mut store).await {
-        Ok(Some(settings)) => (settings, "a record in flash"),
-        Ok(None) => (of_image(), "the image"),
-        Err(error) => {
-            defmt::error!("board: no settings: {}", error);
-            return None;
-        }
+    let (settings, source) = match block_on(settings::load(&mut store))? {
+        Some(settings) => (settings, "a record in flash"),
+        None => (of_image(), "the image"),
     };
-    begun(settings.check())?;
+    settings.check()?;
     let latitude = Rounded::<4>(Radians(settings.latitude.rad()).degrees());
     let carrier = C::PLATFORM.name();
     defmt::info!("board: carrier {}, latitude {}°, settings of {}", carrier, latitude, source);
-    Some(settings)
+    Ok(settings)
 }

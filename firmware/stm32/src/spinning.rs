@@ -1,8 +1,8 @@
 //! Program of the board on a body in fast rotation.
 
 use firmware::acquire::{SpinAcquisition, acquire};
-use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
+use firmware::not_begun::NotBegun;
 use firmware::ports::NoRecorder;
 use firmware::spin::configuration::SpinConfiguration;
 use orientation::roll::Flight;
@@ -10,25 +10,43 @@ use orientation::signal::SpinSample;
 use static_cell::StaticCell;
 
 use crate::ports::Spinning;
-use crate::wiring::{Outlets, SpinWires};
-use crate::{Channels, Executors, configuration, find_and_report, ports, settings};
+use crate::wiring::{Link, Outlets, SpinWires};
+use crate::{Channels, Executors, configuration, find_and_report, ports, refuse, settings};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
-pub async fn follow(executors: Executors, wires: SpinWires) {
+pub async fn follow(executors: Executors, wires: SpinWires, mut link: Link) {
+    let log = wires.outlets.log;
+    match begin(executors, wires) {
+        Ok((flight, channels)) => {
+            let recorder = &mut NoRecorder;
+            find_and_report(flight, &mut link, recorder, (), channels).await;
+        }
+        Err(reason) => refuse(reason, &mut link, log).await,
+    }
+}
+
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
+/// frame of the program for ever, a session of 16 kB among it.
+///
+/// # Errors
+/// Why nothing begins.
+#[inline(never)]
+fn begin(
+    executors: Executors,
+    wires: SpinWires,
+) -> Result<(&'static mut Flight, &'static Channels<SpinSample>), NotBegun> {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
-    let SpinWires { converters, outlets: Outlets { link, mut flash } } = wires;
-    let Some(settings) = settings::load(&mut flash, settings::spin).await else { return };
-    let Some(configuration) = configuration::spinning() else {
-        return defmt::error!("board: a sensor's scale factor is none");
-    };
-    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
+    let SpinWires { converters, outlets: Outlets { mut flash, log, .. } } = wires;
+    let settings = settings::load(&mut flash, settings::spin)?;
+    let configuration = configuration::spinning().ok_or(NotBegun::NoScale)?;
+    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
     let flight = FLIGHT.init_with(|| configuration::flight(&settings));
     let sensors = ports::spinning(converters);
     executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, configuration, channels)));
     Strapdown::new(&channels.shared);
-    find_and_report(flight, link, &mut NoRecorder, (), channels).await;
+    Ok((flight, channels))
 }
 
 /// Acquisition on a spinning body.

@@ -6,9 +6,11 @@ use firmware::acquire::{acquire, on_mount};
 use firmware::configuration::FramesConfiguration;
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
+use firmware::not_begun::NotBegun;
 use firmware::ports::{Frames, NoRecorder};
 use firmware::stage::Stage;
 use firmware::sway::SwayCompensation;
+use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::{Prepared, Session};
 use orientation::alignment::stepwise::setting::Setting;
@@ -16,30 +18,49 @@ use static_cell::StaticCell;
 
 use crate::flash::store;
 use crate::ports::{AxisMotor, MountInputs};
-use crate::wiring::{AxisPlatformWires, FramesWires, Outlets};
+use crate::wiring::{AxisPlatformWires, FramesWires, Link, Outlets};
 use crate::{
-    Channels, Executors, OnBase, begun, channels, configuration, control, find_and_report, keeping,
-    on_base, ports, settings, stage_acquisition,
+    Begun, Channels, Executors, OnBase, channels, configuration, control, find_and_report, keeping,
+    on_base, ports, refuse, settings, stage_acquisition,
 };
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires) {
+pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, mut link: Link) {
+    let log = wires.outlets.log;
+    match begin_on_a_stage(executors, wires) {
+        Ok((session, flash, channels)) => {
+            let recorder = &mut NoRecorder;
+            find_and_report(session, &mut link, recorder, store(flash), channels).await;
+        }
+        Err(reason) => refuse(reason, &mut link, log).await,
+    }
+}
+
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
+/// frame of the program for ever, a session of 16 kB among it.
+///
+/// # Errors
+/// Why nothing begins.
+#[inline(never)]
+fn begin_on_a_stage(
+    executors: Executors,
+    wires: AxisPlatformWires,
+) -> Result<Begun<Session>, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::stage).await else { return };
-    let session = session(configuration::setting(&settings), configuration::procedure(&settings));
-    let Some(session) = session else { return };
+    let Outlets { mut flash, log, .. } = outlets;
+    let settings = settings::load(&mut flash, settings::stage)?;
+    let session = session(configuration::setting(&settings), configuration::procedure(&settings))?;
     let encoder = ports::encoder(axes.encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
-    let Some(inputs) = ports::inputs(converter, accelerometer, encoder, base) else { return };
-    let channels = channels();
+    let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
+    let channels = channels(log);
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings);
     executors.control.spawn(defmt::unwrap!(stage(motor, motor_enable, keeping, channels)));
-    find_and_report(session, link, &mut NoRecorder, store(flash), channels).await;
+    Ok((session, flash, channels))
 }
 
 /// Motor and keeper on a stage.
@@ -58,28 +79,44 @@ async fn stage(
 /// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
 /// axis vertical.
 #[embassy_executor::task]
-pub async fn on_two_frames(executors: Executors, wires: FramesWires) {
+pub async fn on_two_frames(executors: Executors, wires: FramesWires, mut link: Link) {
+    let log = wires.outlets.log;
+    match begin_on_two_frames(executors, wires) {
+        Ok((session, flash, channels)) => {
+            let recorder = &mut NoRecorder;
+            find_and_report(session, &mut link, recorder, store(flash), channels).await;
+        }
+        Err(reason) => refuse(reason, &mut link, log).await,
+    }
+}
+
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
+/// frame of the program for ever, a session of 16 kB among it.
+///
+/// # Errors
+/// Why nothing begins.
+#[inline(never)]
+fn begin_on_two_frames(
+    executors: Executors,
+    wires: FramesWires,
+) -> Result<Begun<Session>, NotBegun> {
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
-    let frames = match configuration::frames() {
-        Ok(frames) => frames,
-        Err(error) => return defmt::error!("board: no mount: {}", error),
-    };
+    let frames = configuration::frames()?;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let (Outlets { link, mut flash }, Frames { outer, inner }) = (outlets, axes);
-    let Some(settings) = settings::load(&mut flash, settings::two_frame).await else { return };
-    let session =
-        session(configuration::mount_setting(&settings), configuration::mount_procedure(&settings));
-    let Some(session) = session else { return };
-    let (frames, channels) = (&*FRAMES.init(frames), channels());
+    let (Outlets { mut flash, log, .. }, Frames { outer, inner }) = (outlets, axes);
+    let settings = settings::load(&mut flash, settings::two_frame)?;
+    let procedure = configuration::mount_procedure(&settings);
+    let session = session(configuration::mount_setting(&settings), procedure)?;
+    let (frames, channels) = (&*FRAMES.init(frames), channels(log));
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
-    let Some(inputs) = ports::inputs(converter, accelerometer, encoders, base) else { return };
+    let inputs = ports::inputs(converter, accelerometer, encoders, base)?;
     let motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
     executors.acquisition.spawn(defmt::unwrap!(mount_acquisition(inputs, frames, channels)));
     let keeping = keeping(&settings);
     executors.control.spawn(defmt::unwrap!(mount(motors, motor_enable, frames, keeping, channels)));
-    find_and_report(session, link, &mut NoRecorder, store(flash), channels).await;
+    Ok((session, flash, channels))
 }
 
 /// Acquisition on two frames.
@@ -105,9 +142,12 @@ async fn mount(
     control(&mut Gimbal::new(&mut motors, frames, shared), keeping, shared).await;
 }
 
-/// Creates the session at its final place in memory; logs why, if there is none.
-fn session(setting: Setting, procedure: Procedure) -> Option<&'static mut Session> {
+/// Creates the session at its final place in memory.
+///
+/// # Errors
+/// A procedure that is none.
+fn session(setting: Setting, procedure: Procedure) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let prepared = begun(Prepared::new(setting, procedure))?;
-    Some(SESSION.init_with(|| Session::from(prepared)))
+    let prepared = Prepared::new(setting, procedure)?;
+    Ok(SESSION.init_with(|| Session::from(prepared)))
 }

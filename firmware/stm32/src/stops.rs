@@ -3,39 +3,60 @@
 
 use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
-use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
+use firmware::not_begun::NotBegun;
 use firmware::ports::NoRecorder;
 use firmware::settings::{Settings, VehicleSchedule};
+use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
 use crate::flash::store;
 use crate::ports::Triad;
-use crate::wiring::{Outlets, VehicleWires};
+use crate::wiring::{Link, Outlets, VehicleWires};
 use crate::{
-    Channels, Executors, begun, configuration, control, find_and_report, keeper, ports, settings,
+    Begun, Channels, Executors, configuration, control, find_and_report, keeper, ports, refuse,
+    settings,
 };
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
-pub async fn align(executors: Executors, wires: VehicleWires) {
+pub async fn align(executors: Executors, wires: VehicleWires, mut link: Link) {
+    let log = wires.outlets.log;
+    match begin(executors, wires) {
+        Ok((session, flash, channels)) => {
+            let recorder = &mut NoRecorder;
+            find_and_report(session, &mut link, recorder, store(flash), channels).await;
+        }
+        Err(reason) => refuse(reason, &mut link, log).await,
+    }
+}
+
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
+/// frame of the program for ever, a session of 16 kB among it.
+///
+/// # Errors
+/// Why nothing begins.
+#[inline(never)]
+fn begin(
+    executors: Executors,
+    wires: VehicleWires,
+) -> Result<Begun<Session, InertialSample>, NotBegun> {
     static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let VehicleWires { converters, accelerometer, outlets } = wires;
-    let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::vehicle).await else { return };
-    let Some(session) = session(&settings) else { return };
-    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
-    let converters = (converters, &settings.gyro);
-    let Some(sensors) = ports::triad(converters, accelerometer) else { return };
+    let Outlets { mut flash, log, .. } = outlets;
+    let settings = settings::load(&mut flash, settings::vehicle)?;
+    let session = session(&settings)?;
+    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
+    let sensors = ports::triad((converters, &settings.gyro), accelerometer)?;
     let keeping = settings.holds.then(|| {
         let keeper = keeper(&configuration::keeper(&settings));
         Keeping { keeper, policy: configuration::policy(&settings) }
     });
     executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, channels)));
     executors.control.spawn(defmt::unwrap!(keep(keeping, channels)));
-    find_and_report(session, link, &mut NoRecorder, store(flash), channels).await;
+    Ok((session, flash, channels))
 }
 
 /// Acquisition in a vehicle.
@@ -52,10 +73,13 @@ async fn keep(keeping: Option<Keeping<'static>>, channels: &'static Channels<Ine
     control(&mut Strapdown::new(shared), keeping, shared).await;
 }
 
-/// Creates the session at its final place in memory; logs why, if there is none.
-fn session(settings: &Settings<VehicleSchedule>) -> Option<&'static mut Session> {
+/// Creates the session at its final place in memory.
+///
+/// # Errors
+/// A procedure that is none.
+fn session(settings: &Settings<VehicleSchedule>) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let procedure = configuration::driving_procedure(settings);
-    begun(procedure.check())?;
-    Some(SESSION.init_with(|| Session::of(configuration::driving_setting(settings), procedure)))
+    procedure.check()?;
+    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(settings), procedure)))
 }

@@ -1,21 +1,25 @@
 //! Program of the board on a platform that rotates continuously, with the axis misalignment stored
 //! in flash. It holds azimuth, pitch and roll afterwards, by the IMU of the board on the base.
 
+use core::convert::Infallible;
+
 use embassy_stm32::gpio::Output;
 use firmware::keep::Keeping;
+use firmware::not_begun::NotBegun;
 use firmware::settings::{Settings, TurntableSchedule};
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
 use firmware::turntable::Turntable;
 use orientation::alignment::rotating::session::Session;
+use orientation::alignment::setup::SetupError;
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
 use crate::ports::AxisMotor;
-use crate::wiring::{AxisPlatformWires, Outlets};
+use crate::wiring::{AxisPlatformWires, Link, Outlets};
 use crate::{
-    Channels, Executors, begun, channels, configuration, control, find_and_report, keeping,
-    on_base, ports, settings, stage_acquisition,
+    Channels, Executors, channels, configuration, control, find_and_report, keeping, on_base,
+    ports, refuse, settings, stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -23,25 +27,37 @@ const TODAY: Today = Today { date: None, longest: None };
 
 /// Runs the instrument on a rotating platform: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn align(executors: Executors, wires: AxisPlatformWires) {
+pub async fn align(executors: Executors, wires: AxisPlatformWires, mut link: Link) {
+    let log = wires.outlets.log;
+    let Err(reason) = begin(executors, wires, &mut link).await;
+    refuse(reason, &mut link, log).await;
+}
+
+/// Runs without end.
+///
+/// # Errors
+/// Why nothing begins.
+async fn begin(
+    executors: Executors,
+    wires: AxisPlatformWires,
+    link: &mut Link,
+) -> Result<Infallible, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { link, mut flash } = outlets;
-    let Some(settings) = settings::load(&mut flash, settings::turntable).await else {
-        return;
-    };
-    let channels = channels();
+    let Outlets { mut flash, log, .. } = outlets;
+    let settings = settings::load(&mut flash, settings::turntable)?;
+    let channels = channels(log);
     let base = SwayCompensation::for_keeping(on_base(base));
     let encoder = ports::encoder(axes.encoder);
     let converter = (converter, &settings.gyro);
-    let Some(inputs) = ports::inputs(converter, accelerometer, encoder, base) else { return };
+    let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
     let store = &SharedStore::new(store(flash));
-    let Some(session) = session(&settings, store, channels).await else { return };
+    let session = session(&settings, store, channels).await?;
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings);
     executors.control.spawn(defmt::unwrap!(platform(motor, motor_enable, keeping, channels)));
     let recorder = &mut CalibrationStore { store, channels };
-    find_and_report(session, link, recorder, store, channels).await;
+    find_and_report(session, link, recorder, store, channels).await
 }
 
 /// Motor and keeper on a rotating platform.
@@ -58,15 +74,18 @@ async fn platform(
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.
+///
+/// # Errors
+/// A procedure that is none.
 async fn session(
     settings: &Settings<TurntableSchedule>,
     mut store: &SharedStore<Store<'static>>,
     channels: &Channels,
-) -> Option<&'static mut Session> {
+) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting(settings);
     let mut procedure = configuration::turning_procedure(settings);
-    begun(procedure.check())?;
+    procedure.check()?;
     load_calibration(&mut store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
-    Some(SESSION.init_with(|| Session::of(setting, procedure)))
+    Ok(SESSION.init_with(|| Session::of(setting, procedure)))
 }

@@ -1,9 +1,10 @@
-//! Independent watchdog, and the reason of the last reset: a program that hangs is reset, and the
+//! Independent watchdog, and the reason of the last reset: a part that hangs is reset, and the
 //! reset is reported. The registers are those of an STM32L4; other families have them elsewhere.
 
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::pac::{DBGMCU, IWDG, RCC};
 use embassy_time::{Duration, Timer};
+use firmware::postmortem::Outlasting;
 
 /// Time between two refreshes. The executor may be busy in between with the final fit for some
 /// seconds; the watchdog resets after 8 s.
@@ -18,28 +19,37 @@ pub fn arm() {
     IWDG.pr().write(|prescaler| prescaler.set_pr(Pr::DIVIDE_BY64));
 }
 
-/// Refreshes the watchdog as long as the executor runs.
+/// Refreshes the watchdog as long as every part that is expected has checked in since the last time. It is a task of the
+/// lowest priority, so that one that never returns has it wait too. Who had not checked in, and who ran, outlasts the
+/// reset.
 #[embassy_executor::task]
-pub async fn feed() -> ! {
+pub async fn feed(run: &'static Outlasting) -> ! {
     loop {
-        IWDG.kr().write(|key| key.set_key(Key::RESET));
+        if run.check_ins.renew() {
+            IWDG.kr().write(|key| key.set_key(Key::RESET));
+        }
         Timer::after(PERIOD).await;
+        run.pass_second();
     }
 }
 
 /// Reason of the last reset of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum Reason {
-    /// The watchdog expired: the program hung or panicked.
+    /// The watchdog expired: the program hung.
     Watchdog,
-    /// The supply was switched on, or failed.
+    /// The supply was switched on, or was too low: the flag is that of both.
     Supply,
-    /// Software or a debugger requested it.
+    /// Software or a debugger requested it; a panic or a fault does.
     Software,
     /// The reset button or the reset pin.
     Pin,
-    /// Option bytes, firewall or a low-power mode.
-    Other,
+    /// Option bytes were loaded.
+    OptionBytes,
+    /// A low-power mode was entered that is forbidden.
+    LowPower,
+    /// The firewall was violated.
+    Firewall,
 }
 
 /// Reads the reason and clears it (RM0351, `RCC_CSR`). Every reset pulls the pin, so the pin's flag
@@ -51,16 +61,10 @@ pub fn reason() -> Reason {
     match () {
         () if flags.iwdgrstf() || flags.wwdgrstf() => Reason::Watchdog,
         () if flags.borrstf() => Reason::Supply,
+        () if flags.oblrstf() => Reason::OptionBytes,
         () if flags.sftrstf() => Reason::Software,
-        () if flags.oblrstf() || flags.fwrstf() || flags.lpwrrstf() => Reason::Other,
+        () if flags.fwrstf() => Reason::Firewall,
+        () if flags.lpwrrstf() => Reason::LowPower,
         () => Reason::Pin,
     }
-}
-
-/// Whether the last start hung waiting for the 32.768 kHz crystal: it was switched on, and did not
-/// become ready within the watchdog's time. The backup domain keeps these flags over the reset.
-#[must_use]
-pub fn crystal_failed(reason: Reason) -> bool {
-    let crystal = RCC.bdcr().read();
-    reason == Reason::Watchdog && crystal.lseon() && !crystal.lserdy()
 }

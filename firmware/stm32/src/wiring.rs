@@ -14,6 +14,7 @@ use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
 use embassy_stm32::usart::UartTx;
 use firmware::ports::Frames;
 
+use crate::BoardLog;
 use crate::edges::Line;
 use crate::i2c::BaseBus;
 use crate::spi::{Bus, Device};
@@ -34,7 +35,7 @@ pub struct PlatformWires<A> {
     /// Enable pin of the motor drivers, active low: without it, or during a reset, the motors have no
     /// current.
     pub motor_enable: Output<'static>,
-    /// Link and flash.
+    /// Flash, log and clock.
     pub outlets: Outlets,
 }
 
@@ -49,7 +50,7 @@ pub struct VehicleWires {
     pub converters: [ConverterWires; 3],
     /// Accelerometer ADXL355.
     pub accelerometer: Device,
-    /// Link and flash.
+    /// Flash, log and clock.
     pub outlets: Outlets,
 }
 
@@ -57,16 +58,25 @@ pub struct VehicleWires {
 pub struct SpinWires {
     /// Converters of the gyros forward, up and right, and of the accelerometers up and right.
     pub converters: [ConverterWires; 5],
-    /// Link and flash.
+    /// Flash, log and clock.
     pub outlets: Outlets,
 }
 
-/// Where results go.
+/// Where results go, beside the link for status lines.
 pub struct Outlets {
-    /// Link for status lines.
-    pub link: Link,
     /// Flash of the controller, for what must outlast a loss of supply.
     pub flash: Peri<'static, FLASH>,
+    /// The log, and where the parts check in.
+    pub log: &'static BoardLog,
+    /// The clock by which everything is timed.
+    pub clock: Clock,
+}
+
+/// The clock of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clock {
+    /// Whether it follows a crystal; without one it is accurate to about 1 %.
+    pub has_crystal: bool,
 }
 
 /// Connections of an axis.

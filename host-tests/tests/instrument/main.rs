@@ -10,6 +10,7 @@ mod instrument;
 mod instrument_parts;
 mod keeping_instrument;
 mod mount;
+mod postmortem;
 mod recordings;
 mod replaying;
 mod settings;

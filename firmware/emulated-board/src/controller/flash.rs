@@ -26,10 +26,14 @@ const ERASE_UPPER: u32 = 1 << 15;
 const START: u32 = 1 << 16;
 /// `FLASH_CR`: it cannot be written.
 const LOCK: u32 = 1 << 31;
-/// `FLASH_CR`: the option bytes cannot be written, which stays so.
+/// `FLASH_CR`: the option bytes cannot be written.
 const LOCK_OPTIONS: u32 = 1 << 30;
-/// `FLASH_CR`: option bytes, fast programming, interrupts of protected areas.
-const UNUSUAL: u32 = 1 << 17 | 1 << 18 | 1 << 26 | 1 << 27;
+/// `FLASH_CR`: the option bytes are programmed.
+const START_OPTIONS: u32 = 1 << 17;
+/// `FLASH_CR`: the option bytes are loaded, by a reset.
+const LAUNCH: u32 = 1 << 27;
+/// `FLASH_CR`: fast programming, interrupts of protected areas.
+const UNUSUAL: u32 = 1 << 18 | 1 << 26;
 /// The fastest clock of the core for each wait state and for none, Hz (RM0351, 3.3.3: 16 MHz in range 1 of the voltage,
 /// with 5 % for an oscillator that no crystal holds).
 const HERTZ_A_WAIT_STATE: u64 = 16_800_000;
@@ -63,8 +67,16 @@ const BROKEN: u32 = 1 << 31;
 const TELLS_ERROR: u32 = 1 << 25;
 /// The keys that open the control register, in their order.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+/// The keys that open the option bytes, in their order (RM0351, 3.4.2).
+const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// The option bytes as delivered (RM0351, 3.4.1), brown-out level 0.
-const OPTIONS: u32 = 0xFFEF_F8AA;
+const DELIVERED: u32 = 0xFFEF_F8AA;
+/// The brown-out level in them.
+const BROWN_OUT_LEVEL: u32 = 7 << 8;
+/// The option bytes of a board that has been started before: brown-out level 4.
+const STARTED: u32 = DELIVERED | 4 << 8;
+/// Time that the option bytes take: a page is erased, rows are programmed (DS10969, flash memory characteristics).
+const OPTIONS_TAKE: Time = Time::microseconds(25_000);
 
 /// A loss of supply that is injected: within an operation, at its beginning or at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +88,7 @@ pub struct Cut {
 }
 
 /// The flash with its registers.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 pub struct Flash {
     /// The cells.
     pub array: Array<Box<Cells>>,
@@ -100,6 +113,16 @@ pub struct Flash {
     pub program: Option<Bank>,
     /// What was done to it.
     pub used: FlashUse,
+    /// `FLASH_OPTR`, as it was loaded or written.
+    options: u32,
+    /// The option bytes themselves.
+    programmed_options: u32,
+    /// The first key of the option bytes was written.
+    are_options_half_open: bool,
+    /// Until when the option bytes are programmed.
+    options_busy: Time,
+    /// Whether the program asks for the reset that loads the option bytes.
+    pub launches: bool,
     /// When the supply is to be lost: a fault that is injected. It is over with the reset that follows.
     pub cut: Option<Cut>,
     /// When that is, once its operation has begun.
@@ -131,6 +154,11 @@ impl Flash {
             is_broken: false,
             program: None,
             used: FlashUse::default(),
+            options: STARTED,
+            programmed_options: STARTED,
+            are_options_half_open: false,
+            options_busy: Time::ZERO,
+            launches: false,
             cut: None,
             cut_at: Time::NEVER,
         }
@@ -143,6 +171,23 @@ impl Flash {
         (self.is_half_open, self.half, self.is_running, self.is_broken) =
             (false, None, false, false);
         (self.cut, self.cut_at) = (None, Time::NEVER);
+        (self.are_options_half_open, self.launches, self.options_busy) = (false, false, Time::ZERO);
+    }
+
+    /// Has the option bytes as delivered.
+    pub fn deliver(&mut self) {
+        (self.options, self.programmed_options) = (DELIVERED, DELIVERED);
+    }
+
+    /// Loads the option bytes, as a reset by the supply does, and one that is asked for.
+    pub fn load_options(&mut self) {
+        self.options = self.programmed_options;
+    }
+
+    /// Whether the supply at which the controller is reset is above the lowest at which it works, so that RAM keeps its
+    /// content where the supply does not go on falling: any level but 0, which is 1.7 V.
+    pub fn resets_before_ram_is_lost(&self) -> bool {
+        self.options & BROWN_OUT_LEVEL != 0
     }
 
     /// Whether it is set to enough wait states for a clock of the core, Hz.
@@ -201,10 +246,11 @@ impl Flash {
     pub fn read(&mut self, offset: u32, now: Time) -> Result<u32, Refused> {
         Ok(match offset {
             0x00 => self.access,
+            0x10 if self.options_busy > now => BUSY | self.status,
             0x10 => (if self.is_busy(now) { BUSY } else { 0 }) | self.status,
             0x14 => self.control,
             0x18 => self.ecc,
-            0x20 => OPTIONS,
+            0x20 => self.options,
             _ => return Err(Refused::Unknown),
         })
     }
@@ -214,9 +260,12 @@ impl Flash {
         match offset {
             0x00 => self.write_access(value)?,
             0x08 => self.write_key(value)?,
+            0x0C => self.write_option_key(value)?,
+            0x20 if self.control & LOCK_OPTIONS == 0 => self.options = value,
             0x10 => self.status &= !value,
             0x14 if self.control & LOCK == 0 => self.write_control(value, now)?,
-            0x14 => {}
+            // Locked, they keep what they hold.
+            0x14 | 0x20 => {}
             0x18 => {
                 let kept = self.ecc & !(value & (CORRECTED | BROKEN)) & !TELLS_FINDING;
                 self.ecc = kept | (value & TELLS_FINDING);
@@ -256,14 +305,36 @@ impl Flash {
         Ok(())
     }
 
+    /// Writes `FLASH_OPTKEYR`, which opens the option bytes once the control register is open.
+    fn write_option_key(&mut self, value: u32) -> Result<(), Refused> {
+        match (self.control & LOCK, self.are_options_half_open) {
+            (0, false) if value == OPTION_KEYS[0] => self.are_options_half_open = true,
+            (0, true) if value == OPTION_KEYS[1] => {
+                self.control &= !LOCK_OPTIONS;
+                self.are_options_half_open = false;
+            }
+            _ => {
+                return Err(Refused::NotModelled(
+                    "a wrong key, which locks the option bytes until the next reset",
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// Writes `FLASH_CR`.
     fn write_control(&mut self, value: u32, now: Time) -> Result<(), Refused> {
         if value & UNUSUAL != 0 {
-            return Err(Refused::NotModelled(
-                "option bytes, fast programming or interrupts of protected areas",
-            ));
+            return Err(Refused::NotModelled("fast programming or interrupts of protected areas"));
         }
-        self.control = value & !START | LOCK_OPTIONS;
+        let are_options_open = self.control & LOCK_OPTIONS == 0;
+        if value & START_OPTIONS != 0 && are_options_open {
+            self.programmed_options = self.options;
+            self.options_busy = now + OPTIONS_TAKE;
+        }
+        self.launches = value & LAUNCH != 0 && are_options_open;
+        self.control = value & !(START | START_OPTIONS | LAUNCH)
+            | if are_options_open { 0 } else { LOCK_OPTIONS };
         if value & START != 0 {
             self.erase(now)?;
         }

@@ -75,6 +75,8 @@ pub enum ResetReason {
     Supply,
     /// The program asked for it.
     Software,
+    /// The program had the option bytes loaded.
+    OptionBytes,
     /// The watchdog was not fed.
     Watchdog,
     /// The reset pin.
@@ -163,6 +165,9 @@ impl Controller {
         self.resets.push(reason);
         self.rcc.reset(reason);
         self.flash.reset(now);
+        if matches!(reason, ResetReason::Supply | ResetReason::OptionBytes) {
+            self.flash.load_options();
+        }
         (self.exceptions, self.system, self.power) = Default::default();
         self.system = System::new();
         self.usart.reset();

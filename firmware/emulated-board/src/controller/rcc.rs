@@ -24,6 +24,7 @@ const fn flags(reason: ResetReason) -> u32 {
         // Every reset pulls the pin.
         ResetReason::Supply => 1 << 27 | PIN,
         ResetReason::Software => 1 << 28 | PIN,
+        ResetReason::OptionBytes => 1 << 25 | PIN,
         ResetReason::Watchdog => 1 << 29 | PIN,
         ResetReason::Pin => PIN,
     }

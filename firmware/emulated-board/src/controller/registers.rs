@@ -70,6 +70,9 @@ impl Controller {
         if self.system.wants_reset {
             self.reset = Some(ResetReason::Software);
         }
+        if self.flash.launches {
+            self.reset = Some(ResetReason::OptionBytes);
+        }
         self.settle(memory, now);
         self.refused.take().map_or(Ok(()), Err)
     }

@@ -55,7 +55,7 @@ impl Ram<'_, '_> {
 }
 
 /// Whether an address is in RAM.
-fn is_ram(address: u32) -> bool {
+pub(super) fn is_ram(address: u32) -> bool {
     RAMS.iter()
         .any(|(start, bytes)| address.checked_sub(*start).is_some_and(|at| (at as usize) < *bytes))
 }

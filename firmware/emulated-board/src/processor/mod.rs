@@ -198,7 +198,7 @@ impl Processor {
         }
     }
 
-    /// Resets controller and core. RAM stays, but where the supply was lost.
+    /// Resets controller and core. RAM stays, but where the supply had to fall to the least at which the controller works.
     pub fn reset(&mut self, reason: ResetReason) {
         {
             let mut state = self.state.borrow_mut();
@@ -206,9 +206,16 @@ impl Processor {
             state.controller.restart(reason, now);
             state.reset();
         }
-        if reason == ResetReason::Supply {
+        let keeps = self.with_controller(|controller| controller.flash.resets_before_ram_is_lost());
+        if reason == ResetReason::Supply && !keeps {
             Ram(&mut self.uc).fill();
         }
         self.start();
+    }
+
+    /// Switches the supply off, and on again: RAM is lost.
+    pub fn switch_off(&mut self) {
+        self.reset(ResetReason::Supply);
+        Ram(&mut self.uc).fill();
     }
 }

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
 use super::Processor;
-use super::memory::Ram;
+use super::memory::{Ram, is_ram};
 use super::registers::KEPT;
 use super::state::{Halt, State};
 use crate::controller::Memory;
@@ -43,7 +43,8 @@ impl State {
         if self.halt.is_some() {
             return;
         }
-        let memory = written.map(|(address, size)| {
+        // A register is not read, which may do something; it is not written either.
+        let memory = written.filter(|(address, _)| is_ram(*address)).map(|(address, size)| {
             let mut bytes = vec![0; size];
             let _ = uc.mem_read(address.into(), &mut bytes);
             (address, bytes)

@@ -68,19 +68,14 @@ fn the_stack_fits_twice_into_what_the_statics_leave_on_a_turntable_in_a_vehicle_
     }
 }
 
-/// The task alone has a frame of 23 kB, for it makes the session on its stack and copies it to its place.
 #[test]
-#[should_panic(expected = "between 43000 and 48000 bytes of stack a stage takes at its deepest")]
 fn the_stack_fits_twice_into_what_the_statics_leave_on_a_stage() {
     let (stack, half) = stack(&executed(Platform::Stage, 1).report);
-    hold(stack, 0.0..=half, 43_000.0..=48_000.0, "bytes of stack a stage takes at its deepest");
+    assert!(stack <= half, "{stack} bytes of stack, twice {half} are left");
 }
 
 #[test]
-#[should_panic(
-    expected = "between 43000 and 48000 bytes of stack two frames take at their deepest"
-)]
 fn the_stack_fits_twice_into_what_the_statics_leave_on_two_frames() {
     let (stack, half) = stack(&calibrated_two_frames().report);
-    hold(stack, 0.0..=half, 43_000.0..=48_000.0, "bytes of stack two frames take at their deepest");
+    assert!(stack <= half, "{stack} bytes of stack, twice {half} are left");
 }

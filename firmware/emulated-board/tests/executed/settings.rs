@@ -7,7 +7,7 @@ use firmware::ports::Store as _;
 use firmware::settings::{BYTES, SLOT};
 
 use super::support::board::Board;
-use super::support::defect::{hold, within};
+use super::support::defect::within;
 use super::support::executed::execute_in;
 use super::support::worlds::{short_stage, usual};
 
@@ -28,28 +28,19 @@ fn silence(store: Vec<u8>, reason: &str) -> f64 {
 }
 
 #[test]
-#[should_panic(
-    expected = "between 19 and 21 s a board with another carrier's record is mute, and fed"
-)]
 fn a_board_with_another_carriers_record_says_so_over_the_link() {
     let reason = "the record is for the carrier stage, and this image for turntable";
     let silent = silence(usual(Platform::Stage).store, reason);
-    hold(
-        silent,
-        0.0..=2.0,
-        19.0..=21.0,
-        "s a board with another carrier's record is mute, and fed",
-    );
+    assert!(silent <= 2.0, "{silent} s");
 }
 
 #[test]
-#[should_panic(expected = "between 19 and 21 s a board with a damaged record is mute, and fed")]
 fn a_board_with_a_damaged_record_says_so_over_the_link() {
     let store = stored(async |store| {
         store.save(SLOT, &[1; BYTES]).await.map_err(|fault| format!("{fault:?}"))
     });
     let silent = silence(store.expect("a store takes a record"), "the record fails its checksum");
-    hold(silent, 0.0..=2.0, 19.0..=21.0, "s a board with a damaged record is mute, and fed");
+    assert!(silent <= 2.0, "{silent} s");
 }
 
 /// The last row of the store is the second one of the record's mark.

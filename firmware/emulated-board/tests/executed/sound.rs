@@ -131,7 +131,9 @@ fn conversions_that_are_read_and_lost_are_those_that_the_converters_make() {
         let shown = executed(carrier, 1);
         let afterwards =
             if carrier == Platform::Spin { 0.0 } else { Order::usual(carrier, 1).afterwards };
-        let end = shown.report.seconds + afterwards - shown.report.start_seconds;
+        // The board's own time begins with its clocks.
+        let first = shown.line("board: started by").seconds;
+        let end = shown.report.seconds + afterwards - (shown.report.start_seconds - first);
         // They are counted from when the last chip is configured.
         let last = shown.lines("identity and self-test passed, configured").last();
         let begin = last.expect("chips are configured").seconds;

