@@ -1,8 +1,15 @@
 //! What boards with an STM32 share: the instrument's programs, one for each carrier, what they are
 //! configured with, and its chips on their wires.
 //!
-//! A board's crate connects its pins to [`wiring`], starts its clocks, and spawns the program of
-//! [`PLATFORM`], which is chosen when the image is built.
+//! A board's crate connects its pins to [`wiring`], starts its clocks and its [`Executors`], and spawns the program of
+//! [`PLATFORM`], which is chosen when the image is built. A sample passes through all priorities:
+//!
+//! | priority | what | how long at most |
+//! |---|---|---|
+//! | interrupts of devices and of the clock | wake tasks | some microseconds |
+//! | executor of acquisition | reads the sensors, queues samples and motions | 0.4 ms |
+//! | executor of control | motors; attitude and heading from the motions | 1.5 ms, once a second |
+//! | thread | aligner, conclusions, plans, link, store | a conclusion takes up to some seconds |
 #![no_std]
 
 pub mod brown_out;
