@@ -30,9 +30,16 @@ pub const EXECUTORS: [Interrupt; 2] = [Interrupt::SWPMI1, Interrupt::TSC];
 
 /// Sets the priorities.
 pub fn set() {
-    EDGES.into_iter().for_each(|interrupt| interrupt.set_priority(Priority::P0));
-    OTHERS.into_iter().for_each(|interrupt| interrupt.set_priority(Priority::P2));
     let [acquisition, control] = EXECUTORS;
-    acquisition.set_priority(Priority::P6);
-    control.set_priority(Priority::P8);
+    let groups: [(&[Interrupt], Priority); 4] = [
+        (&EDGES, Priority::P0),
+        (&OTHERS, Priority::P2),
+        (&[acquisition], Priority::P6),
+        (&[control], Priority::P8),
+    ];
+    for (interrupts, priority) in groups {
+        for interrupt in interrupts {
+            interrupt.set_priority(priority);
+        }
+    }
 }

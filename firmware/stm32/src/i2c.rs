@@ -17,6 +17,7 @@ pub struct BaseBus {
 
 impl BaseBus {
     /// A bus that is clocked with this frequency.
+    #[must_use]
     pub const fn new(bus: I2c<'static, Async, Master>, frequency: Hertz) -> Self {
         Self { bus, frequency }
     }

@@ -131,7 +131,7 @@ async fn stage_acquisition(mut inputs: ports::Inputs<OnBase>, channels: &'static
 async fn control(mechanism: &mut impl Mechanism, keeping: impl Keep, shared: &Shared<'static>) {
     let until = (wait(shared), pending());
     operate(mechanism, keeping, &(), shared, until).await;
-    pending().await
+    pending::<()>().await;
 }
 
 /// Waits for the end of all. Once a second the parts beside it are woken, to check in.

@@ -139,6 +139,7 @@ pub struct Device {
 
 impl Device {
     /// A device with a mode and the greatest clock that it allows, Hz, on a bus that divides `clock`, Hz.
+    #[must_use]
     pub fn new(bus: Bus, select: Output<'static>, mode: Mode, limit: u32, clock: u32) -> Self {
         let (divider, turns) = divider(limit, clock);
         let mut control = Cr1::default();

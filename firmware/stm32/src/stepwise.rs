@@ -67,13 +67,14 @@ fn begin_on_a_stage(
 #[embassy_executor::task]
 async fn stage(
     mut motor: AxisMotor,
-    _enabled: Output<'static>,
+    motor_enable: Output<'static>,
     keeping: Option<Keeping<'static>>,
     channels: &'static Channels,
 ) {
     let shared = &channels.shared;
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, shared);
     control(&mut stage, keeping, shared).await;
+    drop(motor_enable);
 }
 
 /// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
@@ -133,13 +134,14 @@ async fn mount_acquisition(
 #[embassy_executor::task]
 async fn mount(
     mut motors: Frames<AxisMotor>,
-    _enabled: Output<'static>,
+    motor_enable: Output<'static>,
     frames: &'static FramesConfiguration,
     keeping: Option<Keeping<'static>>,
     channels: &'static Channels,
 ) {
     let shared = &channels.shared;
     control(&mut Gimbal::new(&mut motors, frames, shared), keeping, shared).await;
+    drop(motor_enable);
 }
 
 /// Creates the session at its final place in memory.

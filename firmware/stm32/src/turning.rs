@@ -64,13 +64,14 @@ async fn begin(
 #[embassy_executor::task]
 async fn platform(
     mut motor: AxisMotor,
-    _enabled: Output<'static>,
+    motor_enable: Output<'static>,
     keeping: Option<Keeping<'static>>,
     channels: &'static Channels,
 ) {
     let shared = &channels.shared;
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), shared);
     control(&mut platform, keeping, shared).await;
+    drop(motor_enable);
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.
