@@ -132,11 +132,12 @@ fn put_back(
     late: Duration,
 ) -> Angle {
     let since = read - read_before;
-    if since > STEADY || since.as_micros() == 0 {
+    if since > STEADY || since.as_ticks() == 0 || late.as_ticks() == 0 {
         return angle;
     }
     let turned = (angle - before).0.cast_signed() as f32;
-    let share = late.as_micros() as f32 / since.as_micros() as f32;
+    // Both are short, and the core converts 32 bits by an instruction.
+    let share = late.min(STEADY).as_ticks() as u32 as f32 / since.as_ticks() as u32 as f32;
     angle - Angle(((turned * share) as i32).cast_unsigned())
 }
 

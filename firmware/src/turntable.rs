@@ -116,6 +116,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         loop {
             match select(shared.wanted.wait(), Timer::at(self.looked + POLL)).await {
                 Either::First(Request::Turn(rate)) => self.turn_at(rate.0).await?,
+                Either::First(Request::Vertical) => self.turn_at(0.0).await?,
                 Either::First(_) => {}
                 Either::Second(()) => self.watch().await?,
             }

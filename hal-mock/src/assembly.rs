@@ -175,6 +175,10 @@ impl<P, C: Chips<P>> Rig for Board<'_, P, C> {
 
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine {
         self.advance(now);
+        self.latest_line(select)
+    }
+
+    fn latest_line(&mut self, select: Select) -> ReadyLine {
         let mut line = ReadyLine::default();
         self.with(select, Task::Line(&mut line));
         line

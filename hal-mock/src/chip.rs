@@ -182,6 +182,11 @@ pub trait Rig {
     /// The data-ready line of the selected chip at `now`.
     fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine;
 
+    /// That line at the latest time that anything was asked for; one that was never active where there is none.
+    fn latest_line(&mut self, _select: Select) -> ReadyLine {
+        ReadyLine::default()
+    }
+
     /// Has the selected chip lose its supply for a moment.
     fn power_cycle(&mut self, select: Select, now: Instant);
 }
@@ -222,6 +227,10 @@ impl<C: SpiChip<E>, E> Rig for Single<C, E> {
 
     fn ready_line(&mut self, _: Select, now: Instant) -> ReadyLine {
         advance(&mut self.chip, &mut self.environment, now);
+        self.chip.ready_line()
+    }
+
+    fn latest_line(&mut self, _: Select) -> ReadyLine {
         self.chip.ready_line()
     }
 

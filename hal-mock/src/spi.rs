@@ -126,6 +126,8 @@ impl<'a> ReadyPin<'a> {
             Some(at) => Timer::at(at).await,
             None => core::future::pending().await,
         }
+        // What the chip does until then belongs to this wait.
+        self.rig.borrow_mut().ready_line(self.select, Instant::now());
     }
 }
 

@@ -47,9 +47,8 @@ struct Arguments {
     while_stdin: bool,
 }
 
-/// Time that the first start with a dead crystal waits for it, until the watchdog's reset ends it, s: 4096 ticks of
-/// 32 kHz / 64 from when it is armed, which is at once.
-const DEAD_CRYSTAL: f64 = 8.2;
+/// Time that a start with a dead crystal waits for it longer than one with a sound crystal, s.
+const DEAD_CRYSTAL: f64 = 0.5;
 
 fn main() -> ExitCode {
     match run(&Arguments::parse())

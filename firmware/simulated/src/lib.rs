@@ -100,7 +100,8 @@ fn board_around<'a>(
 type Bus<'a, A> = <A as PortWrapper>::Spi<SpiPort<'a>>;
 
 /// A simulated data-ready line with a wrapper around it.
-type Line<'a, A> = ObservedLine<'a, <A as PortWrapper>::Line<ReadyPin<'a>>>;
+type Line<'a, A> =
+    <A as PortWrapper>::Ready<ObservedLine<'a, <A as PortWrapper>::Line<ReadyPin<'a>>>>;
 
 /// A converter behind simulated ports.
 type SimulatedConverter<'a, A> = Ads1262<Bus<'a, A>, Line<'a, A>, Delay>;
@@ -161,7 +162,7 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
         configuration: Converter,
     ) -> SimulatedConverter<'a, A> {
         let line = self.1.line(select, ReadyPin::new(self.0, select));
-        let ready = ObservedLine::new(self.0, select, line);
+        let ready = self.1.ready(ObservedLine::new(self.0, select, line));
         Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
     }
 

@@ -35,7 +35,8 @@ impl<W: Wait> DataReady for ObservedLine<'_, W> {
         let asked = Instant::now();
         self.line.wait_for_low().await.map_err(|_| Fault::Bus)?;
         let now = Instant::now();
-        let line = self.rig.borrow_mut().ready_line(self.select, now);
+        // The wait has had the chips do all that they do until now.
+        let line = self.rig.borrow_mut().latest_line(self.select);
         let at = line.latest.filter(|_| now == asked).unwrap_or(now);
         Ok(Edge { at: units::Instant(at.as_micros()), count: line.count })
     }

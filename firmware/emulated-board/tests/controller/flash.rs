@@ -75,8 +75,8 @@ fn a_store_of_less_than_a_word_is_an_error_of_its_size_and_the_next_one_of_the_s
 
 #[test]
 fn what_the_flash_does_not_do_here_is_refused() {
-    // ACR without power; CR with option bytes, fast programming, protected areas.
-    for (offset, value) in [(0, 1 << 13), (0x14, 1 << 17), (0x14, 1 << 18), (0x14, 1 << 26)] {
+    // ACR without power; CR with fast programming, protected areas.
+    for (offset, value) in [(0, 1 << 13), (0x14, 1 << 18), (0x14, 1 << 26)] {
         let refused = open().try_write(FLASH + offset, value, 4);
         assert!(matches!(refused, Err(Refused::NotModelled(_))), "{value:#x}: {refused:?}");
     }

@@ -27,7 +27,7 @@ fn both_parts_of_ram_are_lost_with_the_supply_and_with_nothing_else() -> Result<
                 board.processor.peek(address, &mut held);
                 assert_eq!(held, [1, 2, 3, 4], "{address:#x} after {reason:?}");
             }
-            board.processor.reset(ResetReason::Supply);
+            board.processor.switch_off();
             assert!(is_filled(&board), "{address:#x}");
         }
     }

@@ -72,8 +72,7 @@ fn causes(board: &Board) -> [u32; 2] {
     board.controller(|controller| [0, 1].map(|register| controller.system.faults[register]))
 }
 
-/// A task that never returns. Interrupts are still served, those of the clock among them, and wake tasks that are never
-/// polled.
+/// A task of the thread that never returns. Interrupts are still served, and what has executors above the thread goes on.
 static STUCK: LazyLock<Restart> = LazyLock::new(|| {
     Restart::after(|board| {
         // The image has no endless loop: it is put where nothing is kept.
@@ -83,7 +82,7 @@ static STUCK: LazyLock<Restart> = LazyLock::new(|| {
         board.run(1.0);
         assert!(!handles_fault(board));
         let taken = board.execution.processor.counts().exceptions - before;
-        assert!((30..60).contains(&taken), "{taken} interrupts are served in a second");
+        assert!((1500..4000).contains(&taken), "{taken} interrupts are served in a second");
     })
 });
 

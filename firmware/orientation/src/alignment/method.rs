@@ -42,7 +42,8 @@ pub enum Request {
     Point(Radians),
     /// Turn the platform at this rate, clockwise positive; zero brings it to rest.
     Turn(RadiansPerSecond),
-    /// Set the sensitive axis of a two-frame mount vertical, to hold the azimuth.
+    /// Stand as the azimuth is held best: a two-frame mount with the sensitive axis vertical, a platform that turns
+    /// at rest.
     Vertical,
     /// State how far the vehicle has driven, if that is known, by [`Input::Displaced`].
     Locate,

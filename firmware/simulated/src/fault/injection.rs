@@ -1,5 +1,6 @@
 //! What a fault does to the parts of a board, whatever carries it.
 
+use drivers::data_ready::DataReady;
 use embassy_time::{Duration, Instant};
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{ErrorKind, I2c};
@@ -182,6 +183,7 @@ fn for_chip<T: Copy>(list: &[(Select, T)], select: Select) -> Option<T> {
 impl PortWrapper for Injection {
     type Spi<S: SpiDevice> = FaultySpi<S>;
     type Line<W: Wait> = FaultyReady<W>;
+    type Ready<D: DataReady> = D;
     type I2c<B: I2c<Error = ErrorKind>> = FaultyI2c<B>;
 
     fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> FaultySpi<S> {
@@ -191,6 +193,10 @@ impl PortWrapper for Injection {
     fn line<W: Wait>(&self, select: Select, line: W) -> FaultyReady<W> {
         let since = self.late.filter(|(chip, _)| *chip == select).map(|(_, since)| since);
         FaultyReady::new(line, for_chip(&self.ready, select), since)
+    }
+
+    fn ready<D: DataReady>(&self, line: D) -> D {
+        line
     }
 
     fn i2c<B: I2c<Error = ErrorKind>>(&self, bus: B) -> FaultyI2c<B> {

@@ -1,5 +1,6 @@
 //! What stands around the simulated ports: what every port may be wrapped in, and a recorder that hangs.
 
+use drivers::data_ready::DataReady;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{ErrorKind, I2c};
@@ -16,16 +17,21 @@ const HANG: Duration = Duration::from_millis(500);
 pub trait PortWrapper {
     /// A serial bus with the wrapper around it.
     type Spi<S: SpiDevice>: SpiDevice;
-    /// A data-ready line with the wrapper around it.
+    /// A pin of a data-ready line with the wrapper around it.
     type Line<W: Wait>: Wait;
+    /// A data-ready line, whose edges have their times, with the wrapper around it.
+    type Ready<D: DataReady>: DataReady;
     /// An I²C bus with the wrapper around it.
     type I2c<B: I2c<Error = ErrorKind>>: I2c<Error = ErrorKind>;
 
     /// Wraps the serial bus of a chip.
     fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> Self::Spi<S>;
 
-    /// Wraps the data-ready line of a converter.
+    /// Wraps the pin of a converter's data-ready line.
     fn line<W: Wait>(&self, select: Select, line: W) -> Self::Line<W>;
+
+    /// Wraps the data-ready line of a converter.
+    fn ready<D: DataReady>(&self, line: D) -> Self::Ready<D>;
 
     /// Wraps the I²C bus of the coarse IMU on the base.
     fn i2c<B: I2c<Error = ErrorKind>>(&self, bus: B) -> Self::I2c<B>;

@@ -9,8 +9,9 @@ use core::convert::Infallible;
 use core::future::poll_fn;
 use core::pin::pin;
 
+use drivers::data_ready::{DataReady, Edge};
+use drivers::fault::Fault;
 use embassy_time::Instant;
-use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{self, I2c};
 use embedded_hal_async::spi::{ErrorType as SpiErrorType, Operation, SpiDevice};
@@ -43,14 +44,19 @@ pub struct Metering(pub &'static Meter);
 
 impl PortWrapper for Metering {
     type Spi<S: SpiDevice> = Metered<S>;
-    type Line<W: Wait> = Metered<W>;
+    type Line<W: Wait> = W;
+    type Ready<D: DataReady> = Metered<D>;
     type I2c<B: I2c<Error = i2c::ErrorKind>> = Metered<B>;
 
     fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Metered<S> {
         Metered { port, meter: self.0 }
     }
 
-    fn line<W: Wait>(&self, _: Select, port: W) -> Metered<W> {
+    fn line<W: Wait>(&self, _: Select, pin: W) -> W {
+        pin
+    }
+
+    fn ready<D: DataReady>(&self, port: D) -> Metered<D> {
         Metered { port, meter: self.0 }
     }
 
@@ -92,29 +98,9 @@ impl<T: I2c> I2c for Metered<T> {
     }
 }
 
-impl<T: PinErrorType> PinErrorType for Metered<T> {
-    type Error = T::Error;
-}
-
-impl<T: Wait> Wait for Metered<T> {
-    async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
-        outside(self.meter, self.port.wait_for_high()).await
-    }
-
-    async fn wait_for_low(&mut self) -> Result<(), Self::Error> {
-        outside(self.meter, self.port.wait_for_low()).await
-    }
-
-    async fn wait_for_rising_edge(&mut self) -> Result<(), Self::Error> {
-        outside(self.meter, self.port.wait_for_rising_edge()).await
-    }
-
-    async fn wait_for_falling_edge(&mut self) -> Result<(), Self::Error> {
-        outside(self.meter, self.port.wait_for_falling_edge()).await
-    }
-
-    async fn wait_for_any_edge(&mut self) -> Result<(), Self::Error> {
-        outside(self.meter, self.port.wait_for_any_edge()).await
+impl<T: DataReady> DataReady for Metered<T> {
+    async fn edge(&mut self) -> Result<Edge, Fault> {
+        outside(self.meter, self.port.edge()).await
     }
 }
 
