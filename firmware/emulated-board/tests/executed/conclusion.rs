@@ -2,8 +2,8 @@
 
 use firmware::platform::Platform;
 
-use super::support::defect::within;
 use super::support::executed::{Executed, executed};
+use super::support::figure::within;
 use super::support::worlds::calibrated_two_frames;
 
 /// Conversions that were lost from the last step of the measurement to the result. The probe, which looks while the

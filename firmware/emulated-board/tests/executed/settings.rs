@@ -7,8 +7,8 @@ use firmware::ports::Store as _;
 use firmware::settings::{BYTES, SLOT};
 
 use super::support::board::Board;
-use super::support::defect::within;
 use super::support::executed::execute_in;
+use super::support::figure::within;
 use super::support::worlds::{short_stage, usual};
 
 /// A turntable with this store for twenty seconds: how long its link is silent while its watchdog is fed, s. The log

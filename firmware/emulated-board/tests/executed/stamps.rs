@@ -2,8 +2,8 @@
 
 use firmware::platform::Platform;
 
-use super::support::defect::within;
 use super::support::executed::{Executed, executed};
+use super::support::figure::within;
 
 /// Samples that the log says are missing.
 fn missing(shown: &Executed) -> u64 {

@@ -5,8 +5,8 @@ use execution::report::FlashUse;
 use firmware::platform::Platform;
 
 use super::support::board::Board;
-use super::support::defect::within;
 use super::support::executed::executed;
+use super::support::figure::within;
 use super::support::worlds::short_stage;
 
 /// Headings that fill the page which has the settings.

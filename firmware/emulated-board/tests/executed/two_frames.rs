@@ -7,8 +7,8 @@
 
 use firmware::platform::Platform;
 
-use super::support::defect::within;
 use super::support::executed::executed;
+use super::support::figure::within;
 use super::support::worlds::calibrated_two_frames;
 
 #[test]

@@ -6,7 +6,7 @@
 use firmware::platform::Platform;
 
 use crate::board::Board;
-use crate::defect::within;
+use crate::figure::within;
 use crate::turning::TurningBoard;
 
 /// How long a transfer may hang until the log says which bus it is, s.

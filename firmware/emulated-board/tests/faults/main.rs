@@ -1,5 +1,4 @@
-//! The board's image with a fault: what happens today, said plainly. Where that is bad, a test says how it should be, and
-//! is expected to fail with today's figure (`defect`); `DEFECTS.md` lists it.
+//! The board's image with a fault: how it ends, and what tells of it.
 //!
 //! An image is built for each carrier that is needed, unless `MERIDIAN_IMAGES` names a folder that has them, as
 //! `board-stage.elf`.
@@ -8,8 +7,8 @@
 
 #[path = "../support/board.rs"]
 mod board;
-#[path = "../support/defect.rs"]
-mod defect;
+#[path = "../support/figure.rs"]
+mod figure;
 mod hung;
 #[path = "../support/images.rs"]
 mod images;

@@ -9,7 +9,7 @@ use firmware::platform::Platform;
 use orientation::attitude::restart::Remembered;
 
 use crate::board::Board;
-use crate::defect::within;
+use crate::figure::within;
 use crate::store::{Interrupted, Item, MARK, ROWS, item, stored, world};
 
 /// The longest time from the supply to the save, s: the crystal starts, and the vehicle stands for ten seconds.

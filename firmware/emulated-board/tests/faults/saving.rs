@@ -6,7 +6,7 @@
 use firmware::platform::Platform;
 
 use crate::board::Board;
-use crate::defect::within;
+use crate::figure::within;
 use crate::store::{nearly_full, world};
 
 /// Samples that are missing to the alignment of a vehicle when it saves the heading that it has recalled, into a store

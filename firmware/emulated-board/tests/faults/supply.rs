@@ -9,7 +9,7 @@ use firmware::platform::Platform;
 use hal_mock::flash::PAGE;
 
 use crate::board::Board;
-use crate::defect::within;
+use crate::figure::within;
 use crate::store::{Item, item, world};
 use crate::turning::TurningBoard;
 

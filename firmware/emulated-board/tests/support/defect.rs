@@ -27,10 +27,3 @@ pub fn hold(figure: f64, should: RangeInclusive<f64>, known: RangeInclusive<f64>
     assert!(!(least..=most).contains(&figure), "{band} {words}: {figure}, {should}");
     panic!("{figure} {words}: neither as it should be nor as it is known");
 }
-
-/// Holds a figure to what it should be.
-#[track_caller]
-pub fn within(figure: f64, should: RangeInclusive<f64>, words: &str) {
-    let (least, most) = should.into_inner();
-    assert!((least..=most).contains(&figure), "{figure} {words}: not {least} to {most}");
-}

@@ -6,6 +6,8 @@ pub mod board;
 #[path = "../../support/defect.rs"]
 pub mod defect;
 pub mod executed;
+#[path = "../../support/figure.rs"]
+pub mod figure;
 #[path = "../../support/images.rs"]
 pub mod images;
 pub mod worlds;
