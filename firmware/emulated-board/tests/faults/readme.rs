@@ -31,6 +31,16 @@ fn logged() -> String {
     board.printed[..=last].iter().flat_map(|line| [line.as_str(), "\n"]).collect()
 }
 
+/// Whether two words are the same, or numbers that nearly are: where an image is built moves its code, and with it, by
+/// microseconds, when it reads its sensors.
+fn are_alike(kept: &str, found: &str) -> bool {
+    let number = |word: &str| word.trim_end_matches(['°', ',']).parse::<f64>().ok();
+    match (number(kept), number(found)) {
+        (Some(kept), Some(found)) => (kept - found).abs() <= 0.02 * found.abs().max(1.0),
+        _ => kept == found,
+    }
+}
+
 #[test]
 fn the_log_of_a_power_on_in_the_readme_is_what_the_executed_image_logs() {
     let text = std::fs::read_to_string(page()).expect("the page is there");
@@ -43,7 +53,13 @@ fn the_log_of_a_power_on_in_the_readme_is_what_the_executed_image_logs() {
         return;
     }
     for (kept, found) in kept.lines().zip(found.lines()) {
-        assert_eq!(kept, found, "firmware/README.md; MERIDIAN_GOLDEN=write writes it anew");
+        let [ours, theirs] = [kept, found].map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let is_same = ours.len() == theirs.len()
+            && ours.iter().zip(&theirs).all(|(kept, found)| are_alike(kept, found));
+        assert!(
+            is_same,
+            "{kept}\n{found}\nfirmware/README.md; MERIDIAN_GOLDEN=write writes it anew"
+        );
     }
     assert_eq!(kept.lines().count(), found.lines().count(), "{found}");
 }
