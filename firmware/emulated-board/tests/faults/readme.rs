@@ -34,9 +34,15 @@ fn logged() -> String {
 /// Whether two words are the same, or numbers that nearly are: where an image is built moves its code, and with it, by
 /// microseconds, when it reads its sensors.
 fn are_alike(kept: &str, found: &str) -> bool {
-    let number = |word: &str| word.trim_end_matches(['°', ',']).parse::<f64>().ok();
+    let number = |word: &str| {
+        let digits = word.trim_end_matches(['°', ',']);
+        let (_, decimals) = digits.split_once('.')?;
+        Some((digits.parse::<f64>().ok()?, 0.1_f64.powi(decimals.len() as i32)))
+    };
     match (number(kept), number(found)) {
-        (Some(kept), Some(found)) => (kept - found).abs() <= 0.02 * found.abs().max(1.0),
+        (Some((kept, step)), Some((found, _))) => {
+            (kept - found).abs() <= 1.5 * step + 0.02 * found.abs()
+        }
         _ => kept == found,
     }
 }
