@@ -37,7 +37,7 @@ fn are_alike(kept: &str, found: &str) -> bool {
     let number = |word: &str| {
         let digits = word.trim_end_matches(['°', ',']);
         let (_, decimals) = digits.split_once('.')?;
-        Some((digits.parse::<f64>().ok()?, 0.1_f64.powi(decimals.len() as i32)))
+        Some((digits.parse::<f64>().ok()?, decimals.chars().fold(1.0, |step, _| 0.1 * step)))
     };
     match (number(kept), number(found)) {
         (Some((kept, step)), Some((found, _))) => {
