@@ -20,6 +20,8 @@ const NOWHERE: u32 = 0x6000_0000;
 const MAIN: &str = "board::__cortex_m_rt_main";
 /// The end of SRAM2, which the image does not use.
 const UNUSED: u32 = 0x1000_7FF0;
+/// The exception of the interrupt TSC (position 77 of the vector table of RM0351), which polls motors and keeper.
+const CONTROL: u32 = 16 + 77;
 /// A branch to itself.
 const ENDLESS: u16 = 0xE7FE;
 /// The shortest and longest time from a fault to the first line of the next log where the watchdog resets, s.
@@ -72,9 +74,21 @@ fn causes(board: &Board) -> [u32; 2] {
     board.controller(|controller| [0, 1].map(|register| controller.system.faults[register]))
 }
 
-/// A task of the thread that never returns. Interrupts are still served, and what has executors above the thread goes on.
+/// Whether motors or keeper are being polled.
+fn polls_control(board: &Board) -> bool {
+    board.controller(|controller| controller.exceptions.active.has(CONTROL))
+}
+
+/// A task of motors and keeper that never returns. Interrupts are still served, and acquisition above it goes on.
 static STUCK: LazyLock<Restart> = LazyLock::new(|| {
     Restart::after(|board| {
+        // The keeper is polled every ten milliseconds, for more than the length of a step.
+        for _ in 0..1000 {
+            if !polls_control(board) {
+                board.run(2e-5);
+            }
+        }
+        assert!(polls_control(board), "{board}");
         // The image has no endless loop: it is put where nothing is kept.
         assert!(board.execution.processor.poke(UNUSED, &ENDLESS.to_le_bytes()));
         board.execution.processor.jump(UNUSED);
