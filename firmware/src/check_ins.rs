@@ -1,5 +1,5 @@
-//! Which parts of the instrument go on: each checks in whenever it has been polled, and whoever feeds the watchdog does
-//! so only while all have. A task that waits for ever, or never returns, is thus found, and its part has a name.
+//! Which parts of the instrument go on: each checks in whenever it has been polled, and the watchdog is fed only while
+//! all have. A task that waits for ever, or never returns, is thus found, and its part has a name.
 //!
 //! A part belongs to those that are expected from its first poll on, until it ends. The parts of a task must be polled
 //! at least once in the time of the watchdog: where nothing else wakes them, a timer does.
@@ -92,7 +92,7 @@ impl Parts {
 }
 
 /// No part is polled.
-const NOBODY: u32 = u32::MAX;
+const NO_PART: u32 = u32::MAX;
 
 /// Who is expected, who has checked in, and who is being polled. Any bits that memory may hold are valid, so that it can
 /// outlast a reset.
@@ -113,13 +113,13 @@ impl Default for CheckIns {
 }
 
 impl CheckIns {
-    /// Nobody is expected.
+    /// No part is expected.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             expected: AtomicU32::new(0),
             present: AtomicU32::new(0),
-            running: AtomicU32::new(NOBODY),
+            running: AtomicU32::new(NO_PART),
         }
     }
 
@@ -127,7 +127,7 @@ impl CheckIns {
     pub fn clear(&self) {
         self.expected.store(0, Ordering::Relaxed);
         self.present.store(0, Ordering::Relaxed);
-        self.running.store(NOBODY, Ordering::Relaxed);
+        self.running.store(NO_PART, Ordering::Relaxed);
     }
 
     /// The part that is being polled. Of two priorities it is the one that has interrupted the other.
@@ -181,7 +181,8 @@ fn add(set: &AtomicU32, part: Part) {
     }
 }
 
-/// A part that checks in with every poll, where somebody looks, and is no longer expected once it is dropped.
+/// The future of a part, which checks in with every poll, where there is a watchdog, and is no longer expected once
+/// it is dropped.
 #[derive(Debug)]
 pub struct Checked<'a, F> {
     check_ins: Option<&'a CheckIns>,

@@ -1,9 +1,9 @@
 //! Runs the navigator beside the aligner: passes inertial samples and aiding to it, has its outputs
 //! executed, and keeps its heading in flash over a loss of supply.
 //!
-//! The navigator never runs ahead of the aligner: it takes only samples that the aligner has had
-//! the chance to take. An azimuth belongs to the last sample of its alignment, so it is handed over
-//! exactly between that sample and the next.
+//! The navigator takes only samples that the aligner has had the chance to take, but for those that come
+//! while it computes. An azimuth belongs to the last sample of its alignment: it is handed over exactly
+//! between that sample and the next, or carried on from the course that was marked there.
 //!
 //! **Endurance of the flash.** An item is written when the vehicle has come to rest, when it sets
 //! off, and between them at most once a minute and only if azimuth or σ have changed: about five

@@ -21,7 +21,10 @@
 //! Whatever happens is reported once, as an [`event::Event`].
 #![no_std]
 #![forbid(unsafe_code)]
-#![expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+#![expect(
+    async_fn_in_trait,
+    reason = "a future stays in the executor that polls it first: none needs to be Send"
+)]
 
 pub mod ports;
 

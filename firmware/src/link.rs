@@ -42,7 +42,7 @@ async fn is_taken<L: Write>(link: &mut L, line: &[u8]) -> bool {
     matches!(with_timeout(LONGEST, link.write_all(line)).await, Ok(Ok(())))
 }
 
-/// Sends words, one after the other; nobody counts those that the link does not take in time.
+/// Sends words, one after the other. Those that the link does not take in time are not counted.
 pub async fn say<L: Write>(link: &mut L, words: &[&str]) {
     for words in words {
         let _ = is_taken(link, words.as_bytes()).await;

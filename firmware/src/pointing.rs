@@ -132,7 +132,7 @@ fn put_back(
     late: Duration,
 ) -> Angle {
     let since = read - read_before;
-    if since > STEADY || since.as_ticks() == 0 || late.as_ticks() == 0 {
+    if since > STEADY || since.as_ticks() == 0 {
         return angle;
     }
     let turned = (angle - before).0.cast_signed() as f32;

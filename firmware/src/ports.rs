@@ -310,7 +310,7 @@ pub trait Observer {
     /// A new reading of the coarse sensors on the base at a time of the instrument's clock.
     fn sensed(&self, _: Instant, _: &BaseReading) {}
 
-    /// Where the parts check in; [`None`] where nobody looks.
+    /// Where the parts check in; [`None`] without a watchdog.
     fn check_ins(&self) -> Option<&CheckIns> {
         None
     }

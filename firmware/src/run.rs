@@ -42,8 +42,6 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, K: Keep,
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
-    // Known before any part runs, since a method may refuse at once.
-    shared.is_kept.set(keeping.is_held());
     let (finding, discarding) = (find(method, aiding, outside, channels), discard(channels));
     operate(mechanism, keeping, aiding, shared, (finding, discarding)).await;
     shared.health.get()
@@ -58,6 +56,7 @@ pub async fn operate<M: Mechanism, K: Keep>(
     shared: &Shared<'_>,
     (beside, meanwhile): (impl Future<Output = ()>, impl Future<Output = ()>),
 ) {
+    // Known before any part runs, since a method may refuse at once.
     shared.is_kept.set(keeping.is_held());
     {
         let turning = pin!(async {

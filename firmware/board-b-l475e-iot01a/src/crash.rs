@@ -80,7 +80,7 @@ fn switch_motors_off() {
 }
 
 // Neither message nor place of a panic are looked at, so that none are in the image, where all of them took 17 KB: the
-// return addresses tell the place to whoever has the image (`addr2line`).
+// return addresses tell the place, with the image's ELF file (`addr2line`).
 #[panic_handler]
 fn panic(_: &PanicInfo) -> ! {
     panicked()

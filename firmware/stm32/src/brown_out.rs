@@ -6,10 +6,11 @@
 
 use embassy_stm32::pac::FLASH;
 
+use crate::flash::unlock;
+
 /// Level 4: 2.8 V (RM0351, 3.4.1, `BOR_LEV`). The board's own supply is 3.3 V ± 5 %.
 const LEVEL: u8 = 4;
-/// Keys of the flash's control register, and of the option bytes (RM0351, 3.3.5 and 3.4.2).
-const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
+/// The keys that unlock the option bytes, in their order (RM0351, 3.4.2).
 const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 
 /// Whether the level is set.
@@ -20,9 +21,7 @@ pub fn is_set() -> bool {
 
 /// Programs the level; the controller then loads it by a reset, so that this returns only where that fails.
 pub fn set() {
-    for key in KEYS {
-        FLASH.keyr().write_value(key);
-    }
+    unlock();
     for key in OPTION_KEYS {
         FLASH.optkeyr().write_value(key);
     }

@@ -124,7 +124,7 @@ impl DataReady for Line {
                 return Poll::Ready(edge);
             }
             self.noted.waiting.register(context.waker());
-            // One that has come meanwhile has woken nobody.
+            // One that has come meanwhile has woken no task.
             self.unread().map_or(Poll::Pending, Poll::Ready)
         });
         Ok(edge.await)

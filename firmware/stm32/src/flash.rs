@@ -150,15 +150,20 @@ async fn idle() -> Result<(), Trouble> {
     Err(Trouble::Busy)
 }
 
-/// Erases the page at this offset.
-async fn erase_page(offset: u32) -> Result<(), Trouble> {
-    idle().await?;
-    let _without_cache = WithoutCache::new();
+/// Unlocks the control register, where it is locked.
+pub(crate) fn unlock() {
     if pac::FLASH.cr().read().lock() {
         for key in KEYS {
             pac::FLASH.keyr().write_value(key);
         }
     }
+}
+
+/// Erases the page at this offset.
+async fn erase_page(offset: u32) -> Result<(), Trouble> {
+    idle().await?;
+    let _without_cache = WithoutCache::new();
+    unlock();
     // Errors of before are cleared by ones; with one of them nothing would begin.
     pac::FLASH.sr().modify(|_| {});
     pac::FLASH.cr().modify(|control| {

@@ -47,7 +47,7 @@ use firmware::link;
 use firmware::log::DefmtLog;
 use firmware::mechanism::Mechanism;
 use firmware::not_begun::NotBegun;
-use firmware::ports::{Observer, Recorder, Store};
+use firmware::ports::{NoRecorder, Observer, Recorder, Store};
 use firmware::run::{Outside, find, operate};
 use firmware::settings::Settings;
 use firmware::shared::Shared;
@@ -57,6 +57,7 @@ use orientation::attitude::{Keeper, Setting};
 use orientation::signal::{Sample, Timed};
 use static_cell::StaticCell;
 
+use flash::store;
 use i2c::BaseBus;
 use wiring::Link;
 
@@ -158,6 +159,20 @@ async fn find_and_report<S: Timed>(
     shared.over.signal(());
     defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
     shared.checked(Part::Link, pin!(link::repeat(link, channels))).await
+}
+
+/// Goes on with what has begun, without end, where nothing but a heading is kept; or says why nothing has.
+async fn go_on<M: Method<S>, S: Timed>(
+    begun: Result<Begun<M, S>, NotBegun>,
+    link: &mut Link,
+    log: &BoardLog,
+) -> ! {
+    match begun {
+        Ok((method, flash, channels)) => {
+            find_and_report(method, link, &mut NoRecorder, store(flash), channels).await
+        }
+        Err(reason) => refuse(reason, link, log).await,
+    }
 }
 
 /// Says why nothing begins: once in the log, every second over the link.

@@ -1,7 +1,6 @@
 //! Program of the board on a body in fast rotation.
 
 use firmware::acquire::{SpinAcquisition, acquire};
-use firmware::mechanism::Strapdown;
 use firmware::not_begun::NotBegun;
 use firmware::ports::NoRecorder;
 use firmware::spin::configuration::SpinConfiguration;
@@ -26,8 +25,8 @@ pub async fn follow(executors: Executors, wires: SpinWires, mut link: Link) {
     }
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
-/// frame of the program for ever, a session of 16 kB among it.
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// frame of the program.
 ///
 /// # Errors
 /// Why nothing begins.
@@ -45,7 +44,8 @@ fn begin(
     let flight = FLIGHT.init_with(|| configuration::flight(&settings));
     let sensors = ports::spinning(converters);
     executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, configuration, channels)));
-    Strapdown::new(&channels.shared);
+    // Nothing turns: the angles are valid.
+    channels.shared.homed.signal(());
     Ok((flight, channels))
 }
 

@@ -7,7 +7,7 @@ use firmware::configuration::FramesConfiguration;
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::not_begun::NotBegun;
-use firmware::ports::{Frames, NoRecorder};
+use firmware::ports::Frames;
 use firmware::stage::Stage;
 use firmware::sway::SwayCompensation;
 use orientation::alignment::setup::SetupError;
@@ -16,29 +16,22 @@ use orientation::alignment::stepwise::session::{Prepared, Session};
 use orientation::alignment::stepwise::setting::Setting;
 use static_cell::StaticCell;
 
-use crate::flash::store;
 use crate::ports::{AxisMotor, MountInputs};
 use crate::wiring::{AxisPlatformWires, FramesWires, Link, Outlets};
 use crate::{
-    Begun, Channels, Executors, OnBase, channels, configuration, control, find_and_report, keeping,
-    on_base, ports, refuse, settings, stage_acquisition,
+    Begun, Channels, Executors, OnBase, channels, configuration, control, go_on, keeping, on_base,
+    ports, settings, stage_acquisition,
 };
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, mut link: Link) {
     let log = wires.outlets.log;
-    match begin_on_a_stage(executors, wires) {
-        Ok((session, flash, channels)) => {
-            let recorder = &mut NoRecorder;
-            find_and_report(session, &mut link, recorder, store(flash), channels).await;
-        }
-        Err(reason) => refuse(reason, &mut link, log).await,
-    }
+    go_on(begin_on_a_stage(executors, wires), &mut link, log).await;
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
-/// frame of the program for ever, a session of 16 kB among it.
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// frame of the program.
 ///
 /// # Errors
 /// Why nothing begins.
@@ -82,17 +75,11 @@ async fn stage(
 #[embassy_executor::task]
 pub async fn on_two_frames(executors: Executors, wires: FramesWires, mut link: Link) {
     let log = wires.outlets.log;
-    match begin_on_two_frames(executors, wires) {
-        Ok((session, flash, channels)) => {
-            let recorder = &mut NoRecorder;
-            find_and_report(session, &mut link, recorder, store(flash), channels).await;
-        }
-        Err(reason) => refuse(reason, &mut link, log).await,
-    }
+    go_on(begin_on_two_frames(executors, wires), &mut link, log).await;
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
-/// frame of the program for ever, a session of 16 kB among it.
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// frame of the program.
 ///
 /// # Errors
 /// Why nothing begins.

@@ -5,36 +5,25 @@ use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::not_begun::NotBegun;
-use firmware::ports::NoRecorder;
 use firmware::settings::{Settings, VehicleSchedule};
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
-use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::{Link, Outlets, VehicleWires};
-use crate::{
-    Begun, Channels, Executors, configuration, control, find_and_report, keeper, ports, refuse,
-    settings,
-};
+use crate::{Begun, Channels, Executors, configuration, control, go_on, keeper, ports, settings};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(executors: Executors, wires: VehicleWires, mut link: Link) {
     let log = wires.outlets.log;
-    match begin(executors, wires) {
-        Ok((session, flash, channels)) => {
-            let recorder = &mut NoRecorder;
-            find_and_report(session, &mut link, recorder, store(flash), channels).await;
-        }
-        Err(reason) => refuse(reason, &mut link, log).await,
-    }
+    go_on(begin(executors, wires), &mut link, log).await;
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined: what is made on the way would be in the
-/// frame of the program for ever, a session of 16 kB among it.
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// frame of the program.
 ///
 /// # Errors
 /// Why nothing begins.
