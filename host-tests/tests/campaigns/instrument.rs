@@ -117,7 +117,7 @@ fn what_is_survived_is_noticed(rows: &[faults::Row]) {
         ("accelerometer-reset", "accelerometer: it has restarted: starting it again"),
         ("encoder-reset", "encoder: it has restarted: starting it again"),
         ("stage-reset", "stage: it has restarted: starting it again"),
-        ("gyro-hang", "gyro: its bus hangs"),
+        ("gyro-hang", "gyro: reading lost: its bus hangs"),
         ("stage-blocked-once", "stage: blocked, trying again"),
         ("saturation-once", "gyro: at the limit of its range"),
         ("overflow-once", "the queue was full"),

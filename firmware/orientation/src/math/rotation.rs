@@ -44,8 +44,8 @@ pub fn scaled<T: Scalar>(a: &[T; 3], factor: T) -> [T; 3] {
 
 /// Euclidean length of a vector.
 #[must_use]
-pub fn length(a: &Vector) -> f64 {
-    libm::sqrt(dot(a, a))
+pub fn length<T: Scalar>(a: &[T; 3]) -> T {
+    dot(a, a).root()
 }
 
 /// Unit vector of the same direction; components are not finite for the zero vector.

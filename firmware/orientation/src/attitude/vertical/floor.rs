@@ -17,7 +17,7 @@
 use super::motion::{BAND, GRAVITY, Motion};
 use super::stretch::Stretch;
 use crate::attitude::quaternion::Vector;
-use crate::math::rotation::dot;
+use crate::math::rotation::length;
 
 /// Significance, in σ, at which the floor deviates from the filter's vertical.
 const FLOOR: f32 = 5.0;
@@ -104,7 +104,7 @@ impl Floor {
         if self.missing < MISSING {
             return None;
         }
-        let size = libm::sqrtf(dot(&self.mean, &self.mean));
+        let size = length(&self.mean);
         self.inflation = self.inflation.max(self.missing);
         self.missing = 0.0;
         Some(core::mem::replace(&mut self.mean, [0.0, 0.0, -size]))

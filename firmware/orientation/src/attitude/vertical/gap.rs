@@ -6,7 +6,7 @@ use super::stretch::Stretch;
 use super::sums::{Rested, Sums, Window};
 use super::{Trust, Vertical};
 use crate::attitude::quaternion::Vector;
-use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
+use crate::math::rotation::{difference, length, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::{Increment, STEP};
 use crate::units::{AngleIncrement, Instant};
@@ -113,9 +113,4 @@ impl Vertical {
         self.rested = Rested::default();
         self.window = Window::default();
     }
-}
-
-/// Length of a vector.
-fn length(vector: &Vector) -> f32 {
-    libm::sqrtf(dot(vector, vector))
 }

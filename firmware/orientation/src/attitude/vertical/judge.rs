@@ -7,7 +7,7 @@ use super::stretch::Stretch;
 use super::sums::{Rested, Window};
 use super::{Trust, Vertical};
 use crate::attitude::quaternion::Vector;
-use crate::math::rotation::{difference, dot, scaled, sum, turned};
+use crate::math::rotation::{difference, dot, length, scaled, sum, turned};
 
 /// Time between two steps of the filter, s.
 pub(super) const STRETCH: f32 = 0.1;
@@ -205,7 +205,7 @@ impl Vertical {
         let rate = self.window.rate();
         self.window = Window::default();
         // A falling or thrown body shows no level.
-        let beside = (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs();
+        let beside = (length(&force) - GRAVITY).abs();
         if beside > BEGINNING * GRAVITY {
             return;
         }
@@ -348,7 +348,7 @@ impl Vertical {
             return None;
         }
         let tolerance = SIGMAS * GRAVITY * self.force_tilt + GRAVITY_CHANGE;
-        let size = libm::sqrtf(dot(force, force));
+        let size = length(force);
         let support = -dot(&self.matrix[2], force);
         let across = libm::sqrtf((size * size - support * support).max(0.0));
         let holds_up = (support - GRAVITY).abs() <= tolerance + SIGMAS * self.sigma() * across;

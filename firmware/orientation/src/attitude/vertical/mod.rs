@@ -30,7 +30,7 @@ use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
 use super::quaternion::{Attitude, Matrix, Vector};
 use super::setting::Setting;
-use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
+use crate::math::rotation::{difference, dot, length, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
 use crate::units::{Instant, RadiansPerSecond, SpecificForce};
@@ -207,7 +207,7 @@ impl Vertical {
         }
         self.before.lately *= 1.0 - (seconds / GAP_WATCH).min(1.0);
         let own = difference(&rotation, &scaled(&self.bias, seconds));
-        let rate = libm::sqrtf(dot(&own, &own)) / seconds.max(self.period);
+        let rate = length(&own) / seconds.max(self.period);
         self.before.lately = self.before.lately.max(rate);
     }
 

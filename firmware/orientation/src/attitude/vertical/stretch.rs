@@ -1,7 +1,7 @@
 //! Integrals of the motion since the filter's last step.
 
 use crate::attitude::quaternion::{Matrix, Vector};
-use crate::math::rotation::{dot, scaled, sum};
+use crate::math::rotation::{dot, length, scaled, sum};
 
 /// Integrals of the motion since the filter's last step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,6 +65,6 @@ impl Stretch {
 
     /// Magnitude of the mean force, m/s².
     pub(super) fn force(&self) -> f32 {
-        libm::sqrtf(dot(&self.impulse, &self.impulse)) / self.forced
+        length(&self.impulse) / self.forced
     }
 }
