@@ -5,8 +5,8 @@ use core::convert::Infallible;
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Timer};
 use orientation::alignment::{Method, Progress, Request};
-use orientation::navigation::Aligner;
 use orientation::navigation::aligner::{Input, State};
+use orientation::navigation::{Aligner, Order};
 use orientation::signal::Timed;
 
 use crate::ports::{Aiding, Recorder};
@@ -51,14 +51,8 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                         request = first;
                         continue;
                     }
-                } else if channels.samples.is_empty() {
-                    shared.catch_up();
-                    let period = shared.period.get();
-                    if aligner.state != State::Homing && period < REST {
-                        Timer::after(REST.min(period * (QUEUE as u32 / 3))).await;
-                    }
                 }
-                match &select(shared.orders.wait(), channels.samples.receive()).await {
+                match &next(channels, aligner.state != State::Homing).await {
                     Either::First(order) => {
                         shared.obey(order);
                         give(&mut aligner, Input::Ordered(*order), shared)
@@ -79,6 +73,23 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             }
         };
     }
+}
+
+/// Waits for an order or a sample; where there is none, notes that all were taken. The aligner may rest then.
+async fn next<S>(channels: &Channels<'_, S>, may_rest: bool) -> Either<Order, S> {
+    let Channels { samples, shared } = channels;
+    if let Some(order) = shared.orders.try_take() {
+        return Either::First(order);
+    }
+    if let Ok(sample) = samples.try_receive() {
+        return Either::Second(sample);
+    }
+    shared.catch_up();
+    let period = shared.period.get();
+    if may_rest && period < REST {
+        Timer::after(REST.min(period * (QUEUE as u32 / 3))).await;
+    }
+    select(shared.orders.wait(), samples.receive()).await
 }
 
 /// Gives the aligner an input beside its samples.

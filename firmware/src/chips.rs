@@ -2,6 +2,7 @@
 //! assigns axes, and decides which readings are valid.
 
 use drivers::ads1262::Ads1262;
+use drivers::ads1262::codec::Conversion;
 use drivers::ads1262::scale::Scale;
 use drivers::adxl355::Adxl355;
 use drivers::data_ready::{DataReady, Edge};
@@ -79,9 +80,14 @@ impl<S: SpiDevice, R: DataReady, D: DelayNs> Gyro<Code> for Ads1262<S, R, D> {
     }
 
     async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
-        let conversion = Ads1262::read(self).await?;
+        Ads1262::read(self).await.map(RateReading::from)
+    }
+}
+
+impl From<Conversion> for RateReading<Code> {
+    fn from(conversion: Conversion) -> Self {
         let rate = Code(clipped(conversion.code, conversion.is_clipped));
-        Ok(RateReading { rate, is_new: conversion.is_new })
+        Self { rate, is_new: conversion.is_new }
     }
 }
 

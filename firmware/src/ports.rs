@@ -88,6 +88,46 @@ pub trait InStep<V = AngularRate>: Gyro<V> {
     async fn begin(&mut self) -> Result<(), Fault>;
 }
 
+/// How `N` converters in step are read together, each of which is a `C` and measures values `V`.
+pub trait Together<C, V, const N: usize> {
+    /// Waits until every converter has ended a conversion, and reads all. Where one ended more than `apart`, µs, before
+    /// the others, it may have ended another one meanwhile. The future may be dropped while it waits.
+    ///
+    /// # Errors
+    /// As [`Gyro::ready`].
+    async fn next(&mut self, converters: [&mut C; N], apart: u64) -> Result<(), Fault>;
+
+    /// End of the conversion of a converter that was read.
+    fn end(&self, index: usize) -> Edge;
+
+    /// What was read of a converter.
+    ///
+    /// # Errors
+    /// As [`Gyro::read`].
+    fn reading(&self, index: usize) -> Result<RateReading<V>, Fault>;
+
+    /// The first converter whose conversion has not ended, where waiting was given up.
+    fn awaited(&self) -> usize;
+}
+
+impl<T: Together<C, V, N>, C, V, const N: usize> Together<C, V, N> for &mut T {
+    async fn next(&mut self, converters: [&mut C; N], apart: u64) -> Result<(), Fault> {
+        (**self).next(converters, apart).await
+    }
+
+    fn end(&self, index: usize) -> Edge {
+        (**self).end(index)
+    }
+
+    fn reading(&self, index: usize) -> Result<RateReading<V>, Fault> {
+        (**self).reading(index)
+    }
+
+    fn awaited(&self) -> usize {
+        (**self).awaited()
+    }
+}
+
 /// One reading of the accelerometer, in the axes of the platform, or of the base to which it is
 /// fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -361,8 +401,10 @@ pub struct VehicleSensors<G, A> {
 
 /// The sensors fixed to a spinning body, owned by acquisition.
 #[derive(Debug)]
-pub struct SpinSensors<C>(
+pub struct SpinSensors<C, R> {
     /// Converters of the gyros about x (forward), y (up at zero roll) and z (right at zero roll),
     /// then of the accelerometers along y and z.
-    pub [C; 5],
-);
+    pub converters: [C; 5],
+    /// How they are read.
+    pub reader: R,
+}

@@ -23,8 +23,8 @@ use crate::ports::Frames;
 use crate::retry_budget::{RETRY, Symptom};
 use crate::status::Status;
 
-/// Capacity of the queues: 8 ms at 2 kHz.
-pub const QUEUE: usize = 16;
+/// Capacity of the queues: 16 ms at 2 kHz, 2 ms at 14.4 kHz.
+pub const QUEUE: usize = 32;
 
 /// The queue of samples from acquisition to the aligner.
 pub type Queue<S> = Channel<Lock, S, QUEUE>;

@@ -1,4 +1,4 @@
-//! Clocks of the board: 80 MHz from the internal oscillator, locked to the 32.768 kHz crystal once that oscillates.
+//! Clocks of the board: 64 MHz from the internal oscillator, locked to the 32.768 kHz crystal once that oscillates.
 
 use embassy_stm32::pac::rcc::vals::Lsedrv;
 use embassy_stm32::pac::{PWR, RCC};
@@ -10,10 +10,11 @@ use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, Peripherals};
 use embassy_time::{Duration, Instant, Timer};
 
-/// Clock of the core and of both peripheral buses, Hz. Trimmed by the crystal, the oscillator runs
+/// Clock of the core and of both peripheral buses, Hz: a power of two divides it to the 8 MHz that the converters allow
+/// their serial bus, where the greatest clock, 80 MHz, would leave 5. Trimmed by the crystal, the oscillator runs
 /// at 122 · 32 768 Hz instead of 4 MHz: all times are then 0.06 % too short, with a constant ratio.
 /// Without the crystal it is accurate to about 1 %.
-pub const SYSTEM: u32 = 80_000_000;
+pub const SYSTEM: u32 = 64_000_000;
 
 /// Longest start of the crystal X2 (UM2153, section 7.6): typically 2 s (DS10969, LSE oscillator characteristics).
 const LONGEST: Duration = Duration::from_millis(2500);
@@ -40,7 +41,7 @@ pub fn start() -> Peripherals {
     rcc.pll = Some(Pll {
         source: PllSource::MSI,
         prediv: PllPreDiv::DIV1,
-        mul: PllMul::MUL40,
+        mul: PllMul::MUL32,
         divp: None,
         divq: None,
         divr: Some(PllRDiv::DIV2),

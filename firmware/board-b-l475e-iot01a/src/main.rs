@@ -1,4 +1,4 @@
-//! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 80 MHz).
+//! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 64 MHz).
 //!
 //! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines are
 //! sent by the virtual COM port, 115 200 baud. The carrier is chosen by a feature, as in `cargo board

@@ -3,24 +3,26 @@
 use drivers::lsm6dsl;
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::i2c::{self, I2c};
+use embassy_stm32::interrupt::{Interrupt, InterruptExt};
 use embassy_stm32::peripherals::{
-    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA3, PA4, PA15, PB0, PB1, PB2,
-    PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
+    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1,
+    PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, ConfigError, UartTx};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use embassy_time::Duration;
+use firmware::platform::Platform;
 use firmware::ports::Frames;
-use stm32::BoardLog;
 use stm32::edges::{self, Line};
 use stm32::i2c::BaseBus;
 use stm32::spi::Bus;
 use stm32::wiring::{
-    AxisPlatformWires, Buses, Clock, ConverterWires, FramesWires, Link, Outlets, PlatformWires,
-    SpinWires, VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, Buses, Clock, FramesWires, Link, Outlets, PlatformWires, SpinWires,
+    VehicleWires, sensor_settings, stage_settings,
 };
+use stm32::{BoardLog, PLATFORM, chain};
 
 use crate::clock;
 
@@ -32,34 +34,42 @@ bind_interrupts!(struct Interrupts {
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
 });
 
-/// The edges of the data-ready lines on pins 0.
+/// The edges of the data-ready line on pin 0 of its port.
 #[interrupt]
 fn EXTI0() {
-    edges::take(1 << 0);
+    edges::take(0);
 }
 
-/// The edges of the data-ready lines on pins 1.
+/// The edges of the data-ready line on pin 1 of its port.
 #[interrupt]
 fn EXTI1() {
-    edges::take(1 << 1);
+    edges::take(1);
 }
 
-/// The edges of the data-ready lines on pins 3.
+/// The edges of the data-ready line on pin 3 of its port.
 #[interrupt]
 fn EXTI3() {
-    edges::take(1 << 3);
+    edges::take(3);
 }
 
-/// The edges of the data-ready lines on pins 4.
+/// The edges of the data-ready line on pin 4 of its port.
 #[interrupt]
 fn EXTI4() {
-    edges::take(1 << 4);
+    edges::take(4);
 }
 
 /// The edges of the data-ready lines on pins 10 to 15.
 #[interrupt]
 fn EXTI15_10() {
-    edges::take(0x3F << 10);
+    edges::take_pending(0x3F << 10);
+}
+
+/// The end of a transfer of the converters' bus, on a spinning body.
+#[interrupt]
+fn DMA1_CHANNEL2() {
+    if PLATFORM == Platform::Spin {
+        chain::transferred();
+    }
 }
 
 /// Longest transfer of the IMU on the base before the bus counts as broken; the usual ones take 0.4 ms.
@@ -74,7 +84,7 @@ type Selects = (Peri<'static, PB2>, Peri<'static, PA4>, Peri<'static, PA3>, Peri
 /// they are needed: a pin takes no memory.
 pub struct Board {
     buses: Buses,
-    converter: ConverterWires,
+    converter: (Peri<'static, PA2>, Line),
     outlets: Outlets,
     accelerometer: Peri<'static, PA15>,
     axis: AxisPins,
@@ -106,7 +116,7 @@ impl Board {
         let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
         let board = Self {
             buses,
-            converter: buses.converter(p.PA2, ready),
+            converter: (p.PA2, ready),
             outlets: Outlets { flash: p.FLASH, log, clock: timing },
             accelerometer: p.PA15,
             axis: (p.PD0, p.PD5),
@@ -139,7 +149,7 @@ impl Board {
     /// Connections of a platform that turns the gyro, with these axes.
     fn platform<A>(self, axes: impl FnOnce(Buses, AxisPins, Selects) -> A) -> PlatformWires<A> {
         PlatformWires {
-            converter: self.converter,
+            converter: self.buses.converter(self.converter.0, self.converter.1),
             accelerometer: self.buses.accelerometer(self.accelerometer),
             axes: axes(self.buses, self.axis, self.selects),
             base: self.base.connect(),
@@ -151,26 +161,32 @@ impl Board {
     /// Connections in a vehicle.
     pub fn vehicle(self) -> VehicleWires {
         let Self { buses, converter, accelerometer, outlets, selects, ready, lines, .. } = self;
+        let forward = buses.converter(converter.0, converter.1);
         let line = Line::new(ready.0, lines.0);
         let right = buses.converter(selects.0, line);
         let line = Line::new(ready.1, lines.1);
         let down = buses.converter(selects.1, line);
         let accelerometer = buses.accelerometer(accelerometer);
-        VehicleWires { converters: [converter, right, down], accelerometer, outlets }
+        VehicleWires { converters: [forward, right, down], accelerometer, outlets }
     }
 
-    /// Connections on a spinning body.
+    /// Connections on a spinning body, with the interrupt of the transfers that read its converters.
     pub fn spinning_body(self) -> SpinWires {
         let Self { buses, converter, outlets, selects, ready, lines, .. } = self;
-        let line = Line::new(ready.0, lines.0);
-        let right = buses.converter(selects.0, line);
-        let line = Line::new(ready.1, lines.1);
-        let up = buses.converter(selects.1, line);
-        let line = Line::new(ready.2, lines.2);
-        let force_up = buses.converter(selects.2, line);
-        let line = Line::new(ready.3, lines.3);
-        let force_right = buses.converter(selects.3, line);
-        let converters = [converter, up, right, force_up, force_right];
+        let (select, line) = converter;
+        let converters = buses.chained([
+            (select.into(), line),
+            (selects.1.into(), Line::new(ready.1, lines.1)),
+            (selects.0.into(), Line::new(ready.0, lines.0)),
+            (selects.2.into(), Line::new(ready.2, lines.2)),
+            (selects.3.into(), Line::new(ready.3, lines.3)),
+        ]);
+        #[expect(unsafe_code, reason = "an interrupt is enabled by hand where no driver does")]
+        // SAFETY: its handler touches the channels of the chain and words that are atomic, and no mutex relies on its
+        // being off.
+        unsafe {
+            Interrupt::DMA1_CHANNEL2.enable();
+        }
         SpinWires { converters, outlets }
     }
 }

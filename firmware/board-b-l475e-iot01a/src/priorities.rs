@@ -2,7 +2,7 @@
 //!
 //! | priority | interrupts | why |
 //! |--:|---|---|
-//! | 0 | edges of the data-ready lines | a stamp is as late as its interrupt: nothing but a critical section may come first |
+//! | 0 | edges of the data-ready lines; on a spinning body the transfers that they begin | a stamp is as late as its interrupt: nothing but a critical section may come first |
 //! | 2 | alarms of the time driver, the bus of the base, direct memory access | they move data and wake tasks, which may take some microseconds |
 //! | 6 | the executor of acquisition | what is read belongs to the moment of its conversion |
 //! | 8 | the executor of control: motors and keeper | they must not wait for a conclusion, but may work for a millisecond |
@@ -10,9 +10,15 @@
 
 use embassy_stm32::interrupt::{Interrupt, InterruptExt, Priority};
 
-/// The edges of the data-ready lines.
-const EDGES: [Interrupt; 5] =
-    [Interrupt::EXTI0, Interrupt::EXTI1, Interrupt::EXTI3, Interrupt::EXTI4, Interrupt::EXTI15_10];
+/// The edges of the data-ready lines, and the ends of the transfers that they begin.
+const EDGES: [Interrupt; 6] = [
+    Interrupt::EXTI0,
+    Interrupt::EXTI1,
+    Interrupt::EXTI3,
+    Interrupt::EXTI4,
+    Interrupt::EXTI15_10,
+    Interrupt::DMA1_CHANNEL2,
+];
 
 /// Time driver, bus of the base, direct memory access of that bus and of the link.
 const OTHERS: [Interrupt; 6] = [

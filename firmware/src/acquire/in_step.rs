@@ -1,22 +1,22 @@
-//! Converters in step: awaited and read in succession, restarted where one loses synchronism.
+//! Converters in step: read together, restarted where one loses synchronism.
 //!
 //! They share one clock and are started in succession, again whenever one of them had to be
 //! restarted. A converter that converts at other times than the others is detected by its
 //! data-ready line.
 
-use core::task::Poll;
+use core::pin::pin;
 
 use drivers::data_ready::Edge;
-use embassy_futures::poll_once;
-use embassy_time::{Duration, Timer, with_timeout};
+use drivers::fault::Fault;
+use embassy_time::{Duration, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::math;
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, Instant};
 
 use super::Pace;
 use super::rates::{Rates, silence};
-use crate::ports::{InStep, Quantity};
+use crate::ports::{InStep, Quantity, Together};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -28,9 +28,11 @@ const MOST_OUT_OF_STEP: u8 = 3;
 const APART: u64 = 50;
 
 /// Group of `N` converters with sensors that measure values `V`.
-pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
+pub(super) struct Group<'a, C, R, const N: usize, V = AngularRate> {
     /// Converters with their checks.
     converters: [Rates<'a, C, V>; N],
+    /// How they are read.
+    reader: R,
     /// Channels to the other tasks.
     shared: &'a Shared<'a>,
     /// Sample period, µs.
@@ -43,10 +45,10 @@ pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
     pace: Pace,
 }
 
-impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
+impl<'a, C: InStep<V>, R: Together<C, V, N>, V: Quantity, const N: usize> Group<'a, C, R, N, V> {
     /// Takes converters with a period in µs, each with its name in the log; nothing is started yet.
     pub(super) fn new(
-        converters: &'a mut [C; N],
+        (converters, reader): (&'a mut [C; N], R),
         names: [Device; N],
         sample_rate: f64,
         period: u32,
@@ -58,13 +60,15 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             Rates::new(converter, name, sample_rate)
         });
         let (silence, pace) = (silence(period), Pace::default());
-        Self { converters: taken, shared, period, silence, out_of_step: 0, pace }
+        Self { converters: taken, reader, shared, period, silence, out_of_step: 0, pace }
     }
 
-    /// Starts all converters, and their conversions in step.
+    /// Starts all converters, and their conversions in step; none converts meanwhile.
     pub(super) async fn start(&mut self) -> Result<(), Refusal> {
         for converter in &mut self.converters {
             converter.gyro.start(self.shared).await?;
+            let armed = converter.gyro.device.arm().await;
+            tell(armed, converter, self.shared);
         }
         self.begin().await;
         Ok(())
@@ -75,112 +79,149 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         self.converters.iter_mut().for_each(Rates::renew);
     }
 
-    /// Starts the conversions of all converters in step. A failure shows as silence later.
+    /// Stops all converters, and starts their conversions in step.
+    async fn begin_anew(&mut self) {
+        for converter in &mut self.converters {
+            let armed = converter.gyro.device.arm().await;
+            tell(armed, converter, self.shared);
+        }
+        self.begin().await;
+    }
+
+    /// Begins the conversions of all converters, one right after the other.
     async fn begin(&mut self) {
         for converter in &mut self.converters {
-            if let Err(fault) = converter.gyro.device.arm().await {
-                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
-            }
-        }
-        for converter in &mut self.converters {
-            if let Err(fault) = converter.gyro.device.begin().await {
-                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
-            }
+            let begun = converter.gyro.device.begin().await;
+            tell(begun, converter, self.shared);
         }
         self.out_of_step = 0;
     }
 
-    /// Waits for a conversion of every converter; returns the ends, or none after a fault. They end
-    /// together, and an end that has come is returned at once, so one is awaited after the other.
-    pub(super) async fn conversions(&mut self) -> Result<Option<[Edge; N]>, Refusal> {
+    /// Takes the next conversion of every converter: the median of their ends, with the count of the first, and their
+    /// values, where all were read; none after a fault.
+    pub(super) async fn next(&mut self) -> Result<Option<(Edge, Option<[V; N]>)>, Refusal> {
         self.pace.rest().await;
-        let (mut ends, mut come) = ([Edge::default(); N], 0);
-        let all = async {
-            for (end, converter) in ends.iter_mut().zip(&mut self.converters) {
-                *end = converter.gyro.device.ready().await.map_err(Symptom::Chip)?;
-                come += 1;
-            }
-            Ok(())
-        };
-        if let Err(symptom) =
-            with_timeout(self.silence, self.pace.note(all)).await.unwrap_or(Err(Symptom::Silent))
-        {
-            return self.mend(come, symptom).await;
+        if let Err(symptom) = self.conversions().await {
+            return self.mend(self.reader.awaited(), symptom).await;
         }
-        self.catch_up(&mut ends);
-        Ok(Some(ends))
+        let values = self.values().await?;
+        let ends = Ends::of(core::array::from_fn(|index| self.reader.end(index)));
+        let is_in_step = self.are_in_step(&ends).await?;
+        Ok(is_in_step.then_some((ends.middle, values)))
     }
 
-    /// Looks again at converters whose end was seen just before the others ended another conversion.
-    fn catch_up(&mut self, ends: &mut [Edge; N]) {
-        let latest = ends.iter().map(|end| end.at.0).max().unwrap_or(0);
-        let near = latest.saturating_sub(self.apart());
-        for (converter, end) in self.converters.iter_mut().zip(ends) {
-            if end.at.0 < near
-                && let Poll::Ready(Ok(later)) = poll_once(converter.gyro.device.ready())
-            {
-                *end = later;
-            }
-        }
+    /// Waits for the conversions, and reads them.
+    async fn conversions(&mut self) -> Result<(), Symptom> {
+        let apart = self.apart();
+        let converters = self.converters.each_mut().map(|converter| &mut *converter.gyro.device);
+        let read = pin!(self.reader.next(converters, apart));
+        let outcome = self.pace.within(self.silence, read).await;
+        outcome.map_err(|_| Symptom::Silent)?.map_err(Symptom::Chip)
     }
 
-    /// Values of the conversions; all are read, even if one fails.
-    pub(super) async fn values(&mut self) -> Result<Option<[V; N]>, Refusal> {
-        let mut values = [None; N];
+    /// Values of the conversions; all are taken, even if one fails.
+    async fn values(&mut self) -> Result<Option<[V; N]>, Refusal> {
+        let mut values = [V::default(); N];
+        let mut is_whole = true;
         for (index, value) in values.iter_mut().enumerate() {
-            *value = match self.converters[index].read(self.shared).await {
-                Ok(value) => value,
-                Err(symptom) => self.mend(index, symptom).await?,
+            let converter = &mut self.converters[index];
+            let checked = match self.reader.reading(index) {
+                Err(Fault::Hung) => converter.read_again(self.shared).await,
+                reading => converter.check(reading, self.shared),
             };
+            match checked {
+                Ok(Some(new)) => *value = new,
+                Ok(None) => is_whole = false,
+                Err(symptom) => {
+                    is_whole = false;
+                    self.mend::<()>(index, symptom).await?;
+                }
+            }
         }
-        let is_whole = values.iter().all(Option::is_some);
-        Ok(is_whole.then(|| values.map(Option::unwrap_or_default)))
+        Ok(is_whole.then_some(values))
     }
 
     /// Logs a converter's symptom and repairs it. A restarted converter has lost its step, so all
     /// are started again.
     async fn mend<T>(&mut self, index: usize, symptom: Symptom) -> Result<Option<T>, Refusal> {
         if self.converters[index].gyro.mend(symptom, self.shared).await? {
-            self.begin().await;
+            self.begin_anew().await;
         }
         Ok(None)
     }
 
     /// Whether all converted in step. Otherwise all are read again half a period later, when no
     /// conversion is near; if that does not help, the deviating one is restarted.
-    pub(super) async fn are_in_step(&mut self, ends: &[Edge; N]) -> Result<bool, Refusal> {
-        let Some(index) = self.outlier(ends) else {
+    async fn are_in_step(&mut self, ends: &Ends<N>) -> Result<bool, Refusal> {
+        if ends.beside <= self.apart() {
             self.out_of_step = 0;
             return Ok(true);
-        };
+        }
         self.out_of_step += 1;
         if self.out_of_step > MOST_OUT_OF_STEP {
-            self.mend::<()>(index, Symptom::OutOfStep).await?;
+            self.mend::<()>(ends.outlier(), Symptom::OutOfStep).await?;
         } else {
-            self.shared.lose(self.converters[index].gyro.name, Symptom::OutOfStep);
+            self.shared.lose(self.converters[ends.outlier()].gyro.name, Symptom::OutOfStep);
             Timer::after_micros(u64::from(self.period / 2)).await;
-            self.values().await?;
+            self.read_again().await?;
         }
         Ok(false)
+    }
+
+    /// Reads all converters once more, whatever they have.
+    async fn read_again(&mut self) -> Result<(), Refusal> {
+        for index in 0..N {
+            if let Err(symptom) = self.converters[index].read(self.shared).await {
+                self.mend::<()>(index, symptom).await?;
+            }
+        }
+        Ok(())
     }
 
     /// Time by which conversions that are in step may end apart, µs: a quarter of a period.
     fn apart(&self) -> u64 {
         APART.max(u64::from(self.period / 4))
     }
+}
 
-    /// Converter whose conversion ended furthest from the median, where that is too far: the
-    /// majority is right.
-    fn outlier(&self, ends: &[Edge; N]) -> Option<usize> {
-        let Edge { at: middle, .. } = middle(ends);
-        let beside = |index: &usize| ends[*index].at.0.abs_diff(middle.0);
-        (0..N).max_by_key(beside).filter(|index| beside(index) > self.apart())
+/// Counts and reports a failure of a converter to begin, which shows as silence later.
+fn tell<C, V>(outcome: Result<(), Fault>, converter: &Rates<'_, C, V>, shared: &Shared<'_>) {
+    if let Err(fault) = outcome {
+        shared.lose(converter.gyro.name, Symptom::Chip(fault));
     }
 }
 
-/// Median of the ends of an odd number of conversions, with the count of the first converter.
-pub(super) fn middle<const N: usize>(ends: &[Edge; N]) -> Edge {
-    let mut times = ends.map(|end| end.at);
-    math::sort(&mut times, |a, b| a < b);
-    Edge { at: times[N / 2], count: ends[0].count }
+/// Ends of the conversions of an odd number of converters.
+struct Ends<const N: usize> {
+    /// Time of the end of each after that of the first, µs; it wraps.
+    after: [i32; N],
+    /// Their median, with the count of the first converter.
+    middle: Edge,
+    /// Median of the times after the first, µs.
+    median: i32,
+    /// Greatest distance of one from the median, µs.
+    beside: u64,
+}
+
+impl<const N: usize> Ends<N> {
+    /// Compares ends.
+    fn of(ends: [Edge; N]) -> Self {
+        let Edge { at: first, count } = ends[0];
+        let after = ends.map(|end| (end.at.0 as u32).wrapping_sub(first.0 as u32).cast_signed());
+        let mut sorted = after;
+        // As they are begun, one after the other.
+        if !sorted.is_sorted() {
+            math::sort(&mut sorted, |a, b| a < b);
+        }
+        let median = sorted[N / 2];
+        let beside = (sorted[N - 1] - median).max(median - sorted[0]);
+        let at = Instant(first.0.wrapping_add_signed(median.into()));
+        Self { after, middle: Edge { at, count }, median, beside: beside as u64 }
+    }
+
+    /// Converter whose conversion ended furthest from the median: the majority is right.
+    fn outlier(&self) -> usize {
+        let beside = |index: &usize| self.after[*index].abs_diff(self.median);
+        (0..N).max_by_key(beside).unwrap_or_default()
+    }
 }

@@ -16,21 +16,24 @@
 mod coarse;
 mod forces;
 mod in_step;
+mod one_by_one;
 mod outlet;
 mod rates;
 mod spin;
 mod stage;
 mod triad;
 
+pub use one_by_one::OneByOne;
 pub use spin::SpinAcquisition;
 pub use stage::{on_mount, on_stage};
 pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;
-use core::future::poll_fn;
-use core::pin::pin;
+use core::pin::{Pin, pin};
+use core::task::Poll;
 
-use embassy_time::{Duration, Timer};
+use embassy_futures::poll_once;
+use embassy_time::{Duration, TimeoutError, Timer, with_timeout};
 use orientation::alignment::refusal::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
@@ -87,8 +90,8 @@ async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible,
 }
 
 /// Number of successive conversions that had waited for acquisition after which it rests: they come
-/// faster than they are read.
-const MOST_BEHIND: u8 = 8;
+/// faster than they are read. More than a board keeps for it, at most 32.
+const MOST_BEHIND: u8 = 48;
 /// How long it rests then, as long as it takes to read a few: no transfer of a serial bus yields, so
 /// that what has less priority would never get its turn.
 const REST: Duration = Duration::from_millis(1);
@@ -109,18 +112,18 @@ impl Pace {
         }
     }
 
-    /// Awaits conversions, and notes whether they had waited.
-    async fn note<T>(&mut self, conversions: impl Future<Output = T>) -> T {
-        self.behind += 1;
-        let mut conversions = pin!(conversions);
-        poll_fn(|context| {
-            let polled = conversions.as_mut().poll(context);
-            if polled.is_pending() {
-                self.behind = 0;
-            }
-            polled
-        })
-        .await
+    /// Awaits conversions, at most for so long, and notes whether they had waited; then no time limit is set.
+    async fn within<T>(
+        &mut self,
+        limit: Duration,
+        mut conversions: Pin<&mut impl Future<Output = T>>,
+    ) -> Result<T, TimeoutError> {
+        if let Poll::Ready(had_waited) = poll_once(conversions.as_mut()) {
+            self.behind += 1;
+            return Ok(had_waited);
+        }
+        self.behind = 0;
+        with_timeout(limit, conversions).await
     }
 }
 

@@ -1,9 +1,11 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
+use core::pin::pin;
+
 use drivers::data_ready::Edge;
 use drivers::fault::Fault;
 use embassy_futures::select::{Either, select};
-use embassy_time::{Duration, with_timeout};
+use embassy_time::Duration;
 use orientation::device::Device;
 use orientation::units::AngularRate;
 
@@ -30,9 +32,12 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     has_clipped: bool,
 }
 
+/// Least such time: a board may bring the conversions of fast converters some at a time.
+const LEAST_SILENCE: Duration = Duration::from_millis(2);
+
 /// Time without a conversion after which a gyro with this period, µs, counts as silent.
 pub(super) fn silence(period: u32) -> Duration {
-    Duration::from_micros(u64::from(period) * u64::from(SILENCE))
+    Duration::from_micros(u64::from(period) * u64::from(SILENCE)).max(LEAST_SILENCE)
 }
 
 impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
@@ -71,20 +76,35 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             return end.map_err(Symptom::Chip);
         }
         self.pace.rest().await;
-        match with_timeout(silence, self.pace.note(self.gyro.device.ready())).await {
+        match self.pace.within(silence, pin!(self.gyro.device.ready())).await {
             Ok(end) => end.map_err(Symptom::Chip),
             Err(_) => Err(Symptom::Silent),
         }
     }
 
     /// Returns a new rate, checked for saturation and repetition; none where it is not new, or the
-    /// symptom to repair. After a transfer that its bus has given up, the conversion is still there.
+    /// symptom to repair.
     pub(super) async fn read(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
-        let mut outcome = self.gyro.device.read().await;
+        let outcome = self.gyro.device.read().await;
         if outcome == Err(Fault::Hung) {
-            shared.lose(self.gyro.name, Symptom::Chip(Fault::Hung));
-            outcome = self.gyro.device.read().await;
+            return self.read_again(shared).await;
         }
+        self.check(outcome, shared)
+    }
+
+    /// Reads once more after a transfer that its bus has given up: the conversion is still there.
+    pub(super) async fn read_again(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
+        shared.lose(self.gyro.name, Symptom::Chip(Fault::Hung));
+        let outcome = self.gyro.device.read().await;
+        self.check(outcome, shared)
+    }
+
+    /// Checks what was read.
+    pub(super) fn check(
+        &mut self,
+        outcome: Result<RateReading<V>, Fault>,
+        shared: &Shared<'_>,
+    ) -> Result<Option<V>, Symptom> {
         let RateReading { rate, is_new } = self.gyro.checked(outcome)?;
         if !is_new {
             return Ok(None);

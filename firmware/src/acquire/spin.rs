@@ -12,10 +12,10 @@ use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
 use super::Source;
-use super::in_step::{Group, middle};
+use super::in_step::Group;
 use super::outlet::Outlet;
 use crate::configuration::period;
-use crate::ports::{Code, InStep, Quantity, SpinSensors};
+use crate::ports::{Code, InStep, Quantity, SpinSensors, Together};
 use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
 
@@ -29,9 +29,9 @@ const NAMES: [Device; CHANNELS] = [
 ];
 
 /// Acquisition of the sensors of a spinning body.
-pub struct SpinAcquisition<'a, C> {
+pub struct SpinAcquisition<'a, C, R> {
     /// Converters of all sensors.
-    converters: Group<'a, C, CHANNELS, Code>,
+    converters: Group<'a, C, &'a mut R, CHANNELS, Code>,
     /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
     /// Time from the middle of a conversion to its end, µs, rounded to nearest.
@@ -44,17 +44,17 @@ pub struct SpinAcquisition<'a, C> {
     carried: [i64; GYROS],
 }
 
-impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
+impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C, R> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
-        SpinSensors(converters): &'a mut SpinSensors<C>,
+        SpinSensors { converters, reader }: &'a mut SpinSensors<C, R>,
         configuration: &'a SpinConfiguration,
         channels: &'a Channels<'a, SpinSample>,
     ) -> Self {
         let rate = configuration.sample_rate;
         let period = period(rate);
         Self {
-            converters: Group::new(converters, NAMES, rate, period, &channels.shared),
+            converters: Group::new((converters, reader), NAMES, rate, period, &channels.shared),
             configuration,
             half: libm::round(0.5e6 / rate) as u64,
             outlet: Outlet::new(period, channels),
@@ -86,20 +86,14 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
     /// # Errors
     /// A sensor is given up.
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
-        let Some(ends) = self.converters.conversions().await? else { return Ok(None) };
-        let codes = self.converters.values().await?;
-        if !self.converters.are_in_step(&ends).await? {
-            return Ok(None);
-        }
-        let Some(codes) = codes else { return Ok(None) };
-        let end = middle(&ends);
+        let Some((end, Some(codes))) = self.converters.next().await? else { return Ok(None) };
         self.outlet.judge(end);
         let time = Instant(end.at.0.saturating_sub(self.half));
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 }
 
-impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
+impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> Source<'a> for SpinAcquisition<'a, C, R> {
     type Sample = SpinSample;
 
     fn outlet(&mut self) -> &mut Outlet<'a, SpinSample> {

@@ -10,10 +10,11 @@ use orientation::alignment::refusal::Refusal;
 use orientation::device::TRIAD;
 use orientation::navigation::Motion;
 use orientation::signal::InertialSample;
-use orientation::units::{Instant, SpecificForce};
+use orientation::units::{AngularRate, Instant, SpecificForce};
 
 use super::forces::Forces;
-use super::in_step::{Group, middle};
+use super::in_step::Group;
+use super::one_by_one::OneByOne;
 use super::outlet::Outlet;
 use super::{Source, increments};
 use crate::configuration::{VehicleConfiguration, period};
@@ -22,7 +23,7 @@ use crate::shared::Channels;
 
 /// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A> {
-    gyros: Group<'a, G, 3>,
+    gyros: Group<'a, G, OneByOne<AngularRate, 3>, 3>,
     forces: Forces<'a, A>,
     mean: Mean,
     outlet: Outlet<'a, InertialSample>,
@@ -45,7 +46,13 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
         let period = period(sample_rate);
         let VehicleSensors { gyros, accelerometer } = sensors;
         Self {
-            gyros: Group::new(gyros, TRIAD, sample_rate, period, &channels.shared),
+            gyros: Group::new(
+                (gyros, OneByOne::default()),
+                TRIAD,
+                sample_rate,
+                period,
+                &channels.shared,
+            ),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
             outlet: Outlet::new(period, channels),
@@ -68,13 +75,8 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
     /// # Errors
     /// A sensor is given up.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
-        let Some(ends) = self.gyros.conversions().await? else { return Ok(None) };
-        let end = middle(&ends);
+        let Some((end, rates)) = self.gyros.next().await? else { return Ok(None) };
         let lasted = self.lasted(end.at);
-        let rates = self.gyros.values().await?;
-        if !self.gyros.are_in_step(&ends).await? {
-            return Ok(None);
-        }
         let reading = self.forces.read(self.outlet.shared()).await?;
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };

@@ -1,6 +1,6 @@
 //! Data-ready lines whose edges are stamped and counted in their interrupt, whatever the tasks do meanwhile.
 //!
-//! A line stays unmasked. [`take`], which the board's handlers call, notes time and count of each edge in a static of
+//! A line stays unmasked. [`take`] or [`take_pending`], which the board's handlers call, notes time and count of each edge in a static of
 //! the line and wakes the task that waits for it; a task that comes late finds the end of the conversion as it was,
 //! and by the count how many ended before.
 //!
@@ -8,8 +8,8 @@
 //! microseconds, comes between an edge and its stamp.
 
 use core::future::poll_fn;
-use core::sync::atomic::{AtomicU32, Ordering};
-use core::task::Poll;
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use core::task::{Poll, Waker};
 
 use drivers::data_ready::{DataReady, Edge};
 use drivers::fault::Fault;
@@ -21,7 +21,10 @@ use embassy_stm32::pac::EXTI;
 use embassy_stm32::pac::exti::regs::Lines;
 use embassy_sync::waitqueue::AtomicWaker;
 use embassy_time::Instant;
+use firmware::platform::Platform;
 use orientation::units;
+
+use crate::{PLATFORM, chain};
 
 /// Number of lines that are pins.
 const LINES: usize = 16;
@@ -35,7 +38,8 @@ struct Noted {
     at: [AtomicU32; 2],
     /// Number of edges; it wraps.
     count: AtomicU32,
-    /// The task that waits for the next.
+    /// Whether a task waits for the next, and which.
+    is_awaited: AtomicBool,
     waiting: AtomicWaker,
 }
 
@@ -45,6 +49,7 @@ impl Noted {
         Self {
             at: [const { AtomicU32::new(0) }; 2],
             count: AtomicU32::new(0),
+            is_awaited: AtomicBool::new(false),
             waiting: AtomicWaker::new(),
         }
     }
@@ -55,7 +60,29 @@ impl Noted {
         low.store(now as u32, Ordering::Relaxed);
         high.store((now >> 32) as u32, Ordering::Relaxed);
         self.count.store(self.count.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
+        if self.is_awaited.load(Ordering::Relaxed) {
+            self.wake();
+        }
+    }
+
+    /// Wakes the task that waits. Not inlined: most edges of a spinning body wake none.
+    #[inline(never)]
+    fn wake(&self) {
+        self.is_awaited.store(false, Ordering::Relaxed);
         self.waiting.wake();
+    }
+
+    /// The latest edge, for an interrupt of the same priority.
+    #[inline]
+    fn words(&self) -> [u32; 3] {
+        let [low, high] = &self.at;
+        [low, high, &self.count].map(|word| word.load(Ordering::Relaxed))
+    }
+
+    /// Has the next edge wake a task. One that has come meanwhile has woken none.
+    fn await_next(&self, task: &Waker) {
+        self.waiting.register(task);
+        self.is_awaited.store(true, Ordering::Release);
     }
 
     /// The latest edge. Where another one comes in between, it is read again.
@@ -72,14 +99,34 @@ impl Noted {
     }
 }
 
-/// Takes the edges that are pending on the lines of a mask, from line 0 on.
-pub fn take(mask: u32) {
+/// The latest edge of a line.
+pub(crate) fn latest(line: usize) -> Edge {
+    NOTED[line % LINES].latest()
+}
+
+/// The latest edge of a line, for an interrupt of the same priority: the lower and the upper half of its time, µs, and its
+/// count.
+#[inline]
+pub(crate) fn words(line: usize) -> [u32; 3] {
+    NOTED[line % LINES].words()
+}
+
+/// Takes the edge of a line whose interrupt is its own.
+#[inline]
+pub fn take(line: usize) {
+    EXTI.pr(0).write_value(Lines(1 << line));
+    NOTED[line].note(Instant::now().as_micros());
+    if PLATFORM == Platform::Spin {
+        chain::noted(1 << line);
+    }
+}
+
+/// Takes the edges that are pending on lines that share an interrupt, as bits from line 0 on.
+pub fn take_pending(lines: u32) {
     let Lines(pending) = EXTI.pr(0).read();
-    let mut pending = pending & mask;
-    EXTI.pr(0).write_value(Lines(pending));
-    let now = Instant::now().as_micros();
-    while let Some(noted) = NOTED.get(pending.trailing_zeros() as usize) {
-        noted.note(now);
+    let mut pending = pending & lines;
+    while pending != 0 {
+        take(pending.trailing_zeros() as usize % LINES);
         pending &= pending - 1;
     }
 }
@@ -87,21 +134,29 @@ pub fn take(mask: u32) {
 /// A data-ready line, low while there is a conversion that was not read.
 pub struct Line {
     pin: ExtiInput<'static, Blocking>,
+    /// Its number.
+    number: u8,
     noted: &'static Noted,
     /// Count of the latest edge that was returned.
     returned: u32,
 }
 
 impl Line {
-    /// A line on a pin, with the interrupt of the pin, whose handler calls [`take`]. A pull-up keeps a line that is
+    /// A line on a pin, with the interrupt of the pin, whose handler calls [`take`] or [`take_pending`]. A pull-up keeps a line that is
     /// broken from having edges.
     pub fn new<P: ExtiPin + Pin>(
         pin: Peri<'static, P>,
         interrupt: Peri<'static, P::ExtiChannel>,
     ) -> Self {
-        let noted = &NOTED[usize::from(pin.pin()) % LINES];
+        let number = pin.pin();
+        let noted = &NOTED[usize::from(number) % LINES];
         let pin = ExtiInput::new_blocking(pin, interrupt, Pull::Up, TriggerEdge::Falling);
-        Self { pin, noted, returned: 0 }
+        Self { pin, number, noted, returned: 0 }
+    }
+
+    /// Its number, which is that of its pin in its port.
+    pub(crate) const fn number(&self) -> u8 {
+        self.number
     }
 
     /// The latest edge, where it has not been returned before and its conversion was not read meanwhile, which lifts
@@ -123,8 +178,7 @@ impl DataReady for Line {
             if let Some(edge) = self.unread() {
                 return Poll::Ready(edge);
             }
-            self.noted.waiting.register(context.waker());
-            // One that has come meanwhile has woken no task.
+            self.noted.await_next(context.waker());
             self.unread().map_or(Poll::Pending, Poll::Ready)
         });
         Ok(edge.await)

@@ -13,6 +13,7 @@
 #![no_std]
 
 pub mod brown_out;
+pub mod chain;
 mod configuration;
 pub mod edges;
 mod flash;

@@ -16,6 +16,7 @@ use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 use firmware::settings;
 use orientation::alignment::setup::SetupError;
 
+use crate::chain::ChainReader;
 use crate::configuration;
 use crate::configuration::PLATFORM;
 use crate::edges::Line;
@@ -42,7 +43,7 @@ pub type MountInputs<B> = Sensors<Gyro, Accelerometer, Frames<AxisEncoder>, B>;
 /// Sensors of a vehicle.
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
-pub type Spinning = SpinSensors<Converter>;
+pub type Spinning = SpinSensors<Converter, ChainReader>;
 
 /// Connects the sensors on a stage, a turntable or two frames to their wires.
 ///
@@ -91,7 +92,9 @@ pub fn triad(
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
 /// along y and z.
 pub fn spinning(converters: [ConverterWires; 5]) -> Spinning {
-    SpinSensors(converters.map(|wires| converter(wires, configuration::SPIN_CONVERTER).clocked()))
+    let reader = ChainReader::new(converters[0].bus.control());
+    let converter = |wires| converter(wires, configuration::SPIN_CONVERTER).clocked();
+    SpinSensors { converters: converters.map(converter), reader }
 }
 
 /// Converter with its data-ready line.

@@ -11,12 +11,12 @@
 //! **Mode and clock** belong to a device, and are written where the latest device had others. The interface
 //! stays enabled between transfers, and drives the clock at its idle level.
 //!
-//! Between the fall of a select line and the first edge of the clock lie more than twenty instructions, 250 ns at
-//! 80 MHz; no chip here asks for more than 100 ns (MT6835). Between two transactions of a device lie more than
-//! the 180 ns that a TMC5160 asks for.
+//! Between the fall of a select line and the first edge of the clock lie [`SELECTED`] cycles. Between two transactions of a
+//! device lie more than the 180 ns that a TMC5160 asks for.
 
 use core::mem::forget;
 
+use cortex_m::asm::delay;
 use embassy_stm32::gpio::Output;
 use embassy_stm32::mode::Blocking;
 use embassy_stm32::pac::spi::Spi as Registers;
@@ -27,12 +27,19 @@ use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{Mode, Phase, Polarity, Spi};
 use embassy_time::{Duration, block_for};
 use embedded_hal_async::spi::{Error, ErrorKind, ErrorType, Operation, SpiDevice};
+use firmware::platform::Platform;
+
+use crate::{PLATFORM, chain};
 
 /// Bytes that each of the two buffers of the interface holds.
 const BUFFER: usize = 4;
 
 /// Bytes that are transferred between two looks at the operations of a transaction.
 const PIECE: usize = 16;
+
+/// Cycles from the fall of a select line to the first edge of the clock, at least: 125 ns at 64 MHz, where no chip here asks
+/// for more than 100 ns (MT6835).
+const SELECTED: u32 = 8;
 
 /// Turns of the waiting loop, each of at least four cycles, for each cycle of the bus clock's divider: a byte
 /// takes eight bus clocks, and is given up after more than twice that.
@@ -75,24 +82,35 @@ impl Bus {
         }
     }
 
-    /// Prepares the interface for words of eight bits with these settings, where it has others.
+    /// Prepares the interface for these settings, where it has others.
     fn configure(self, control: Cr1) {
-        let registers = self.registers();
-        if registers.cr1().read() == control {
-            return;
+        if self.registers().cr1().read() != control {
+            self.set(control, false);
         }
+    }
+
+    /// Prepares the interface for these settings, and for direct memory access, until its next reset.
+    pub(crate) fn configure_for_memory_access(self, control: Cr1) {
+        self.set(control, true);
+    }
+
+    /// Has the interface transfer words of eight bits with these settings.
+    fn set(self, control: Cr1, is_by_memory_access: bool) {
+        let registers = self.registers();
         let mut off = control;
         off.set_spe(false);
         registers.cr1().write_value(off);
         registers.cr2().write(|words| {
             words.set_ds(Ds::BITS8);
             words.set_frxth(Frxth::QUARTER);
+            words.set_rxdmaen(is_by_memory_access);
+            words.set_txdmaen(is_by_memory_access);
         });
         registers.cr1().write_value(control);
     }
 
     /// Resets the interface, which a transfer that hangs leaves with bytes in its buffers.
-    fn reset(self) {
+    pub(crate) fn reset(self) {
         for is_reset in [true, false] {
             match self {
                 Self::First => RCC.apb2rstr().modify(|bits| bits.set_spi1rst(is_reset)),
@@ -166,10 +184,19 @@ impl Device {
         Self { is_uninterrupted: true, ..self }
     }
 
+    /// Settings of the bus for this device.
+    pub(crate) const fn control(&self) -> Cr1 {
+        self.control
+    }
+
     /// Performs a transaction.
     fn transact(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Hung> {
+        if PLATFORM == Platform::Spin {
+            chain::make_way(self.bus);
+        }
         self.bus.configure(self.control);
         self.select.set_low();
+        delay(SELECTED);
         let outcome = operations.iter_mut().try_for_each(|operation| self.perform(operation));
         if outcome.is_err() {
             self.bus.reset();

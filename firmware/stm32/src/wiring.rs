@@ -7,7 +7,7 @@
 
 use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
+use embassy_stm32::gpio::{AnyPin, Level, Output, Pin, Pull, Speed};
 use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::FLASH;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
@@ -15,6 +15,7 @@ use embassy_stm32::usart::UartTx;
 use firmware::ports::Frames;
 
 use crate::BoardLog;
+use crate::chain;
 use crate::edges::Line;
 use crate::i2c::BaseBus;
 use crate::spi::{Bus, Device};
@@ -111,6 +112,13 @@ impl Buses {
     pub fn converter(self, select: Peri<'static, impl Pin>, ready: Line) -> ConverterWires {
         let bus = self.sensor(select, MODE_1, ads1262::GREATEST_BUS_HERTZ);
         ConverterWires { bus, ready }
+    }
+
+    /// Connects the converters of a spinning body, which are read in a chain, by select pins and data-ready lines.
+    #[must_use]
+    pub fn chained(self, wires: [(Peri<'static, AnyPin>, Line); 5]) -> [ConverterWires; 5] {
+        chain::connect(&wires);
+        wires.map(|(select, ready)| self.converter(select, ready))
     }
 
     /// Connects the ADXL355 by its select pin.

@@ -8,8 +8,8 @@ use super::collect::Figures;
 use super::jobs::SURVEY;
 use super::sections::Memory;
 
-/// Instructions that the board executes in a second at best: one in a cycle, at 80 MHz.
-const PER_SECOND: u64 = 80_000_000;
+/// Instructions that the board executes in a second at best: one in a cycle, at 64 MHz.
+const PER_SECOND: u64 = 64_000_000;
 /// The highest sample rate of the stage path, Hz.
 const GREATEST_RATE: u64 = 2000;
 

@@ -156,8 +156,8 @@ fn instructions_and_sleep_together_are_the_time_of_the_measurement() {
             (parts / instructions_per_sample - 1.0).abs() < 1e-9,
             "{carrier}: {parts} in parts"
         );
-        // 122 periods of the crystal where there were 4 MHz, times 20.
-        let hertz = 20.0 * 122.0 * 32_768.0;
+        // 122 periods of the crystal where there were 4 MHz, times 16.
+        let hertz = 16.0 * 122.0 * 32_768.0;
         let busy = instructions_per_sample * cycles_per_instruction / hertz * 400.0;
         assert!(
             ((busy + idle) - 1.0).abs() < 0.01,

@@ -4,7 +4,7 @@ use super::attitude::Attitude;
 use super::progress::Progress;
 use super::setting::Setting;
 use super::spin::Spin;
-use super::state::{Condition, State};
+use super::state::{Condition, lasted};
 use crate::alignment::{Input, Listener, Method, Request, Verdict};
 use crate::signal::SpinSample;
 use crate::units::{Instant, Radians, Seconds};
@@ -31,8 +31,9 @@ pub struct Flight {
     now: Instant,
     /// Number of samples, modulo 2³².
     samples: u32,
-    /// State that was reported last.
-    reported: State,
+    /// Condition of the latest sample, and since when it is none in which the roll is known.
+    condition: Condition,
+    troubled: Option<Instant>,
     /// Whether the tracking has ended.
     is_over: bool,
 }
@@ -51,7 +52,8 @@ impl Flight {
             begun: None,
             now: Instant::default(),
             samples: 0,
-            reported: State::default(),
+            condition: Condition::default(),
+            troubled: None,
             is_over: false,
         }
     }
@@ -61,35 +63,36 @@ impl Flight {
         self.spin.push(sample);
         self.attitude.push(sample, &self.spin);
         let begun = *self.begun.get_or_insert(sample.time);
-        self.now = sample.time;
+        let before = core::mem::replace(&mut self.now, sample.time);
         self.samples = self.samples.wrapping_add(1);
-        self.report_state(listener);
+        self.report_condition(before, listener);
         if self.samples % TRACKED_SAMPLES == 1 {
             self.report(listener);
         }
-        let elapsed = self.now.seconds() - begun.seconds();
-        if self.seconds.is_some_and(|seconds| elapsed >= seconds.0) {
+        let has_lasted = |seconds: Seconds| self.now.seconds() - begun.seconds() >= seconds.0;
+        if self.seconds.is_some_and(has_lasted) {
             return self.end(None, listener);
         }
         Request::Continue
     }
 
-    /// Reports a change of the state by the latest sample.
-    fn report_state(&mut self, listener: Listener) {
-        let state = self.spin.state();
-        let before = core::mem::replace(&mut self.reported, state);
-        match [before.condition, state.condition] {
+    /// Reports a change of the condition by the latest sample, of which the one before came at this time.
+    #[inline]
+    fn report_condition(&mut self, before: Instant, listener: Listener) {
+        let condition = core::mem::replace(&mut self.condition, self.spin.condition());
+        let troubled = core::mem::replace(&mut self.troubled, self.spin.troubled());
+        match [condition, self.condition] {
             [before, now] if before == now => {}
             [Condition::Holding, Condition::Locked] => {
-                listener(Progress::LiftBack(before.seconds).into());
+                listener(Progress::LiftBack(lasted(troubled, before)).into());
             }
-            _ => listener(Progress::Changed(state).into()),
+            _ => listener(Progress::Changed(self.spin.state()).into()),
         }
     }
 
     /// Reports the roll at present.
     fn report(&self, listener: Listener) {
-        let condition = self.spin.state().condition;
+        let condition = self.spin.condition();
         let roll = self.spin.roll().rad();
         listener(Progress::Tracked(Radians(roll), self.spin.sigma(), condition).into());
     }

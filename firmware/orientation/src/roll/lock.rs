@@ -9,9 +9,9 @@ use super::circle::Circle;
 use super::fit::{Fit, Sums};
 use super::phase_accumulator::PhaseAccumulator;
 use super::setting::Setting;
-use super::state::{Condition, State};
+use super::state::Condition;
 use crate::signal::SpinSample;
-use crate::units::{AngleIncrement, Instant, Seconds, TURN};
+use crate::units::{AngleIncrement, Instant, TURN};
 
 /// One turn in steps of the angle.
 const TURN_STEPS: u64 = 1 << 40;
@@ -456,16 +456,18 @@ impl Lock {
         self.lift.map(f64::from)
     }
 
-    /// State with its duration. Until the roll was found for the first time, nothing is lost or held.
-    pub(super) fn state(&self, now: Instant) -> State {
-        let since = self.troubled.unwrap_or(now);
-        let seconds = now.seconds() - since.seconds();
+    /// Time since which the turns are not used; [`None`] while they are.
+    pub(super) fn troubled(&self) -> Option<Instant> {
+        self.troubled
+    }
+
+    /// Whether the turns are used, or why not. Until the roll was found for the first time, nothing is lost or held.
+    #[inline]
+    pub(super) fn condition(&self) -> Condition {
         let is_of_roll = matches!(
             self.condition,
             Condition::Locked | Condition::Holding | Condition::RotationLost
         );
-        let searches = is_of_roll && !self.is_found;
-        let condition = if searches { Condition::Searching } else { self.condition };
-        State { condition, seconds: Seconds(seconds) }
+        if is_of_roll && !self.is_found { Condition::Searching } else { self.condition }
     }
 }

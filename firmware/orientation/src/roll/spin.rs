@@ -5,7 +5,7 @@ use super::lock::Lock;
 use super::phase_accumulator::{PhaseAccumulator, Roll};
 use super::plausibility::Plausibility;
 use super::setting::{Method, Setting};
-use super::state::{Condition, State};
+use super::state::{Condition, State, lasted};
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant, MetresPerSecondSquared, Radians, Seconds};
 
@@ -141,21 +141,30 @@ impl Spin {
         self.lock()?.lift().map(MetresPerSecondSquared)
     }
 
+    /// Source of the present roll, or fault that prevents it.
+    #[inline]
+    #[must_use]
+    pub fn condition(&self) -> Condition {
+        match &self.corrector {
+            Corrector::Extrema(extrema) if extrema.has_corrected => Condition::Locked,
+            Corrector::Extrema(_) => Condition::Searching,
+            Corrector::Lock(_) if self.plausibility.stuck().is_some() => Condition::GyroStuck,
+            Corrector::Lock(lock) => lock.condition(),
+        }
+    }
+
+    /// Time since which the turns are not used; [`None`] while they are.
+    pub(super) fn troubled(&self) -> Option<Instant> {
+        self.lock().and_then(Lock::troubled)
+    }
+
     /// Source of the present roll, or fault that prevents it, with its duration.
     #[must_use]
     pub fn state(&self) -> State {
-        match (&self.corrector, self.plausibility.stuck()) {
-            (Corrector::Extrema(extrema), _) => {
-                let found = Condition::Locked;
-                let condition = if extrema.has_corrected { found } else { Condition::Searching };
-                State { condition, seconds: Seconds(0.0) }
-            }
-            (Corrector::Lock(_), Some(samples)) => {
-                let seconds = f64::from(samples) * f64::from(self.period) * 1e-6;
-                State { condition: Condition::GyroStuck, seconds: Seconds(seconds) }
-            }
-            (Corrector::Lock(lock), None) => lock.state(self.latest.unwrap_or_default()),
-        }
+        let of_turns = || lasted(self.troubled(), self.latest.unwrap_or_default());
+        let of_samples = |samples| Seconds(f64::from(samples) * f64::from(self.period) * 1e-6);
+        let stuck = self.plausibility.stuck().filter(|_| self.lock().is_some());
+        State { condition: self.condition(), seconds: stuck.map_or_else(of_turns, of_samples) }
     }
 
     /// Rotation of the latest sample, corrected for the scale error, in 2⁻³² of a turn.

@@ -1,6 +1,6 @@
 //! Source of the present roll, or fault that prevents it, with the sentences of the log.
 
-use crate::units::Seconds;
+use crate::units::{Instant, Seconds};
 use crate::words::Rounded;
 
 /// Accelerometers of the spinning body.
@@ -55,6 +55,11 @@ pub struct State {
     pub condition: Condition,
     /// Duration of a condition other than [`Condition::Searching`] and [`Condition::Locked`].
     pub seconds: Seconds,
+}
+
+/// Duration of a condition that may last since some time.
+pub(super) fn lasted(since: Option<Instant>, now: Instant) -> Seconds {
+    Seconds(since.map_or(0.0, |since| now.seconds() - since.seconds()))
 }
 
 crate::words! { State:

@@ -17,9 +17,10 @@ use orientation::units::{DEGREE_PER_SQRT_HOUR, Radians, RadiansPerRootSecond, Se
 
 use super::fault::{Fault, Injection, PortWrapper};
 use super::{SimulatedConverter, Wires, scenario};
-use firmware::ports::SpinSensors;
+use firmware::acquire::OneByOne;
+use firmware::ports::{Code, SpinSensors};
 use firmware::spin::budget::SAMPLE_HERTZ;
-use firmware::spin::configuration::{Channel, SpinConfiguration};
+use firmware::spin::configuration::{CHANNELS, Channel, SpinConfiguration};
 
 /// Conversions a second, Hz.
 pub const SAMPLE_RATE: f64 = SAMPLE_HERTZ as f64;
@@ -165,7 +166,7 @@ impl SpinScenario {
 }
 
 /// The sensors of a spinning body on simulated chips.
-pub type SimulatedSpin<'a, A> = SpinSensors<SimulatedConverter<'a, A>>;
+pub type SimulatedSpin<'a, A> = SpinSensors<SimulatedConverter<'a, A>, OneByOne<Code, CHANNELS>>;
 
 impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     /// The sensors of a spinning body.
@@ -173,6 +174,7 @@ impl<'a, A: PortWrapper> Wires<'a, '_, A> {
     pub fn spinning(&self) -> SimulatedSpin<'a, A> {
         let configuration = Converter { rate: DataRate::Sps14400, ..Converter::default() };
         let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, configuration);
-        SpinSensors(CHIPS.map(|select| converter(select).clocked()))
+        let converters = CHIPS.map(|select| converter(select).clocked());
+        SpinSensors { converters, reader: OneByOne::default() }
     }
 }
