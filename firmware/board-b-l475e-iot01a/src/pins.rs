@@ -5,18 +5,17 @@ use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::interrupt::{Interrupt, InterruptExt};
 use embassy_stm32::peripherals::{
-    DMA1_CH4, DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1,
-    PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5,
+    DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1, PB2, PB4,
+    PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, ConfigError, UartTx};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
-use embassy_time::Duration;
 use firmware::platform::Platform;
 use firmware::ports::Frames;
 use stm32::edges::{self, Line};
-use stm32::i2c::BaseBus;
+use stm32::i2c::{BaseBus, serve};
 use stm32::spi::Bus;
 use stm32::wiring::{
     AxisPlatformWires, Buses, Clock, FramesWires, Link, Outlets, PlatformWires, SpinWires,
@@ -27,12 +26,20 @@ use stm32::{BoardLog, PLATFORM, chain};
 use crate::clock;
 
 bind_interrupts!(struct Interrupts {
-    I2C2_EV => i2c::EventInterruptHandler<I2C2>;
-    I2C2_ER => i2c::ErrorInterruptHandler<I2C2>;
-    DMA1_CHANNEL4 => dma::InterruptHandler<DMA1_CH4>;
-    DMA1_CHANNEL5 => dma::InterruptHandler<DMA1_CH5>;
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
 });
+
+/// The events of the bus of the base.
+#[interrupt]
+fn I2C2_EV() {
+    serve();
+}
+
+/// The errors of the bus of the base.
+#[interrupt]
+fn I2C2_ER() {
+    serve();
+}
 
 /// The edges of the data-ready line on pin 0 of its port.
 #[interrupt]
@@ -71,9 +78,6 @@ fn DMA1_CHANNEL2() {
         chain::transferred();
     }
 }
-
-/// Longest transfer of the IMU on the base before the bus counts as broken; the usual ones take 0.4 ms.
-const BASE_TIMEOUT: Duration = Duration::from_millis(5);
 
 /// Select pins of encoder and motor driver of the axis, or of the outer one.
 type AxisPins = (Peri<'static, PD0>, Peri<'static, PD5>);
@@ -121,11 +125,7 @@ impl Board {
             accelerometer: p.PA15,
             axis: (p.PD0, p.PD5),
             motor_enable: p.PD2,
-            base: BasePins {
-                bus: p.I2C2,
-                pins: (p.PB10, p.PB11),
-                channels: (p.DMA1_CH4, p.DMA1_CH5),
-            },
+            base: BasePins { bus: p.I2C2, pins: (p.PB10, p.PB11), receiver: p.DMA1_CH5 },
             selects: (p.PB2, p.PA4, p.PA3, p.PB4),
             ready: (p.PB0, p.PB1, p.PC4, p.PC3),
             lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
@@ -195,18 +195,15 @@ impl Board {
 struct BasePins {
     bus: Peri<'static, I2C2>,
     pins: (Peri<'static, PB10>, Peri<'static, PB11>),
-    channels: (Peri<'static, DMA1_CH4>, Peri<'static, DMA1_CH5>),
+    receiver: Peri<'static, DMA1_CH5>,
 }
 
 impl BasePins {
     /// Connects the IMU.
     fn connect(self) -> BaseBus {
-        const FREQUENCY: Hertz = Hertz(lsm6dsl::BUS_HERTZ);
-        let Self { bus, pins: (clock, data), channels: (sending, receiving) } = self;
+        let Self { bus, pins: (clock, data), receiver } = self;
         let mut settings = i2c::Config::default();
-        settings.frequency = FREQUENCY;
-        settings.timeout = BASE_TIMEOUT;
-        let bus = I2c::new(bus, clock, data, sending, receiving, Interrupts, settings);
-        BaseBus::new(bus, FREQUENCY)
+        settings.frequency = Hertz(lsm6dsl::BUS_HERTZ);
+        BaseBus::taken(I2c::new_blocking(bus, clock, data, settings), receiver)
     }
 }

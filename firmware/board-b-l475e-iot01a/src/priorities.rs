@@ -20,15 +20,9 @@ const EDGES: [Interrupt; 6] = [
     Interrupt::DMA1_CHANNEL2,
 ];
 
-/// Time driver, bus of the base, direct memory access of that bus and of the link.
-const OTHERS: [Interrupt; 6] = [
-    Interrupt::TIM1_BRK_TIM15,
-    Interrupt::I2C2_EV,
-    Interrupt::I2C2_ER,
-    Interrupt::DMA1_CHANNEL4,
-    Interrupt::DMA1_CHANNEL5,
-    Interrupt::DMA2_CHANNEL6,
-];
+/// Time driver, bus of the base, direct memory access of the link.
+const OTHERS: [Interrupt; 4] =
+    [Interrupt::TIM1_BRK_TIM15, Interrupt::I2C2_EV, Interrupt::I2C2_ER, Interrupt::DMA2_CHANNEL6];
 
 /// The executors of acquisition and of control. The peripherals of these interrupts are not used: a master of a
 /// single-wire protocol, and a controller of touch keys.

@@ -8,10 +8,11 @@ use crate::image::Image;
 use crate::processor::blocks::Blocks;
 
 /// Parts of paths of sources, with what they belong to; the first that is found holds.
-const PATHS: [(&str, Origin); 25] = [
+const PATHS: [(&str, Origin); 26] = [
     ("/firmware/orientation/", Origin::Methods),
     ("/firmware/drivers/", Origin::Drivers),
     ("/firmware/stm32/src/edges.rs", Origin::Peripherals),
+    ("/firmware/stm32/src/i2c.rs", Origin::Peripherals),
     ("/firmware/stm32/src/spi.rs", Origin::Peripherals),
     ("/firmware/", Origin::Instrument),
     ("firmware/", Origin::Instrument),

@@ -1,64 +1,181 @@
-//! The bus of the IMU on the base, started anew after each transfer that has failed.
+//! The bus of the IMU on the base: interrupts and direct memory access carry a transaction out, and wake its task once,
+//! at the end.
 //!
-//! embassy ends a transfer that hangs after its time limit, but leaves the interface as it is, and before the next
-//! one polls for as long until the bus is free: meanwhile no other sensor would be read.
+//! embassy sets up pins, clock and timing; from then on the registers are used here (RM0351, chapter 39), since its own
+//! transactions, in which the task does each part, take several thousand instructions.
+//!
+//! **Each transaction ends.** One that has not ended within its time limit is given up. After any that has failed the
+//! interface is started anew, which releases the bus, so that the next one finds it as new.
 
-use embassy_embedded_hal::SetConfig;
-use embassy_stm32::i2c::{Error, I2c, Master};
-use embassy_stm32::mode::Async;
-use embassy_stm32::time::Hertz;
-use embedded_hal_async::i2c::{self, ErrorType, Operation};
+use core::mem::forget;
+use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// The bus of the IMU on the base.
-pub struct BaseBus {
-    bus: I2c<'static, Async, Master>,
-    frequency: Hertz,
+use embassy_stm32::Peri;
+use embassy_stm32::i2c::{I2c, Master};
+use embassy_stm32::mode::Blocking;
+use embassy_stm32::pac::i2c::I2c as Registers;
+use embassy_stm32::pac::i2c::regs::Cr2;
+use embassy_stm32::pac::i2c::vals::{Autoend, Dir};
+use embassy_stm32::pac::{DMA1, I2C2};
+use embassy_stm32::peripherals::DMA1_CH5;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
+use embassy_time::{Duration, with_timeout};
+use embedded_hal_async::i2c::{self, Error, ErrorKind, ErrorType, Operation};
+
+/// The interface.
+const BUS: Registers = I2C2;
+/// The channel of direct memory access that takes what it receives: the fifth (RM0351, table 41).
+const CHANNEL: usize = 4;
+/// Number of the interface's request on that channel (RM0351, 11.6.7).
+const REQUEST: u8 = 3;
+
+/// Longest transaction before the bus counts as broken; the usual ones take 0.4 ms.
+const LONGEST: Duration = Duration::from_millis(5);
+/// Most bytes that a transaction sends.
+const MOST_SENT: usize = size_of::<u32>();
+/// Most bytes that a transaction receives.
+const MOST_RECEIVED: usize = 16;
+
+/// Bytes that are still to be sent, the next one lowest.
+static TO_SEND: AtomicU32 = AtomicU32::new(0);
+/// What `I2C_CR2` is to hold once all are sent, where bytes are to be received then.
+static THEN: AtomicU32 = AtomicU32::new(0);
+/// The bytes that were received.
+static RECEIVED: [AtomicU8; MOST_RECEIVED] = [const { AtomicU8::new(0) }; MOST_RECEIVED];
+/// A transaction has ended: whether all went well.
+static ENDED: Signal<CriticalSectionRawMutex, bool> = Signal::new();
+
+/// Does what the interface asks for by one of its two interrupts.
+pub fn serve() {
+    let status = BUS.isr().read();
+    if status.txis() {
+        let bytes = TO_SEND.load(Ordering::Relaxed);
+        TO_SEND.store(bytes >> 8, Ordering::Relaxed);
+        BUS.txdr().write(|next| next.set_txdata(bytes as u8));
+    } else if status.tc() {
+        BUS.cr2().write_value(Cr2(THEN.load(Ordering::Relaxed)));
+    } else {
+        BUS.icr().write(|clear| {
+            clear.set_stopcf(true);
+            clear.set_nackcf(true);
+            clear.set_berrcf(true);
+            clear.set_arlocf(true);
+            clear.set_ovrcf(true);
+        });
+        let has_failed = status.nackf() || status.berr() || status.arlo() || status.ovr();
+        ENDED.signal(status.stopf() && !has_failed);
+    }
 }
 
-impl BaseBus {
-    /// A bus that is clocked with this frequency.
-    #[must_use]
-    pub const fn new(bus: I2c<'static, Async, Master>, frequency: Hertz) -> Self {
-        Self { bus, frequency }
-    }
+/// A transaction has failed, or is not one of those that this bus does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failed;
 
-    /// Passes an outcome on. To write the frequency disables the interface for a moment, which resets it and
-    /// releases the bus (RM0351, 39.4.6).
-    fn renewed<T>(&mut self, outcome: Result<T, Error>) -> Result<T, Error> {
-        if outcome.is_err() {
-            // It has no error.
-            let _ = self.bus.set_config(&self.frequency);
-        }
-        outcome
+impl Error for Failed {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
     }
+}
+
+/// The bus of the IMU on the base.
+pub struct BaseBus(());
+
+impl BaseBus {
+    /// Takes the bus as embassy has set it up, with its pins and its clock, and the channel for what it receives.
+    #[must_use]
+    pub fn taken(set_up: I2c<'static, Blocking, Master>, _: Peri<'static, DMA1_CH5>) -> Self {
+        // To drop it would take pins and clock away.
+        forget(set_up);
+        DMA1.cselr().modify(|requests| requests.set_cs(CHANNEL, REQUEST));
+        start();
+        Self(())
+    }
+}
+
+/// Starts the interface anew, which releases the bus (RM0351, 39.4.6).
+fn start() {
+    BUS.cr1().modify(|control| control.set_pe(false));
+    // It takes three clocks until it is off.
+    while BUS.cr1().read().pe() {}
+    BUS.cr1().modify(|control| {
+        control.set_pe(true);
+        control.set_txie(true);
+        control.set_tcie(true);
+        control.set_stopie(true);
+        control.set_errie(true);
+        control.set_rxdmaen(true);
+    });
+}
+
+/// Has the next bytes that are received put into their place.
+fn receive(count: usize) {
+    let channel = DMA1.ch(CHANNEL);
+    channel.cr().write(|control| control.set_en(false));
+    channel.ndtr().write(|left| left.set_ndt(count as u16));
+    channel.par().write_value(BUS.rxdr().as_ptr().expose_provenance() as u32);
+    channel.mar().write_value(RECEIVED.as_ptr().expose_provenance() as u32);
+    channel.cr().write(|control| {
+        control.set_minc(true);
+        control.set_en(true);
+    });
+}
+
+/// What `I2C_CR2` holds to begin a part of a transaction with so many bytes; the last part ends it.
+fn part(address: u8, direction: Dir, bytes: usize, is_last: bool) -> Cr2 {
+    let mut control = Cr2::default();
+    control.set_sadd(u16::from(address) << 1);
+    control.set_dir(direction);
+    control.set_nbytes(bytes as u8);
+    control.set_autoend(if is_last { Autoend::AUTOMATIC } else { Autoend::SOFTWARE });
+    control.set_start(true);
+    control
+}
+
+/// Sends bytes, then receives others, and waits for the end of it; whether all went well.
+async fn transact(address: u8, sent: &[u8], received: &mut [u8]) -> bool {
+    ENDED.reset();
+    let bytes = sent.iter().rev().fold(0, |bytes, byte| bytes << 8 | u32::from(*byte));
+    TO_SEND.store(bytes, Ordering::Relaxed);
+    let second = part(address, Dir::READ, received.len(), true);
+    THEN.store(second.0, Ordering::Relaxed);
+    receive(received.len());
+    BUS.cr2().write_value(part(address, Dir::WRITE, sent.len(), received.is_empty()));
+    let is_well = with_timeout(LONGEST, ENDED.wait()).await == Ok(true);
+    for (byte, taken) in received.iter_mut().zip(&RECEIVED) {
+        *byte = taken.load(Ordering::Acquire);
+    }
+    is_well && DMA1.ch(CHANNEL).ndtr().read().ndt() == 0
 }
 
 impl ErrorType for BaseBus {
-    type Error = Error;
+    type Error = Failed;
 }
 
 impl i2c::I2c for BaseBus {
-    async fn write(&mut self, address: u8, sent: &[u8]) -> Result<(), Error> {
-        let outcome = self.bus.write(address, sent).await;
-        self.renewed(outcome)
-    }
-
-    async fn write_read(
-        &mut self,
-        address: u8,
-        sent: &[u8],
-        received: &mut [u8],
-    ) -> Result<(), Error> {
-        let outcome = self.bus.write_read(address, sent, received).await;
-        self.renewed(outcome)
-    }
-
+    /// Sends bytes, at most four, and perhaps receives others behind them, at most sixteen; the driver of the IMU asks
+    /// for nothing else.
     async fn transaction(
         &mut self,
         address: u8,
         operations: &mut [Operation<'_>],
-    ) -> Result<(), Error> {
-        let outcome = self.bus.transaction(address, operations).await;
-        self.renewed(outcome)
+    ) -> Result<(), Failed> {
+        let (sent, received): (&[u8], &mut [u8]) = match operations {
+            [Operation::Write(sent)] => (sent, &mut []),
+            [Operation::Write(sent), Operation::Read(received)] => (sent, received),
+            _ => return Err(Failed),
+        };
+        if sent.is_empty() || sent.len() > MOST_SENT || received.len() > MOST_RECEIVED {
+            return Err(Failed);
+        }
+        // One that was given up when its task ended is still under way.
+        if BUS.isr().read().busy() {
+            start();
+        }
+        if transact(address, sent, received).await {
+            return Ok(());
+        }
+        start();
+        Err(Failed)
     }
 }
