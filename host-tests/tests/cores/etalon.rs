@@ -10,7 +10,7 @@ use orientation::alignment::stepwise::etalon::{
     Acceptance, Accepted, Criterion, Limit, Series, SeriesError, accepted, search,
 };
 use orientation::math::reference_table::Table;
-use orientation::math::reference_table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
+use orientation::math::reference_table::{CHECKSUM, ENTRIES, QUARTER_COSINE, Quarter};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
@@ -27,7 +27,12 @@ const ONE: f64 = 2_147_483_648.0;
 const PAPER_RATE: f64 = 10.1453;
 
 /// A board's own copy, as one in a flash section of its own would be made.
-static COPY: [u32; ENTRIES] = QUARTER_COSINE;
+static COPY: Quarter = QUARTER_COSINE;
+
+/// All entries.
+fn entries() -> impl Iterator<Item = u32> {
+    (0..ENTRIES).map(|k| QUARTER_COSINE.entry(k).expect("the quarter has so many entries"))
+}
 
 #[expect(clippy::unwrap_used, reason = "a helper of tests")]
 fn series(case: &Case) -> Series {
@@ -57,7 +62,7 @@ fn evaluations(outcomes: &[[Outcome; 5]], criterion: usize) -> Vec<u32> {
 
 #[test]
 fn every_entry_is_the_nearest_integer_to_the_cosine() {
-    for (k, &entry) in QUARTER_COSINE.iter().enumerate() {
+    for (k, entry) in entries().enumerate() {
         // From the nearer end, where the series of sine and cosine lose nothing.
         let exact = if k <= 16_200 {
             (k as f64 * (FRAC_PI_2 / 32_400.0)).cos()
@@ -99,7 +104,7 @@ fn the_checksum_is_the_common_crc_32() {
         !crc
     };
     assert_eq!(crc32(&mut "123456789".bytes()), 0xCBF4_3926);
-    let mut bytes = QUARTER_COSINE.iter().flat_map(|entry| entry.to_le_bytes());
+    let mut bytes = entries().flat_map(u32::to_le_bytes);
     assert_eq!(crc32(&mut bytes), CHECKSUM);
 }
 
@@ -108,7 +113,10 @@ fn one_flipped_bit_fails_verification_and_a_copy_passes() {
     assert_eq!(Table::new(&COPY).verify(), Ok(()));
     for k in [0, 17_000, ENTRIES - 1] {
         let mut damaged = Box::new(QUARTER_COSINE);
-        damaged[k] ^= 1 << (k % 32);
+        damaged.above[k] ^= 1 << (k % 8);
+        assert!(Table::new(Box::leak(damaged)).verify().is_err());
+        let mut damaged = Box::new(QUARTER_COSINE);
+        damaged.chords[k / 16] ^= 1 << (k % 32);
         assert!(Table::new(Box::leak(damaged)).verify().is_err());
     }
 }

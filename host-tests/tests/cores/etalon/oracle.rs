@@ -23,7 +23,7 @@ static CIRCLE: LazyLock<Vec<i64>> = LazyLock::new(|| (0..TURN).map(unfolded).col
 /// The cosine at grid index `k`, 0 to 129 599, from the quarter table.
 #[must_use]
 pub fn unfolded(k: i32) -> i64 {
-    let entry = |k: i32| i64::from(QUARTER_COSINE[k as usize]);
+    let entry = |k: i32| QUARTER_COSINE.entry(k as usize).map_or(0, i64::from);
     if k <= 32_400 {
         entry(k)
     } else if k <= 64_800 {
