@@ -53,7 +53,10 @@ impl AngleIncrement {
     pub const STEP: f64 = 4e-9;
 
     /// One step in nrad/s · ns, which is 10⁻¹⁸ rad.
-    const STEP_ATTORADIANS: i64 = 4_000_000_000;
+    const STEP_ATTORADIANS: u64 = 4_000_000_000;
+
+    /// 2⁶³ over that, rounded down.
+    const RECIPROCAL: u64 = (1 << 63) / Self::STEP_ATTORADIANS;
 
     /// Increment from rad; the remainder `carried`, rad, begins at zero and belongs to the axis.
     /// NaN is an unknown rotation and becomes the upper limit.
@@ -73,12 +76,23 @@ impl AngleIncrement {
     /// begins at zero and belongs to the axis. A saturated rate gives a saturated increment.
     pub fn of_rate_over(rate: AngularRate, nanoseconds: u64, carried: &mut i64) -> Self {
         let whole = i64::from(rate.0) * nanoseconds.cast_signed() + *carried;
-        let steps = whole / Self::STEP_ATTORADIANS;
-        *carried = whole % Self::STEP_ATTORADIANS;
+        let [steps, rest] = Self::steps(whole.unsigned_abs()).map(u64::cast_signed);
+        let (steps, rest) = if whole < 0 { (-steps, -rest) } else { (steps, rest) };
+        *carried = rest;
         if rate.is_saturated() {
             return Self(if rate.0 > 0 { i32::MAX } else { i32::MIN });
         }
         Self(steps.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    }
+
+    /// Whole steps of an angle of at most 2⁶³ · 10⁻¹⁸ rad, and what is left of it, exact: a division of 64 bits takes the
+    /// core 240 instructions, this 20.
+    const fn steps(attoradians: u64) -> [u64; 2] {
+        // Less than 1.76 below the quotient, of which the bits that are cut off make 0.54.
+        let steps = ((attoradians >> 31) * Self::RECIPROCAL) >> 32;
+        let rest = attoradians - steps * Self::STEP_ATTORADIANS;
+        let is_short = rest >= Self::STEP_ATTORADIANS;
+        if is_short { [steps + 1, rest - Self::STEP_ATTORADIANS] } else { [steps, rest] }
     }
 
     /// Increment in rad, exact.

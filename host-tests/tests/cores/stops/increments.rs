@@ -23,8 +23,9 @@ proptest! {
             steps += i128::from(increment.0);
             exact += i128::from(rate) * i128::from(microseconds);
         }
-        // A step is 4 nrad, a product of whole numbers 10⁻¹⁵ rad.
+        // A step is 4 nrad, a product of whole numbers 10⁻¹⁵ rad, what is carried counts in 10⁻¹⁸ rad.
         prop_assert!((steps * 4_000_000 - exact).abs() < 4_000_000);
+        prop_assert_eq!(1000 * exact - steps * 4_000_000_000, i128::from(carried));
     }
 }
 
