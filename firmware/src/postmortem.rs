@@ -5,6 +5,7 @@
 //! begins, and again when it ends; so where there is one although the supply was too low, RAM has kept its content: it
 //! was a brown-out.
 
+use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use orientation::checksum::crc32;
@@ -14,10 +15,12 @@ use crate::check_ins::{CheckIns, Parts};
 
 /// Number of return addresses that are kept.
 pub const CALLERS: usize = 6;
-/// Words of a record: the first one, how it ended, its number, resets, crystal, registers, return addresses, checksum.
-pub const WORDS: usize = 5 + 8 + CALLERS + 1;
+/// Words of the place and the message of a panic.
+const TEXT: usize = 40;
+/// Words of a record: the first one, how it ended, its number, resets, crystal, registers, return addresses, text, checksum.
+pub const WORDS: usize = 5 + 8 + CALLERS + TEXT + 1;
 /// The first word of a record, with the version of its form.
-const FIRST: u32 = 0x4D52_4401;
+const FIRST: u32 = 0x4D52_4402;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,6 +70,36 @@ impl Registers {
     }
 }
 
+/// Place and message of a panic, as far as they fit: 160 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Text([u8; 4 * TEXT]);
+
+impl Default for Text {
+    fn default() -> Self {
+        Self([0; 4 * TEXT])
+    }
+}
+
+impl Text {
+    /// As it was written; a character that did not fit is left out.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        let written = self.0.split(|byte| *byte == 0).next().unwrap_or_default();
+        written.utf8_chunks().next().map_or("", |chunk| chunk.valid())
+    }
+}
+
+impl fmt::Write for Text {
+    /// Writes what fits, in one line; it never fails.
+    fn write_str(&mut self, words: &str) -> fmt::Result {
+        let free = self.0.iter_mut().skip_while(|byte| **byte != 0);
+        for (place, byte) in free.zip(words.bytes()) {
+            *place = byte.max(b' ');
+        }
+        Ok(())
+    }
+}
+
 /// The record of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Record {
@@ -83,6 +116,8 @@ pub struct Record {
     /// What may be return addresses on the stack, from its top; zero where there is none. The first that are none of
     /// core's own panics are where it happened.
     pub callers: [u32; CALLERS],
+    /// Place and message of a panic.
+    pub text: Text,
 }
 
 impl Record {
@@ -90,13 +125,14 @@ impl Record {
     #[must_use]
     pub fn to_words(&self) -> [u32; WORDS] {
         let Registers { pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar } = self.registers;
-        let [a, b, c, d, e, f] = self.callers;
         let (end, crystal) = (self.end as u32, self.is_crystal_dead.into());
         let Self { number, resets, .. } = *self;
-        let mut words = [
-            FIRST, end, number, resets, crystal, pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar, a, b, c,
-            d, e, f, 0,
-        ];
+        let head = [FIRST, end, number, resets, crystal, pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar];
+        let (text, _) = self.text.0.as_chunks();
+        let text = text.iter().map(|bytes| u32::from_le_bytes(*bytes));
+        let mut words = [0; WORDS];
+        let all = head.into_iter().chain(self.callers).chain(text);
+        words.iter_mut().zip(all).for_each(|(place, word)| *place = word);
         words[WORDS - 1] = checksum(&words);
         words
     }
@@ -105,15 +141,20 @@ impl Record {
     #[must_use]
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
         let [first, end, number, resets, crystal, rest @ ..] = *words;
-        let [pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar, callers @ .., last] = rest;
+        let [pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar, rest @ .., last] = rest;
         (first == FIRST && last == checksum(words)).then_some(())?;
+        let (callers, kept) = rest.split_first_chunk()?;
+        let mut text = Text::default();
+        let bytes = kept.iter().flat_map(|word| word.to_le_bytes());
+        text.0.iter_mut().zip(bytes).for_each(|(place, byte)| *place = byte);
         Some(Self {
             end: *End::ALL.get(end as usize)?,
             resets,
             is_crystal_dead: crystal != 0,
             number,
             registers: Registers { pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar },
-            callers,
+            callers: *callers,
+            text,
         })
     }
 }
@@ -206,6 +247,8 @@ pub struct Last {
 pub enum Line<'a> {
     /// How, and in which part.
     End(How, &'a Last),
+    /// Place and message of a panic.
+    Text(&'a str),
     /// Where a fault was.
     Place(&'a Registers),
     /// What caused a fault.
@@ -255,10 +298,12 @@ impl Last {
 
     /// The lines of the log that tell how it ended.
     #[must_use]
-    pub fn lines(&self, how: How) -> [Option<Line<'_>>; 4] {
-        let Record { registers, callers, .. } = &self.record;
+    pub fn lines(&self, how: How) -> [Option<Line<'_>>; 5] {
+        let Record { registers, callers, text, .. } = &self.record;
+        let text = text.as_str();
         [
             Some(Line::End(how, self)),
+            (!text.is_empty()).then_some(Line::Text(text)),
             (registers.pc != 0).then_some(Line::Place(registers)),
             (registers.hfsr != 0).then_some(Line::Cause(registers)),
             (callers[0] != 0).then_some(Line::Callers(callers)),
@@ -290,6 +335,7 @@ words! { Line<'_>:
     Self::End(how, last) =>
         "last reset: {} after {} s, {} resets before; running: {}; missing: {}",
         how, last.seconds, last.record.resets, last.running, last.missing;
+    Self::Text(text) => "panicked at {}", text;
     Self::Place(registers) =>
         "PC {:#010x}, LR {:#010x}, PSR {:#010x}, SP {:#010x}",
         registers.pc, registers.lr, registers.psr, registers.sp;

@@ -151,7 +151,10 @@ async fn tell(last: &Last, reason: Reason, link: &mut Link) {
     let how = last.how(reason == Reason::Watchdog, reason == Reason::Supply);
     let Some(how) = how else { return };
     last.lines(how).iter().flatten().for_each(|line| defmt::warn!("board: {}", line));
-    link::say(link, &["last reset: ", how.brief(), " in ", last.part(), "\r\n"]).await;
+    let text = last.record.text.as_str();
+    let place = if text.is_empty() { "" } else { " at " };
+    let words = ["last reset: ", how.brief(), " in ", last.part(), place, text, "\r\n"];
+    link::say(link, &words).await;
 }
 
 /// Runs the program of the carrier.

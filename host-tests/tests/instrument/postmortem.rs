@@ -1,22 +1,31 @@
 //! What is left of a run that ended: records and check-ins in RAM that may hold anything.
 
+use std::fmt::Write;
 use std::future::{Future, pending, ready};
 use std::pin::pin;
 use std::task::{Context, Waker};
 
 use firmware::check_ins::{CheckIns, Checked, Part};
-use firmware::postmortem::{CALLERS, End, Outlasting, Record, Registers, WORDS};
+use firmware::postmortem::{CALLERS, End, Outlasting, Record, Registers, Text, WORDS};
 use proptest::prelude::*;
+
+/// Words of a panic.
+fn text(words: &str) -> Text {
+    let mut text = Text::default();
+    write!(text, "{words}").expect("it never fails");
+    text
+}
 
 /// Any record.
 fn records() -> impl Strategy<Value = Record> {
     let ends =
         prop_oneof![Just(End::None), Just(End::Panic), Just(End::Fault), Just(End::Unhandled),];
     let numbers = any::<(u32, u32, bool, [u32; 8], [u32; CALLERS])>();
-    (ends, numbers).prop_map(|(end, (number, resets, is_crystal_dead, registers, callers))| {
+    (ends, numbers, any::<String>()).prop_map(|(end, numbers, words)| {
+        let (number, resets, is_crystal_dead, registers, callers) = numbers;
         let [pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar] = registers;
         let registers = Registers { pc, lr, psr, sp, cfsr, hfsr, mmfar, bfar };
-        Record { end, number, resets, is_crystal_dead, registers, callers }
+        Record { end, number, resets, is_crystal_dead, registers, callers, text: text(&words) }
     })
 }
 
@@ -89,6 +98,25 @@ fn a_fault_is_told_with_its_registers_and_a_run_that_ended_on_purpose_is_not() {
     );
     assert_eq!(lines(&run, false, false), [""; 0]);
     assert!(lines(&run, false, true)[0].starts_with("last reset: brown-out"));
+}
+
+#[test]
+fn a_panic_is_told_with_its_place_and_its_message() {
+    let run = Outlasting::new();
+    run.begin();
+    let mut record = Record { end: End::Panic, ..run.record().expect("it has begun") };
+    write!(record.text, "src/run.rs:{}: ", 7).expect("it never fails");
+    write!(record.text, "assertion failed\n  left: 1").expect("it never fails");
+    run.note(&record);
+    let told = lines(&run, false, false);
+    assert_eq!(told[1..], ["panicked at src/run.rs:7: assertion failed   left: 1"]);
+}
+
+#[test]
+fn what_does_not_fit_of_a_panic_is_left_out_with_the_character_that_is_cut() {
+    let long = format!("{}°°", "a".repeat(157));
+    assert_eq!(text(&long).as_str(), format!("{}°", "a".repeat(157)));
+    assert_eq!(text("").as_str(), "");
 }
 
 #[test]

@@ -104,6 +104,19 @@ static STUCK: LazyLock<Restart> = LazyLock::new(|| {
 static PANIC: LazyLock<Restart> =
     LazyLock::new(|| Restart::after(|board| board.execution.processor.jump(function(MAIN))));
 
+/// A panic of Rust's own library, with its place in the registers as a division by zero has it.
+fn divide_by_zero(board: &mut Board) {
+    let [place, file] = [UNUSED - 0xE0, UNUSED - 0xC0];
+    // ldr r0, [pc, #4]; ldr r1, [pc, #8]; bx r1; nop: what follows is the address of the place, and the function.
+    let code: [u32; 2] = [0x4902_4801, 0xBF00_4708];
+    let called = function("panic_const_div_by_zero") | 1;
+    let words = [code[0], code[1], place + 0x10, called, file, 10, 7, 1];
+    let bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+    assert!(board.execution.processor.poke(place, &bytes));
+    assert!(board.execution.processor.poke(file, b"src/end.rs"));
+    board.execution.processor.jump(place);
+}
+
 /// A jump to where nothing is.
 static FAULT: LazyLock<Restart> =
     LazyLock::new(|| Restart::after(|board| board.execution.processor.jump(NOWHERE)));
@@ -128,6 +141,17 @@ fn a_panic_resets_at_once() {
 #[test]
 fn the_start_after_a_panic_tells_its_message_and_its_place() {
     assert!((1.0..=9.0).contains(&PANIC.telling(&["panic"])), "{:?}", PANIC.lines);
+}
+
+/// What a probe does not see: the log has no words of it.
+#[test]
+fn the_start_after_a_panic_of_the_library_tells_its_message_and_its_place() {
+    let restart = Restart::after(divide_by_zero);
+    assert!(AT_ONCE.contains(&restart.after), "{} s", restart.after);
+    for words in ["board: panicked at ", "last reset: panic in no part at "] {
+        let told = format!("{words}src/end.rs:7: attempt to divide by zero");
+        assert!(restart.lines.contains(&told), "{:?}", restart.lines);
+    }
 }
 
 #[test]
