@@ -92,7 +92,7 @@ async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_
         keeper.give(Input::Remembered(heading));
     }
     while !keeper.navigator.is_over() {
-        let rest = rest(shared.period.get());
+        let rest = rest(shared.motion_period.get());
         Timer::after(rest).await;
         shared.caught_up.reset();
         if !shared.may_move() {

@@ -117,6 +117,8 @@ pub struct Shared<'a> {
     pub is_at_rest: Common<bool>,
     /// Sampling period; one second until acquisition has stated it.
     pub period: Common<Duration>,
+    /// Time between two motions; one second until acquisition has stated it.
+    pub motion_period: Common<Duration>,
     /// The latest angles of the encoders; the one axis of a stage is the outer one.
     pub angles: Frames<LatestAngle>,
     /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
@@ -154,6 +156,7 @@ impl<'a> Shared<'a> {
             is_kept: Common::new(false),
             is_at_rest: Common::new(false),
             period: Common::new(Duration::from_secs(1)),
+            motion_period: Common::new(Duration::from_secs(1)),
             angles: Frames { outer: unread(), inner: unread() },
             sway: Common::new(SwayNoise::NONE),
             health: Common::default(),

@@ -18,9 +18,11 @@ pub struct Outlet<'a, S> {
 }
 
 impl<'a, S> Outlet<'a, S> {
-    /// Outlet of samples with this period, µs.
-    pub(super) fn new(period: u32, channels: &'a Channels<'a, S>) -> Self {
-        channels.shared.period.set(Duration::from_micros(period.into()));
+    /// Outlet of samples with this period, µs, and motions with that one.
+    pub(super) fn new(period: u32, motions: u32, channels: &'a Channels<'a, S>) -> Self {
+        let Shared { period: samples, motion_period, .. } = &channels.shared;
+        samples.set(Duration::from_micros(period.into()));
+        motion_period.set(Duration::from_micros(motions.into()));
         Self { channels, timeline: Timeline::new(period), overflowed: 0 }
     }
 

@@ -57,7 +57,7 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
             converters: Group::new((converters, reader), NAMES, rate, period, &channels.shared),
             configuration,
             half: libm::round(0.5e6 / rate) as u64,
-            outlet: Outlet::new(period, channels),
+            outlet: Outlet::new(period, period, channels),
             before: None,
             carried: [0; GYROS],
         }

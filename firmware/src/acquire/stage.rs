@@ -84,7 +84,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> OnBase<'a, 
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
             coarse: Coarse::new(base.period(period), period),
-            outlet: Outlet::new(period, channels),
+            outlet: Outlet::new(period, base.period(period), channels),
             silence: silence(period),
         };
         Self { acquisition, base }
@@ -156,19 +156,19 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         }
     }
 
-    /// Asks for a coarse reading at one of the two moments of a sample, waits for it until the next
-    /// conversion at the longest, and passes it on to attitude and heading.
-    async fn follow(&mut self, is_angle_read: bool, base: Option<&Compensation>) {
-        let Some(base) = base else { return };
-        if base.asks(is_angle_read, self.outlet.shared()) {
-            self.rates.until_next(base.answered()).await;
-        }
-        self.pass_on(base);
+    /// Asks for a coarse reading at one of the two moments of a sample; whoever does waits for it until the
+    /// next conversion at the longest.
+    fn asked<'b>(
+        &self,
+        is_angle_read: bool,
+        base: Option<&'b Compensation>,
+    ) -> Option<&'b Compensation> {
+        base.filter(|base| base.asks(is_angle_read, self.outlet.shared()))
     }
 
     /// Passes a coarse reading on to attitude and heading.
-    fn pass_on(&mut self, base: &Compensation) {
-        if let Some((at, reading)) = base.reading() {
+    fn pass_on(&mut self, base: Option<&Compensation>) {
+        if let Some((at, reading)) = base.and_then(Compensation::reading) {
             self.coarse.pass_on(at, &reading, self.outlet.shared());
         }
     }
@@ -190,14 +190,20 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|_| None)?,
         };
         self.coarse.turn(ended, rate);
-        self.follow(false, base).await;
+        if let Some(base) = self.asked(false, base) {
+            self.rates.until_next(base.answered()).await;
+        }
+        self.pass_on(base);
         if !base.is_none_or(Compensation::is_decided) {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         let shown = self.pointing.read(late).await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
-        self.follow(true, base).await;
+        if let Some(base) = self.asked(true, base) {
+            self.rates.until_next(base.answered()).await;
+        }
+        self.pass_on(base);
         let on_base = self.pointing.force_on_base();
         if let Some((reading, bias_sigma)) = force.zip(on_base) {
             self.coarse.feel(reading.force, bias_sigma, shared);
@@ -235,12 +241,12 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.is_at_rest.get() {
             ticker.next().await;
-            if let Some(base) = base {
-                if base.asks(false, shared) || base.asks(true, shared) {
-                    base.answered().await;
-                }
-                self.pass_on(base);
+            if let Some(base) = base
+                && (base.asks(false, shared) || base.asks(true, shared))
+            {
+                base.answered().await;
             }
+            self.pass_on(base);
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.is_idle() {
                 shared.fail(reason);

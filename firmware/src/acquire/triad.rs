@@ -55,7 +55,7 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
             ),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
-            outlet: Outlet::new(period, channels),
+            outlet: Outlet::new(period, period, channels),
             period,
             carried: [0; 3],
             latest: None,
