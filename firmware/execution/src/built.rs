@@ -35,11 +35,31 @@ pub fn root() -> &'static Path {
 /// # Errors
 /// One line: what is missing, that cargo said what is wrong, or that something else built another image meanwhile.
 pub fn image(carrier: Platform) -> Result<PathBuf, String> {
+    image_with(carrier, None)
+}
+
+/// Name of the file of a carrier's image, with a further feature of the board's crate or without one.
+#[must_use]
+pub fn name(carrier: Platform, feature: Option<&str>) -> String {
+    format!("board-{}.elf", features(carrier, feature).join("-"))
+}
+
+/// Features of the board's crate for an image.
+fn features(carrier: Platform, feature: Option<&str>) -> Vec<&str> {
+    [Some(carrier.name()), feature].into_iter().flatten().collect()
+}
+
+/// As [`image`], with a further feature of the board's crate.
+///
+/// # Errors
+/// As there.
+pub fn image_with(carrier: Platform, feature: Option<&str>) -> Result<PathBuf, String> {
     let _others_wait = lock()?;
-    let package = ["--package", "board-b-l475e-iot01a", "--features", carrier.name()];
+    let features = features(carrier, feature).join(",");
+    let package = ["--package", "board-b-l475e-iot01a", "--features", &features];
     let messages = of_profile(profile(carrier), &package)?;
     let elf = executable(&messages, "board")?;
-    let own = elf.with_file_name(format!("board-{carrier}.elf"));
+    let own = elf.with_file_name(name(carrier, feature));
     let new = own.with_extension("new");
     let failed = |error: io::Error| format!("{}: {error}", own.display());
     fs::copy(&elf, &new).map_err(failed)?;

@@ -4,7 +4,8 @@ use firmware::platform::Platform;
 use object::read::elf::ElfFile32;
 use object::{Object, ObjectSymbol};
 
-/// How the symbol begins; the name of the carrier follows, with `_` where it has a hyphen.
+/// How the symbol begins; the name of the carrier follows, with `_` where it has a hyphen. Other features have such a
+/// symbol, too.
 const SYMBOL: &str = "_carrier_";
 
 /// The carrier that an image was built for; none where it states none.
@@ -13,9 +14,11 @@ const SYMBOL: &str = "_carrier_";
 /// Where this is no 32-bit ELF file.
 pub fn stated(elf: &[u8]) -> Result<Option<Platform>, String> {
     let file: ElfFile32 = ElfFile32::parse(elf).map_err(|error| format!("no image: {error}"))?;
-    let mut names = file.symbols().filter_map(|symbol| symbol.name().ok()?.strip_prefix(SYMBOL));
-    let name = names.next().map(|name| name.replace('_', "-"));
-    Ok(Platform::ALL.into_iter().find(|carrier| name.as_deref() == Some(carrier.name())))
+    let mut features = file.symbols().filter_map(|symbol| symbol.name().ok()?.strip_prefix(SYMBOL));
+    Ok(features.find_map(|feature| {
+        let name = feature.replace('_', "-");
+        Platform::ALL.into_iter().find(|carrier| name == carrier.name())
+    }))
 }
 
 /// Makes sure that an image was built for a carrier.

@@ -87,9 +87,10 @@ const ENCODER: Harmonics = Harmonics { first: [0.0; 2], second: [0.0; 2] };
 /// Standard deviation of the remaining encoder error as it enters the azimuth, 1σ.
 const ENCODER_SIGMA: Radians = Radians::from_degrees(0.05);
 
+/// Sample rate of the precise gyros: by the feature `sps2400` the next one that the converter has beyond 2 kHz.
+const RATE: DataRate = if cfg!(feature = "sps2400") { DataRate::Sps2400 } else { DataRate::Sps400 };
 /// Configuration of the converter: sample rate, filter and gain.
-pub const CONVERTER: Converter =
-    Converter { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 };
+pub const CONVERTER: Converter = Converter { rate: RATE, filter: Filter::Sinc1, gain: Gain::X1 };
 /// Rotation time of the stage: 1.20 s for 15° and 18.41 s for 360°, plus the settling check.
 const ROTATION: Rotation =
     Rotation { rest: Seconds(0.75), speed: RadiansPerSecond(0.35), wraps: false };
@@ -173,7 +174,7 @@ fn dwelling(schedule: Schedule) -> Procedure {
 /// Decimation of the LSM6DSL of the board itself: read once in this many samples of the gyro, 200 times a
 /// second. By it the result is held on a stage, two frames or a turntable, and the sway of the base is
 /// compensated: the board is fixed to the base, the chip's x axis forward, y to the right, z down.
-pub const BASE_DIVIDER: u32 = 2;
+pub const BASE_DIVIDER: u32 = if cfg!(feature = "sps2400") { 12 } else { 2 };
 /// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
 /// its oscillator and the outputs that are not read.
 const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];

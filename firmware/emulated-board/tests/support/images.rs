@@ -14,17 +14,26 @@ static BUILT: [OnceLock<PathBuf>; Platform::ALL.len()] = [const { OnceLock::new(
 
 /// The image of a carrier.
 pub fn image(of: Platform) -> Rc<Image> {
-    let image = Image::read(path(of)).unwrap_or_else(|error| panic!("{error}"));
-    carrier::require(&image.elf, of)
-        .unwrap_or_else(|error| panic!("{}: {error}", path(of).display()));
+    read(path(of), of)
+}
+
+/// The image of a carrier in a file.
+pub fn read(path: &Path, of: Platform) -> Rc<Image> {
+    let image = Image::read(path).unwrap_or_else(|error| panic!("{error}"));
+    carrier::require(&image.elf, of).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     Rc::new(image)
 }
 
 /// The file of a carrier's image, `board-NAME.elf`: in the folder that the environment variable `MERIDIAN_IMAGES` names,
 /// or built.
 pub fn path(carrier: Platform) -> &'static Path {
-    BUILT[carrier as usize].get_or_init(|| match env::var_os("MERIDIAN_IMAGES") {
-        Some(folder) => Path::new(&folder).join(format!("board-{carrier}.elf")),
-        None => built::image(carrier).unwrap_or_else(|error| panic!("{error}")),
-    })
+    BUILT[carrier as usize].get_or_init(|| found(carrier, None))
+}
+
+/// The file of an image with a further feature or without one, found there or built.
+pub fn found(carrier: Platform, feature: Option<&str>) -> PathBuf {
+    match env::var_os("MERIDIAN_IMAGES") {
+        Some(folder) => Path::new(&folder).join(built::name(carrier, feature)),
+        None => built::image_with(carrier, feature).unwrap_or_else(|error| panic!("{error}")),
+    }
 }

@@ -1,15 +1,17 @@
 //! Executions of images, each made once.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use emulated_board::image::Image;
 use emulated_board::probe::Line;
 use emulated_board::run::{Order, execute};
 use emulated_board::world::World;
 use execution::report::Report;
 use firmware::platform::Platform;
 
-use super::images::image;
+use super::images::{found, image, read};
 
 /// A line of the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,13 +67,17 @@ impl Executed {
 
 /// The order's image in a world.
 pub fn execute_in(order: &Order, world: World) -> Executed {
+    execute_image(&image(order.carrier), order, world)
+}
+
+/// An image in a world.
+fn execute_image(image: &Rc<Image>, order: &Order, world: World) -> Executed {
     let (mut log, mut link) = (Vec::new(), Vec::new());
     let on_link = |sent: &[u8]| {
         link.extend_from_slice(sent);
         Vec::new()
     };
-    let report =
-        execute(&image(order.carrier), order, world, |line| log.push(Entry::of(line)), on_link);
+    let report = execute(image, order, world, |line| log.push(Entry::of(line)), on_link);
     let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
     let link = String::from_utf8(link).expect("the link carries text");
     Executed { report, log, link: link.lines().map(str::to_owned).collect() }
@@ -103,4 +109,14 @@ pub fn executed_by(order: &Order) -> Arc<Executed> {
 /// The usual execution of a carrier by the seed of its world.
 pub fn executed(carrier: Platform, seed: u64) -> Arc<Executed> {
     executed_by(&Order::usual(carrier, seed))
+}
+
+/// The usual execution of a carrier's image with 2 400 samples a second.
+pub fn sampled_fast(carrier: Platform) -> Arc<Executed> {
+    const FEATURE: &str = "sps2400";
+    once(format!("{carrier} {FEATURE}"), || {
+        let image = read(&found(carrier, Some(FEATURE)), carrier);
+        let world = World::new(carrier, 1).expect("the usual world can be made");
+        execute_image(&image, &Order::usual(carrier, 1), world)
+    })
 }
