@@ -1,14 +1,8 @@
 //! Links the image by the scripts of cortex-m-rt, which takes the memory map from `memory.x`, of defmt, whose
 //! strings stay on the host, and of the budget, which an image must keep to. A symbol that takes no memory states the
 //! carrier: who executes an image can look.
-//!
-//! A vehicle and a spinning body need an image that is built for speed, as `cargo fast-board` does: one built for size loses
-//! samples.
 
 use std::env;
-
-/// Carriers whose image is built for speed.
-const FAST: [&str; 2] = ["VEHICLE", "SPIN"];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -21,11 +15,6 @@ fn main() {
     for (feature, _) in env::vars() {
         if let Some(carrier) = feature.strip_prefix("CARGO_FEATURE_") {
             println!("cargo::rustc-link-arg-bins=--defsym=_carrier_{}=0", carrier.to_lowercase());
-            if FAST.contains(&carrier) && env::var("OPT_LEVEL").is_ok_and(|level| level == "z") {
-                println!(
-                    "cargo::error=this carrier takes the profile `firmware-fast`: `cargo fast-board`"
-                );
-            }
         }
     }
 }

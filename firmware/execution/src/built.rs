@@ -57,8 +57,7 @@ pub fn image_with(carrier: Platform, feature: Option<&str>) -> Result<PathBuf, S
     let _others_wait = lock()?;
     let features = features(carrier, feature).join(",");
     let package = ["--package", "board-b-l475e-iot01a", "--features", &features];
-    let messages = of_profile(profile(carrier), &package)?;
-    let elf = executable(&messages, "board")?;
+    let elf = executable(&of_firmware(&package)?, "board")?;
     let own = elf.with_file_name(name(carrier, feature));
     let new = own.with_extension("new");
     let failed = |error: io::Error| format!("{}: {error}", own.display());
@@ -89,21 +88,8 @@ fn lock() -> Result<File, String> {
 /// # Errors
 /// One line: what is missing, or that cargo said what is wrong.
 pub fn of_firmware(arguments: &[&str]) -> Result<String, String> {
-    of_profile("firmware", arguments)
-}
-
-/// Has cargo build something for the microcontroller in a profile; its messages.
-fn of_profile(profile: &str, arguments: &[&str]) -> Result<String, String> {
     require_target()?;
-    of(&[arguments, &["--profile", profile, "--target", TARGET]].concat())
-}
-
-/// The profile in which the image of a carrier is flashed: for speed where the flash allows it.
-const fn profile(carrier: Platform) -> &'static str {
-    match carrier {
-        Platform::Stage | Platform::TwoFrame | Platform::Turntable => "firmware",
-        Platform::Vehicle | Platform::Spin => "firmware-fast",
-    }
+    of(&[arguments, &["--profile", "firmware", "--target", TARGET]].concat())
 }
 
 /// Has cargo build something; its messages, one JSON object in a line. Its progress goes to standard error.
