@@ -15,24 +15,24 @@ pub struct OneByOne<V, const N: usize> {
     ends: [Edge; N],
     /// What was read of them.
     readings: [Result<RateReading<V>, Fault>; N],
-    /// Number of converters whose conversions have ended.
-    come: usize,
+    /// The converter whose conversion is awaited.
+    awaited: usize,
 }
 
 impl<V: Quantity, const N: usize> Default for OneByOne<V, N> {
     fn default() -> Self {
         let nothing = RateReading { rate: V::default(), is_new: false };
-        Self { ends: [Edge::default(); N], readings: [Ok(nothing); N], come: 0 }
+        Self { ends: [Edge::default(); N], readings: [Ok(nothing); N], awaited: 0 }
     }
 }
 
 impl<V: Quantity, C: Gyro<V>, const N: usize> Together<C, V, N> for OneByOne<V, N> {
-    /// They end together, and an end that has come is returned at once, so one is awaited after the other.
+    /// They end one right after the other, as they were begun, and an end that has come is returned at once: so the last
+    /// one is awaited first, and wakes the task once for all.
     async fn next(&mut self, mut converters: [&mut C; N], apart: u64) -> Result<(), Fault> {
-        self.come = 0;
-        for (end, converter) in self.ends.iter_mut().zip(&mut converters) {
-            *end = converter.ready().await?;
-            self.come += 1;
+        for (index, converter) in converters.iter_mut().enumerate().rev() {
+            self.awaited = index;
+            self.ends[index] = converter.ready().await?;
         }
         self.catch_up(&mut converters, apart);
         for (reading, converter) in self.readings.iter_mut().zip(&mut converters) {
@@ -50,7 +50,7 @@ impl<V: Quantity, C: Gyro<V>, const N: usize> Together<C, V, N> for OneByOne<V, 
     }
 
     fn awaited(&self) -> usize {
-        self.come
+        self.awaited
     }
 }
 
