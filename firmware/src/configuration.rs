@@ -188,6 +188,12 @@ pub fn period(sample_rate: f64) -> u32 {
     libm::round(1e6 / sample_rate) as u32
 }
 
+/// The sampling period at a sampling rate, Hz, at least one: in ns, rounded to nearest.
+#[must_use]
+pub fn nanoseconds(sample_rate: f64) -> u32 {
+    libm::round(1e9 / sample_rate) as u32
+}
+
 /// The configuration of a strapdown instrument in a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleConfiguration {

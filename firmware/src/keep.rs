@@ -158,6 +158,7 @@ impl Navigation<'_, '_> {
     fn pass_time(&mut self) {
         if self.latest.elapsed().as_micros() >= SILENCE {
             let now = units::Instant(Instant::now().as_micros());
+            let now = self.shared.clocks.instant(now);
             self.aid(now);
             self.give(Input::Passed(now));
         }

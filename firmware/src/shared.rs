@@ -13,6 +13,7 @@ use orientation::navigation::{Motion, Order};
 use orientation::roll;
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
+use orientation::timebase::{Clock, Timebase};
 use orientation::units::{self, Angle};
 
 use crate::check_ins::{CheckIns, Checked, Part};
@@ -119,6 +120,9 @@ pub struct Shared<'a> {
     pub period: Common<Duration>,
     /// Time between two motions; one second until acquisition has stated it.
     pub motion_period: Common<Duration>,
+    /// Clocks of the instrument, which a board states before its parts begin. Samples have true times;
+    /// all else goes by the controller's clock as it is.
+    pub clocks: Timebase,
     /// The latest angles of the encoders; the one axis of a stage is the outer one.
     pub angles: Frames<LatestAngle>,
     /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
@@ -157,6 +161,7 @@ impl<'a> Shared<'a> {
             is_at_rest: Common::new(false),
             period: Common::new(Duration::from_secs(1)),
             motion_period: Common::new(Duration::from_secs(1)),
+            clocks: Timebase::nominal(Clock::Converter, Clock::Crystal),
             angles: Frames { outer: unread(), inner: unread() },
             sway: Common::new(SwayNoise::NONE),
             health: Common::default(),

@@ -9,6 +9,7 @@ use std::rc::Rc;
 use std::{io, thread};
 
 use clap::Parser;
+use emulated_board::controller::rcc::Oscillators;
 use emulated_board::image::Image;
 use emulated_board::link::Client;
 use emulated_board::probe::Line;
@@ -106,7 +107,7 @@ fn order(arguments: &Arguments) -> Order {
         cycles: arguments.cycles,
         afterwards: arguments.afterwards.unwrap_or(usual.afterwards),
         longest: usual.longest + if arguments.dead_crystal { DEAD_CRYSTAL } else { 0.0 },
-        has_crystal: !arguments.dead_crystal,
+        oscillators: Oscillators { has_crystal: !arguments.dead_crystal, ..usual.oscillators },
         ..usual
     }
 }

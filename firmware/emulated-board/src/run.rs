@@ -35,8 +35,8 @@ pub struct Order {
     pub afterwards: f64,
     /// The longest time until a result, s.
     pub longest: f64,
-    /// Whether the crystal of 32 768 Hz oscillates.
-    pub has_crystal: bool,
+    /// Whether the crystal of 32 768 Hz oscillates, and how wrong the internal oscillator is without it.
+    pub oscillators: Oscillators,
 }
 
 impl Order {
@@ -45,7 +45,8 @@ impl Order {
     pub fn usual(carrier: Platform, seed: u64) -> Self {
         // A spinning body has no result; its flight takes two seconds after the start of its converters.
         let longest = if carrier == Platform::Spin { 5.0 } else { 240.0 };
-        Self { carrier, seed, cycles: 1.4, afterwards: 10.0, longest, has_crystal: true }
+        let oscillators = Oscillators { has_crystal: true, msi_error: 0.0 };
+        Self { carrier, seed, cycles: 1.4, afterwards: 10.0, longest, oscillators }
     }
 }
 
@@ -67,8 +68,8 @@ impl Execution {
     /// An image without a log, or what Unicorn says.
     pub fn new(image: &Rc<Image>, order: &Order, mut world: World) -> Result<Self, String> {
         let probe = Probe::new(&image.elf, image.log)?;
-        let oscillators = Oscillators { has_crystal: order.has_crystal, msi_error: 0.0 };
-        let mut controller = Controller::new(oscillators, order.seed, Box::new(world.board()));
+        let mut controller =
+            Controller::new(order.oscillators, order.seed, Box::new(world.board()));
         controller.flash.array.burn(STORE.start, &world.store);
         let processor = Processor::new(Rc::clone(image), controller, order.cycles);
         let processor = processor.map_err(|error| format!("Unicorn: {error:?}"))?;

@@ -5,6 +5,11 @@
 //! ratio, as a gyro's scale factor does. Angles therefore integrate over the better of the two clocks,
 //! and its tolerance belongs into the scale factor's σ. A rate alone, such as the Earth's at a dwell, and
 //! an angle that an encoder shows depend on no clock.
+//!
+//! The Earth turns on between two samples, so that their times must be true, too, or its rate is subtracted
+//! in part, as if the gyros had a bias: a stamp is corrected where a sample is made of it, and nothing but
+//! samples has the corrected time. A controller without a crystal shows times that nothing corrects; a per
+//! cent of the Earth's rate is small beside the bias of a gyro that was switched on.
 
 use crate::units::Instant;
 
@@ -71,8 +76,9 @@ impl Timebase {
     /// True time of a moment that the controller's clock shows, rounded down to a microsecond.
     #[inline]
     pub const fn instant(&self, shown: Instant) -> Instant {
-        let excess = (shown.0 as u128 * self.excess as u128) >> FRACTION;
-        Instant(shown.0 + excess as u64)
+        let excess = self.excess as u64;
+        let (upper, lower) = (shown.0 >> FRACTION, shown.0 as u32 as u64);
+        Instant(shown.0 + upper * excess + ((lower * excess) >> FRACTION))
     }
 
     /// Whether angles integrate over the periods of the converters, by their number, rather than over the

@@ -2,13 +2,14 @@
 //! the rate about the down axis taken from the precise gyro once a mount has turned it to the
 //! vertical.
 
-use embassy_time::Instant;
+use drivers::data_ready::Edge;
 use orientation::navigation::Motion;
 use orientation::navigation::progress::VerticalGyro;
 use orientation::signal::InertialSample;
 use orientation::signal::force_offset::ForceOffset;
+use orientation::timebase::Timebase;
 use orientation::units::{
-    Angle, AngleIncrement, AngularRate, MetresPerSecondSquared, SpecificForce,
+    Angle, AngleIncrement, AngularRate, Instant, MetresPerSecondSquared, SpecificForce,
 };
 
 use super::increments;
@@ -21,9 +22,9 @@ const QUARTER_TURN: u32 = 1 << 30;
 /// Greatest distance of a vertical axis from the vertical, 0.1°, in steps of an [`Angle`]: its
 /// response to other axes is then below 0.02 °/h of the Earth rate.
 const TOLERANCE: u32 = (0.1 / 360.0 * 4_294_967_296.0) as u32;
-/// Greatest number of periods for which a reading may stand: with more missing, the rotation is
-/// unknown.
-const LONGEST: u64 = 3;
+/// Time of which a conversion of the precise gyro may be the only one, in half periods: two others may
+/// be lost, and with more the rotation is unknown.
+const LONGEST: u64 = 7;
 
 /// Greatest number of samples in the comparison of the coarse gyro with the precise one: two
 /// minutes at 200 Hz.
@@ -98,7 +99,7 @@ impl Excess {
     }
 }
 
-/// Time between the readings of one sensor.
+/// Time between the coarse readings.
 #[derive(Clone, Copy, Debug)]
 struct Timing {
     /// Nominal time between two readings, µs.
@@ -108,22 +109,24 @@ struct Timing {
 }
 
 impl Timing {
-    /// Interval of a reading at this time, µs: the time since the previous one, or the nominal
-    /// period where that is unknown; and whether no reading is missing.
-    fn lasted(&mut self, at: Instant) -> (u32, bool) {
-        let since = self.latest.replace(at).map(|latest| (at - latest).as_micros());
-        match since {
-            Some(since) if since <= LONGEST * u64::from(self.period) => (since as u32, true),
-            _ => (self.period, false),
-        }
+    /// Time from the previous reading to one at this time, of the first the nominal period, and the part of
+    /// it for which the reading stands, both µs: all of it, or the nominal period where readings are missing,
+    /// since attitude and heading bridge the rest.
+    fn lasted(&mut self, at: Instant) -> [u32; 2] {
+        let since = self.latest.replace(at).map(|latest| at.0.saturating_sub(latest.0));
+        let since = since.map_or(self.period, |since| u32::try_from(since).unwrap_or(u32::MAX));
+        let is_near = since <= self.period + self.period / 2;
+        [since, if is_near { since } else { self.period }]
     }
 }
 
 /// Rotation of the precise gyro since the latest coarse reading.
 #[derive(Clone, Copy, Debug)]
 struct Precise {
-    /// Time between conversions.
-    timing: Timing,
+    /// Nominal time between two conversions, ns.
+    period: u32,
+    /// End of the latest conversion that was read.
+    latest: Option<Edge>,
     /// Sense of the axis: +1 down, −1 up, 0 neither.
     sense: i32,
     /// Rotation in steps of an increment, and remainder of whole steps.
@@ -133,6 +136,18 @@ struct Precise {
     /// saturated.
     is_vertical: bool,
     is_whole: bool,
+}
+
+impl Precise {
+    /// Time for which a conversion stands that ended so, ns: since the previous one that was read, by the
+    /// better clock; `None` where too many are missing.
+    fn lasted(&mut self, end: Edge, clocks: Timebase) -> Option<u64> {
+        let latest = self.latest.replace(end)?;
+        let elapsed = clocks.instant(end.at).0.saturating_sub(clocks.instant(latest.at).0);
+        let is_known = 2 * 1000 * elapsed <= LONGEST * u64::from(self.period);
+        let elapsed = u32::try_from(elapsed).ok().filter(|_| is_known)?;
+        Some(clocks.integrated(end.count.wrapping_sub(latest.count), self.period, elapsed))
+    }
 }
 
 /// Samples of the base's motion.
@@ -157,15 +172,15 @@ pub(super) struct Coarse {
 }
 
 impl Coarse {
-    /// Motion before the first reading, for coarse readings and precise samples with these periods,
-    /// µs.
+    /// Motion before the first reading, for coarse readings with a period in µs and precise samples with
+    /// one in ns.
     pub(super) fn new(coarse: u32, precise: u32) -> Self {
-        let timing = |period| Timing { period, latest: None };
         Self {
-            timing: timing(coarse),
+            timing: Timing { period: coarse, latest: None },
             carried: [0; 3],
             precise: Precise {
-                timing: timing(precise),
+                period: precise,
+                latest: None,
                 sense: 0,
                 turned: 0,
                 carried: 0,
@@ -185,15 +200,16 @@ impl Coarse {
         }
     }
 
-    /// Takes a conversion of the precise gyro; none where it was lost.
-    pub(super) fn turn(&mut self, at: Instant, rate: Option<AngularRate>) {
+    /// Takes a conversion of the precise gyro that ended so; none where it was lost.
+    pub(super) fn turn(&mut self, end: Edge, rate: Option<AngularRate>, clocks: Timebase) {
         let precise = &mut self.precise;
         let Some(rate) = rate.filter(|_| precise.sense != 0) else {
             return;
         };
-        let (lasted, is_whole) = precise.timing.lasted(at);
-        let turned = AngleIncrement::of_rate(rate, lasted, &mut precise.carried);
-        precise.is_whole &= is_whole && !turned.is_saturated();
+        let lasted = precise.lasted(end, clocks);
+        let time = lasted.unwrap_or(precise.period.into());
+        let turned = AngleIncrement::of_rate_over(rate, time, &mut precise.carried);
+        precise.is_whole &= lasted.is_some() && !turned.is_saturated();
         precise.turned += i64::from(turned.0) * i64::from(precise.sense);
     }
 
@@ -204,7 +220,7 @@ impl Coarse {
         if sense != self.precise.sense {
             self.precise.sense = sense;
             self.precise.is_vertical = false;
-            self.precise.timing.latest = None;
+            self.precise.latest = None;
         }
     }
 
@@ -249,10 +265,16 @@ impl Coarse {
 
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
     /// readings show in the times.
-    pub(super) fn pass_on(&mut self, at: Instant, reading: &BaseReading, shared: &Shared<'_>) {
-        let (lasted, _) = self.timing.lasted(at);
-        let mut turned = increments(reading.rate, lasted, &mut self.carried);
-        turned[2] = match self.take_precise(shared) {
+    pub(super) fn pass_on(
+        &mut self,
+        at: embassy_time::Instant,
+        reading: &BaseReading,
+        shared: &Shared<'_>,
+    ) {
+        let time = shared.clocks.instant(Instant(at.as_micros()));
+        let [since, lasted] = self.timing.lasted(time);
+        let mut turned = increments(reading.rate, 1000 * u64::from(lasted), &mut self.carried);
+        turned[2] = match self.take_precise([since, lasted], shared) {
             Some(precise) => {
                 self.excess.push(turned[2], precise);
                 precise
@@ -262,14 +284,17 @@ impl Coarse {
         self.levelling.latest = (!reading.is_clipped).then_some(reading.force);
         let coarse = self.levelling.latest.filter(|_| !self.is_felt);
         let coarse = coarse.map(|force| self.levelling.less(force));
-        let time = orientation::units::Instant(at.as_micros());
         let force = self.force.take().or(coarse);
         shared.move_on(Motion::Moved(InertialSample { time, turned, force }));
     }
 
-    /// Rotation of the precise gyro about down since the latest reading; `None` where it was not
-    /// vertical.
-    fn take_precise(&mut self, shared: &Shared<'_>) -> Option<AngleIncrement> {
+    /// Rotation of the precise gyro about down in the time for which a reading stands, as its part of that
+    /// since the reading before, both µs; `None` where the axis was not vertical.
+    fn take_precise(
+        &mut self,
+        [since, lasted]: [u32; 2],
+        shared: &Shared<'_>,
+    ) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
             (true, _) => VerticalGyro::Precise,
@@ -282,6 +307,8 @@ impl Coarse {
         if core::mem::replace(&mut self.down, down) != down {
             shared.move_on(Motion::Exchanged(down));
         }
+        let [since, lasted] = [since, lasted].map(i64::from);
+        let turned = if lasted < since { turned * lasted / since } else { turned };
         let steps = i32::try_from(turned).ok().filter(|_| is_whole).unwrap_or(i32::MAX);
         (down == VerticalGyro::Precise).then_some(AngleIncrement(steps))
     }

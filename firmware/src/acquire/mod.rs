@@ -127,19 +127,19 @@ impl Pace {
     }
 }
 
-/// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,
+/// Increments of the rates about three axes over a time, ns, with the remainders of whole steps,
 /// 10⁻¹⁸ rad.
 fn increments(
     rates: [AngularRate; 3],
-    microseconds: u32,
+    nanoseconds: u64,
     carried: &mut [i64; 3],
 ) -> [AngleIncrement; 3] {
     let [forward, right, down] = carried;
     let [about_forward, about_right, about_down] = rates;
     [
-        AngleIncrement::of_rate(about_forward, microseconds, forward),
-        AngleIncrement::of_rate(about_right, microseconds, right),
-        AngleIncrement::of_rate(about_down, microseconds, down),
+        AngleIncrement::of_rate_over(about_forward, nanoseconds, forward),
+        AngleIncrement::of_rate_over(about_right, nanoseconds, right),
+        AngleIncrement::of_rate_over(about_down, nanoseconds, down),
     ]
 }
 

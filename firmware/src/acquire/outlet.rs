@@ -2,6 +2,7 @@
 
 use drivers::data_ready::Edge;
 use embassy_time::Duration;
+use orientation::units::Instant;
 
 use crate::event::Event;
 use crate::shared::{Channels, Shared};
@@ -24,6 +25,11 @@ impl<'a, S> Outlet<'a, S> {
         samples.set(Duration::from_micros(period.into()));
         motion_period.set(Duration::from_micros(motions.into()));
         Self { channels, timeline: Timeline::new(period), overflowed: 0 }
+    }
+
+    /// True time at which a conversion ended.
+    pub(super) fn time(&self, end: Edge) -> Instant {
+        self.channels.shared.clocks.instant(end.at)
     }
 
     /// Signals and counters that all parts share.

@@ -88,7 +88,7 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
         let Some((end, Some(codes))) = self.converters.next().await? else { return Ok(None) };
         self.outlet.judge(end);
-        let time = Instant(end.at.0.saturating_sub(self.half));
+        let time = Instant(self.outlet.time(end).0.saturating_sub(self.half));
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 }

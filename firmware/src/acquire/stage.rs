@@ -19,7 +19,7 @@ use super::coarse::Coarse;
 use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
-use crate::configuration::{Configuration, FramesConfiguration, period};
+use crate::configuration::{Configuration, FramesConfiguration, nanoseconds, period};
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
 use crate::retry_budget::RETRY;
@@ -83,7 +83,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> OnBase<'a, 
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
-            coarse: Coarse::new(base.period(period), period),
+            coarse: Coarse::new(base.period(period), nanoseconds(sample_rate)),
             outlet: Outlet::new(period, base.period(period), channels),
             silence: silence(period),
         };
@@ -189,7 +189,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             Ok(rate) => rate,
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|_| None)?,
         };
-        self.coarse.turn(ended, rate);
+        self.coarse.turn(end, rate, shared.clocks);
         if let Some(base) = self.asked(false, base) {
             self.rates.until_next(base.answered()).await;
         }
@@ -216,7 +216,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             self.coarse.compare(reading.force, aim.heading, shared);
         }
         Ok(Some(Sample {
-            time: end.at,
+            time: self.outlet.time(end),
             stage: aim.heading,
             rate: base.map_or(rate, |base| base.compensated(rate, aim.heading)),
             force: force.map(|reading| reading.force),

@@ -2,7 +2,8 @@
 //!
 //! A conversion of each gyro makes a sample, so the three are synchronised. The rotation during a
 //! lost conversion is unknown; such a sample is not passed on, and the jump in time reports the
-//! loss to the session.
+//! loss to the session. A rate lasts for one period of the oscillator that feeds all three, whatever
+//! the controller's clock shows.
 
 use core::convert::Infallible;
 
@@ -10,14 +11,14 @@ use orientation::alignment::refusal::Refusal;
 use orientation::device::TRIAD;
 use orientation::navigation::Motion;
 use orientation::signal::InertialSample;
-use orientation::units::{AngularRate, Instant, SpecificForce};
+use orientation::units::{AngularRate, SpecificForce};
 
 use super::forces::Forces;
 use super::in_step::Group;
 use super::one_by_one::OneByOne;
 use super::outlet::Outlet;
 use super::{Source, increments};
-use crate::configuration::{VehicleConfiguration, period};
+use crate::configuration::{VehicleConfiguration, nanoseconds, period};
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
 use crate::shared::Channels;
 
@@ -27,12 +28,10 @@ pub struct TriadAcquisition<'a, G, A> {
     forces: Forces<'a, A>,
     mean: Mean,
     outlet: Outlet<'a, InertialSample>,
-    /// Nominal sample period, µs.
+    /// Sample period, ns.
     period: u32,
     /// Remainders of the rotation in whole steps, 10⁻¹⁸ rad.
     carried: [i64; 3],
-    /// End of the latest conversions.
-    latest: Option<Instant>,
 }
 
 impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
@@ -56,18 +55,9 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
             outlet: Outlet::new(period, period, channels),
-            period,
+            period: nanoseconds(sample_rate),
             carried: [0; 3],
-            latest: None,
         }
-    }
-
-    /// Length of the conversions that ended at this time, µs: the time since the previous ones, or
-    /// the nominal period where that is unknown.
-    fn lasted(&mut self, end: Instant) -> u32 {
-        let since = self.latest.replace(end).map_or(u64::MAX, |latest| end.0 - latest.0);
-        let since = u32::try_from(since).unwrap_or(u32::MAX);
-        if since.abs_diff(self.period) <= self.period / 4 { since } else { self.period }
     }
 
     /// Takes the next sample; [`None`] where a reading was lost.
@@ -76,13 +66,12 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
     /// A sensor is given up.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
         let Some((end, rates)) = self.gyros.next().await? else { return Ok(None) };
-        let lasted = self.lasted(end.at);
         let reading = self.forces.read(self.outlet.shared()).await?;
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(end);
-        let turned = increments(rates, lasted, &mut self.carried);
-        let sample = InertialSample { time: end.at, turned, force };
+        let turned = increments(rates, self.period.into(), &mut self.carried);
+        let sample = InertialSample { time: self.outlet.time(end), turned, force };
         self.outlet.shared().move_on(Motion::Moved(sample));
         Ok(Some(sample))
     }

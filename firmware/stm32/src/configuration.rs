@@ -47,11 +47,13 @@ use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::roll::{self as spin, Flight};
 use orientation::signal::sway::CoarseSensors;
-use orientation::timebase::{Clock, Timebase};
+use orientation::timebase::{Clock as Source, Timebase};
 use orientation::units::{
     DEGREE, DEGREE_PER_SQRT_HOUR, ForceNoise, GSensitivity, MetresPerSecondSquared, Radians,
     RadiansPerRootSecond, RadiansPerSecond, Seconds,
 };
+
+use crate::wiring::Clock;
 
 /// Platform of this instrument, by the feature that is chosen of this crate. Code for the others is not
 /// in the image.
@@ -104,20 +106,17 @@ const MSI_HERTZ: [u64; 2] = [122 * 32_768, 4_000_000];
 /// Clocks of the instrument: an oscillator feeds the converters in a vehicle and on a spinning body, and
 /// the controller has its crystal unless that is dead.
 #[must_use]
-pub const fn timebase(has_crystal: bool) -> Timebase {
+pub fn timebase(Clock { has_crystal }: Clock) -> Timebase {
     let converter = match PLATFORM {
-        Platform::Vehicle | Platform::Spin => Clock::Crystal,
-        Platform::Stage | Platform::TwoFrame | Platform::Turntable => Clock::Converter,
+        Platform::Vehicle | Platform::Spin => Source::Crystal,
+        Platform::Stage | Platform::TwoFrame | Platform::Turntable => Source::Converter,
     };
     if has_crystal {
-        Timebase::new(converter, Clock::Crystal, MSI_HERTZ)
+        Timebase::new(converter, Source::Crystal, MSI_HERTZ)
     } else {
-        Timebase::nominal(converter, Clock::Controller)
+        Timebase::nominal(converter, Source::Controller)
     }
 }
-
-/// Clocks of the instrument while its crystal oscillates.
-const CLOCKS: Timebase = timebase(true);
 
 /// Sample period of the converter that takes the precise gyros.
 pub fn period() -> Seconds {
@@ -141,11 +140,11 @@ pub fn setting(settings: &Settings<StageSchedule>) -> Setting {
 }
 
 /// Procedure of the session on a stage.
-pub fn procedure(settings: &Settings<StageSchedule>) -> Procedure {
+pub fn procedure(settings: &Settings<StageSchedule>, clocks: Timebase) -> Procedure {
     let StageSchedule { positions, dwell, survey, allowed, .. } = settings.schedule;
     let schedule = Schedule::closed_circle(positions.into(), dwell);
     let plan_seconds = schedule.seconds();
-    let mut procedure = dwelling(schedule);
+    let mut procedure = dwelling(schedule, clocks);
     if let Some(seconds) = survey {
         let orders = &Order::COMPARED;
         procedure = procedure.after(Survey {
@@ -163,10 +162,10 @@ pub fn procedure(settings: &Settings<StageSchedule>) -> Procedure {
 }
 
 /// Procedure of a session that dwells at the positions of a schedule.
-fn dwelling(schedule: Schedule) -> Procedure {
+fn dwelling(schedule: Schedule, clocks: Timebase) -> Procedure {
     Procedure {
         settle_seconds: RINGING,
-        period_tolerance: CLOCKS.period_tolerance(),
+        period_tolerance: clocks.period_tolerance(),
         ..Procedure::new(schedule, period())
     }
 }
@@ -206,12 +205,12 @@ pub fn base_sensors() -> CoarseSensors {
 }
 
 /// Site and gyros for attitude and heading on the base of a stage, two frames or a turntable.
-pub fn base_keeper(latitude: Latitude) -> keep::Setting {
+pub fn base_keeper(latitude: Latitude, clocks: Timebase) -> keep::Setting {
     let (bias_deg_s, scale_sigma, force_bias_sigma) = BASE_SIGMAS;
     let usual = keep::Gyro::coarse();
     let walk = GyroNoise::from_field_units(BASE_NOISE[0] * 1e-3 * 60.0, 0.0, 0.0, 0.0);
     let noise = GyroNoise { angle_random_walk: walk.angle_random_walk, ..usual.noise };
-    let scale_sigma = CLOCKS.with_scale(scale_sigma);
+    let scale_sigma = clocks.with_scale(scale_sigma);
     let gyro = keep::Gyro { noise, bias_sigma: RadiansPerSecond(bias_deg_s * DEGREE), scale_sigma };
     let force_bias_sigma = MetresPerSecondSquared(force_bias_sigma);
     let sample_seconds = Seconds(base_period());
@@ -220,15 +219,15 @@ pub fn base_keeper(latitude: Latitude) -> keep::Setting {
 
 /// Policy after the alignment on a stage, two frames or a turntable: the azimuth is held without end, and its σ
 /// grows; only a restart aligns anew.
-pub fn base_policy<C>(settings: &Settings<C>) -> Policy {
-    let [_, _, beside] = base_keeper(settings.latitude).gyros;
+pub fn base_policy<C>(settings: &Settings<C>, clocks: Timebase) -> Policy {
+    let [_, _, beside] = base_keeper(settings.latitude, clocks).gyros;
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
         realignment: Realignment::Never,
         knows_stops: false,
         skips_known: false,
         beside,
-        precise: gyro(settings),
+        precise: gyro(settings, clocks),
     }
 }
 
@@ -257,11 +256,11 @@ pub fn mount_setting(settings: &Settings<TwoFrameSchedule>) -> Setting {
 }
 
 /// Procedure of the session on two frames.
-pub fn mount_procedure(settings: &Settings<TwoFrameSchedule>) -> Procedure {
+pub fn mount_procedure(settings: &Settings<TwoFrameSchedule>, clocks: Timebase) -> Procedure {
     let TwoFrameSchedule { passes, dwell: seconds, .. } = settings.schedule;
     let pass = PASS.map(|heading| Position { angle: Radians::from_degrees(heading), seconds });
     let positions = core::iter::repeat_n(pass, passes.into()).flatten().collect();
-    Procedure { arrival: ARRIVAL, ..dwelling(Schedule::Listed(positions)) }
+    Procedure { arrival: ARRIVAL, ..dwelling(Schedule::Listed(positions), clocks) }
 }
 
 /// Geometry, encoders and drives of the two frames.
@@ -313,9 +312,9 @@ const FORCE_CALIBRATED_SIGMA: MetresPerSecondSquared = MetresPerSecondSquared(1e
 const FORCE_NOISE: ForceNoise = ForceNoise(1.2 * 25e-6 * 9.80665);
 
 /// Site and instrument in a vehicle.
-pub fn driving_setting(settings: &Settings<VehicleSchedule>) -> stops::Setting {
+pub fn driving_setting(settings: &Settings<VehicleSchedule>, clocks: Timebase) -> stops::Setting {
     let site = site(settings);
-    let scale_sigma = CLOCKS.with_scale(site.scale_sigma);
+    let scale_sigma = clocks.with_scale(site.scale_sigma);
     let site = Site { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, scale_sigma, ..site };
     stops::Setting {
         bias_sigma: Some(settings.gyro.errors.bias_sigma),
@@ -325,9 +324,9 @@ pub fn driving_setting(settings: &Settings<VehicleSchedule>) -> stops::Setting {
 }
 
 /// Procedure of the session in a vehicle.
-pub fn driving_procedure(settings: &Settings<VehicleSchedule>) -> Driving {
+pub fn driving_procedure(settings: &Settings<VehicleSchedule>, clocks: Timebase) -> Driving {
     let VehicleSchedule { stops, stop, .. } = settings.schedule;
-    let period_tolerance = CLOCKS.period_tolerance();
+    let period_tolerance = clocks.period_tolerance();
     Driving { stop_seconds: stop, period_tolerance, ..Driving::new(stops.into(), period()) }
 }
 
@@ -341,22 +340,22 @@ pub fn vehicle() -> VehicleConfiguration {
 const ALIGNS_ALWAYS: bool = true;
 
 /// Errors of the precise gyro as its angles have them, with those of the clock over which they integrate.
-fn gyro<C>(settings: &Settings<C>) -> keep::Gyro {
+fn gyro<C>(settings: &Settings<C>, clocks: Timebase) -> keep::Gyro {
     let errors = settings.gyro.errors;
-    keep::Gyro { scale_sigma: CLOCKS.with_scale(errors.scale_sigma), ..errors }
+    keep::Gyro { scale_sigma: clocks.with_scale(errors.scale_sigma), ..errors }
 }
 
 /// Site and gyros for attitude and heading.
-pub fn keeper(settings: &Settings<VehicleSchedule>) -> keep::Setting {
+pub fn keeper(settings: &Settings<VehicleSchedule>, clocks: Timebase) -> keep::Setting {
     keep::Setting {
         force_bias_sigma: FORCE_CALIBRATED_SIGMA,
-        ..keep::Setting::precise(settings.latitude, period(), gyro(settings))
+        ..keep::Setting::precise(settings.latitude, period(), gyro(settings, clocks))
     }
 }
 
 /// Policy after the alignment: the azimuth is held without end.
-pub fn policy(settings: &Settings<VehicleSchedule>) -> Policy {
-    let precise = gyro(settings);
+pub fn policy(settings: &Settings<VehicleSchedule>, clocks: Timebase) -> Policy {
+    let precise = gyro(settings, clocks);
     let realigns = settings.schedule.realigns;
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
@@ -386,11 +385,11 @@ pub const SPIN_CONVERTER: Converter =
     Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
 
 /// The flight to be tracked, by the properties of the gyro about x.
-pub fn flight(settings: &Settings<SpinSchedule>) -> Flight {
+pub fn flight(settings: &Settings<SpinSchedule>, clocks: Timebase) -> Flight {
     let setting = spin::Setting {
         sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
         angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
-        scale_sigma: CLOCKS.with_scale(SPIN_SCALE_SIGMA),
+        scale_sigma: clocks.with_scale(SPIN_SCALE_SIGMA),
         bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),
         method: spin::Method::PhaseLocked,
     };

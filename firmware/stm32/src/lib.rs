@@ -56,6 +56,7 @@ use firmware::sway::SwayCompensation;
 use orientation::alignment::Method;
 use orientation::attitude::{Keeper, Setting};
 use orientation::signal::{Sample, Timed};
+use orientation::timebase::Timebase;
 use static_cell::StaticCell;
 
 use flash::store;
@@ -98,9 +99,11 @@ impl Observer for BoardLog {
 }
 
 /// Channels of the instrument on a platform, at their final place in memory.
-fn channels(log: &'static BoardLog) -> &'static Channels {
+fn channels(log: &'static BoardLog, clocks: Timebase) -> &'static Channels {
     static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    CHANNELS.init_with(|| Channels::new(log))
+    let channels = CHANNELS.init_with(|| Channels::new(log));
+    channels.shared.clocks = clocks;
+    channels
 }
 
 /// Connects the IMU on the base.
@@ -110,10 +113,10 @@ fn on_base(bus: BaseBus) -> &'static mut ports::Base {
 }
 
 /// Attitude and heading of a platform's base after the alignment, where they are held.
-fn keeping<C>(settings: &Settings<C>) -> Option<Keeping<'static>> {
+fn keeping<C>(settings: &Settings<C>, clocks: Timebase) -> Option<Keeping<'static>> {
     settings.holds.then(|| {
-        let keeper = keeper(&configuration::base_keeper(settings.latitude));
-        Keeping { keeper, policy: configuration::base_policy(settings) }
+        let keeper = keeper(&configuration::base_keeper(settings.latitude, clocks));
+        Keeping { keeper, policy: configuration::base_policy(settings, clocks) }
     })
 }
 

@@ -37,11 +37,14 @@ fn begin(
 ) -> Result<(&'static mut Flight, &'static Channels<SpinSample>), NotBegun> {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
-    let SpinWires { converters, outlets: Outlets { mut flash, log, .. } } = wires;
+    let SpinWires { converters, outlets: Outlets { mut flash, log, clock } } = wires;
+    let clocks = configuration::timebase(clock);
     let settings = settings::load(&mut flash, settings::spin)?;
     let configuration = configuration::spinning().ok_or(NotBegun::NoScale)?;
-    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
-    let flight = FLIGHT.init_with(|| configuration::flight(&settings));
+    let channels = CHANNELS.init_with(|| Channels::new(log));
+    channels.shared.clocks = clocks;
+    let channels: &'static Channels<_> = channels;
+    let flight = FLIGHT.init_with(|| configuration::flight(&settings, clocks));
     let sensors = ports::spinning(converters);
     executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, configuration, channels)));
     // Nothing turns: the angles are valid.

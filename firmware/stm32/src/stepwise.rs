@@ -41,17 +41,19 @@ fn begin_on_a_stage(
     wires: AxisPlatformWires,
 ) -> Result<Begun<Session>, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { mut flash, log, .. } = outlets;
+    let Outlets { mut flash, log, clock } = outlets;
+    let clocks = configuration::timebase(clock);
     let settings = settings::load(&mut flash, settings::stage)?;
-    let session = session(configuration::setting(&settings), configuration::procedure(&settings))?;
+    let procedure = configuration::procedure(&settings, clocks);
+    let session = session(configuration::setting(&settings), procedure)?;
     let encoder = ports::encoder(axes.encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
-    let channels = channels(log);
+    let channels = channels(log, clocks);
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
-    let keeping = keeping(&settings);
+    let keeping = keeping(&settings, clocks);
     executors.control.spawn(defmt::unwrap!(stage(motor, motor_enable, keeping, channels)));
     Ok((session, flash, channels))
 }
@@ -91,18 +93,19 @@ fn begin_on_two_frames(
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let frames = configuration::frames()?;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let (Outlets { mut flash, log, .. }, Frames { outer, inner }) = (outlets, axes);
+    let (Outlets { mut flash, log, clock }, Frames { outer, inner }) = (outlets, axes);
+    let clocks = configuration::timebase(clock);
     let settings = settings::load(&mut flash, settings::two_frame)?;
-    let procedure = configuration::mount_procedure(&settings);
+    let procedure = configuration::mount_procedure(&settings, clocks);
     let session = session(configuration::mount_setting(&settings), procedure)?;
-    let (frames, channels) = (&*FRAMES.init(frames), channels(log));
+    let (frames, channels) = (&*FRAMES.init(frames), channels(log, clocks));
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoders, base)?;
     let motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
     executors.acquisition.spawn(defmt::unwrap!(mount_acquisition(inputs, frames, channels)));
-    let keeping = keeping(&settings);
+    let keeping = keeping(&settings, clocks);
     executors.control.spawn(defmt::unwrap!(mount(motors, motor_enable, frames, keeping, channels)));
     Ok((session, flash, channels))
 }

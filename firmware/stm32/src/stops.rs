@@ -9,6 +9,7 @@ use firmware::settings::{Settings, VehicleSchedule};
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stops::session::Session;
 use orientation::signal::InertialSample;
+use orientation::timebase::Timebase;
 use static_cell::StaticCell;
 
 use crate::ports::Triad;
@@ -34,14 +35,17 @@ fn begin(
 ) -> Result<Begun<Session, InertialSample>, NotBegun> {
     static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let VehicleWires { converters, accelerometer, outlets } = wires;
-    let Outlets { mut flash, log, .. } = outlets;
+    let Outlets { mut flash, log, clock } = outlets;
+    let clocks = configuration::timebase(clock);
     let settings = settings::load(&mut flash, settings::vehicle)?;
-    let session = session(&settings)?;
-    let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
+    let session = session(&settings, clocks)?;
+    let channels = CHANNELS.init_with(|| Channels::new(log));
+    channels.shared.clocks = clocks;
+    let channels: &'static Channels<_> = channels;
     let sensors = ports::triad((converters, &settings.gyro), accelerometer)?;
     let keeping = settings.holds.then(|| {
-        let keeper = keeper(&configuration::keeper(&settings));
-        Keeping { keeper, policy: configuration::policy(&settings) }
+        let keeper = keeper(&configuration::keeper(&settings, clocks));
+        Keeping { keeper, policy: configuration::policy(&settings, clocks) }
     });
     executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, channels)));
     executors.control.spawn(defmt::unwrap!(keep(keeping, channels)));
@@ -66,9 +70,13 @@ async fn keep(keeping: Option<Keeping<'static>>, channels: &'static Channels<Ine
 ///
 /// # Errors
 /// A procedure that is none.
-fn session(settings: &Settings<VehicleSchedule>) -> Result<&'static mut Session, SetupError> {
+fn session(
+    settings: &Settings<VehicleSchedule>,
+    clocks: Timebase,
+) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let procedure = configuration::driving_procedure(settings);
+    let procedure = configuration::driving_procedure(settings, clocks);
     procedure.check()?;
-    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(settings), procedure)))
+    let setting = || configuration::driving_setting(settings, clocks);
+    Ok(SESSION.init_with(|| Session::of(setting(), procedure)))
 }

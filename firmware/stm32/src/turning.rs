@@ -43,9 +43,10 @@ async fn begin(
     link: &mut Link,
 ) -> Result<Infallible, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { mut flash, log, .. } = outlets;
+    let Outlets { mut flash, log, clock } = outlets;
+    let clocks = configuration::timebase(clock);
     let settings = settings::load(&mut flash, settings::turntable)?;
-    let channels = channels(log);
+    let channels = channels(log, clocks);
     let base = SwayCompensation::for_keeping(on_base(base));
     let encoder = ports::encoder(axes.encoder);
     let converter = (converter, &settings.gyro);
@@ -54,7 +55,7 @@ async fn begin(
     let session = session(&settings, store, channels).await?;
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
-    let keeping = keeping(&settings);
+    let keeping = keeping(&settings, clocks);
     executors.control.spawn(defmt::unwrap!(platform(motor, motor_enable, keeping, channels)));
     let recorder = &mut CalibrationStore { store, channels };
     find_and_report(session, link, recorder, store, channels).await

@@ -1,7 +1,20 @@
 //! The clocks of an instrument: what a nominal second lasts, over what angles integrate, what is contradicted.
 
+use orientation::alignment::refusal::Refusal;
+use orientation::alignment::site::Site;
+use orientation::alignment::stepwise::session::Session as Stepwise;
+use orientation::alignment::stepwise::session::procedure::Procedure as Dwelling;
+use orientation::alignment::stepwise::session::schedule::Schedule;
+use orientation::alignment::stepwise::setting::Setting as Positions;
+use orientation::alignment::stops::Setting as Stops;
+use orientation::alignment::stops::session::{Procedure as Driving, Session as Stopping};
+use orientation::alignment::stops::stop_detector::Rests;
+use orientation::alignment::{Input, Method};
+use orientation::earth::Latitude;
+use orientation::signal::{InertialSample, Sample, Timed};
 use orientation::timebase::{Clock, Timebase};
-use orientation::units::{AngleIncrement, AngularRate, Instant};
+use orientation::units::{AngleIncrement, AngularRate, Instant, Seconds, SpecificForce};
+use proptest::prelude::*;
 
 /// The MSI at 4 MHz, locked to the crystal: 122 times 32 768 Hz.
 const LOCKED: [u64; 2] = [122 * 32_768, 4_000_000];
@@ -68,4 +81,80 @@ fn increments_over_periods_that_are_no_whole_microseconds_sum_to_the_angle() {
         .map(AngleIncrement::rad)
         .sum();
     assert!((sum / 600f64.to_radians() - 1.0).abs() < 1e-6, "{sum}");
+}
+
+proptest! {
+    #[test]
+    fn true_time_is_shown_time_over_the_ratio_of_the_clocks_and_never_runs_back(
+        shown in 0..1_u64 << 50,
+        later in 0..1_u64 << 40,
+        nominal in 1_000_000..100_000_000_u64,
+        missing in 0..100_000_u64,
+    ) {
+        let clocks = Timebase::new(Clock::Converter, Clock::Crystal, [nominal - missing, nominal]);
+        let at = |shown| clocks.instant(Instant(shown)).0;
+        let exact = u128::from(shown) * u128::from(nominal) / u128::from(nominal - missing);
+        let rounded = u128::from(at(shown));
+        prop_assert!(rounded <= exact && exact - rounded <= 1 + u128::from(shown >> 32));
+        // Whole parts of sums are sums of whole parts, or one more.
+        let sum = at(shown) + at(later);
+        prop_assert!((sum..=sum + 1).contains(&at(shown + later)));
+    }
+}
+
+/// What a method says of samples, s apart, that come until it concludes.
+fn verdict<S: Timed>(
+    method: &mut impl Method<S>,
+    period: f64,
+    sample: impl Fn(u64, Instant) -> S,
+) -> Option<Refusal> {
+    method.begin(&mut |_| ());
+    for index in 1..3000 {
+        let sample = sample(index, Instant::from_seconds(index as f64 * period));
+        method.take(Input::Sample(&sample), &mut |_| ());
+    }
+    method.take(Input::End, &mut |_| ());
+    method.compute(&mut |_| ());
+    method.verdict().and_then(Result::err)
+}
+
+/// Nominal sample period, s.
+const PERIOD: f64 = 0.01;
+
+/// Whether a stage and a vehicle with these clocks refuse samples whose period is off by this part of the nominal one.
+fn refuse(clocks: Timebase, off: f64) -> [bool; 2] {
+    let (period, nominal) = (PERIOD * (1.0 + off), Seconds(PERIOD));
+    let period_tolerance = clocks.period_tolerance();
+    let site = Site::at(Latitude::from_degrees(47.58).expect("a latitude"));
+    let circle = Schedule::circle(12, Seconds(5.0));
+    let dwelling = Dwelling { period_tolerance, ..Dwelling::new(circle, nominal) };
+    let mut stage = Stepwise::new(Positions::new(site), dwelling).expect("a procedure");
+    let on_stage = verdict(&mut stage, period, |index, time| {
+        let force = Some([0.0, 0.0, -9.81].map(SpecificForce::from_m_per_s2));
+        Sample { time, rate: AngularRate((index % 7) as i32), force, ..Sample::default() }
+    });
+    let driving = Driving { period_tolerance, ..Driving::recorded(Rests::Whole, nominal) };
+    let mut vehicle = Stopping::new(Stops::new(site), driving).expect("a procedure");
+    let driven = verdict(&mut vehicle, period, |_, time| InertialSample {
+        time,
+        ..InertialSample::default()
+    });
+    [on_stage, driven].map(|reason| matches!(reason, Some(Refusal::PeriodContradicted { .. })))
+}
+
+#[test]
+fn a_period_is_refused_beyond_what_two_crystals_or_the_data_sheets_allow_and_not_before() {
+    use Clock::{Controller, Converter, Crystal};
+    for (converter, controller, tolerance) in [
+        (Crystal, Crystal, 0.002),
+        (Converter, Crystal, 0.0201),
+        (Crystal, Controller, 0.0101),
+        (Converter, Controller, 0.03),
+    ] {
+        let clocks = of(converter, controller);
+        for way in [-1.0, 1.0] {
+            let sides = [-2e-5, 2e-5].map(|side| refuse(clocks, way * (tolerance + side)));
+            assert_eq!(sides, [[false; 2], [true; 2]], "{clocks:?}, {way}");
+        }
+    }
 }

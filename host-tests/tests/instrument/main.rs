@@ -6,6 +6,7 @@ mod support;
 
 mod carriers;
 mod catalogue;
+mod clocks;
 mod instrument;
 mod instrument_parts;
 mod keeping_instrument;

@@ -4,6 +4,7 @@
 //! holds one.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+mod clocks;
 mod conclusion;
 mod cost;
 mod list;

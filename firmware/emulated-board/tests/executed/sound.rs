@@ -11,12 +11,12 @@ use super::support::executed::{Executed, execute_anew, executed, executed_by};
 const ALIGNED: [Platform; 3] = [Platform::Stage, Platform::Turntable, Platform::Vehicle];
 
 /// Distance of two azimuths the short way, °.
-fn distance(a: f64, b: f64) -> f64 {
+pub(super) fn distance(a: f64, b: f64) -> f64 {
     ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs()
 }
 
 /// The azimuth and its 1σ, °.
-fn azimuth(report: &Report) -> (f64, f64) {
+pub(super) fn azimuth(report: &Report) -> (f64, f64) {
     let [azimuth, sigma, _] = report.azimuth_deg.unwrap_or_else(|| panic!("{}", report.outcome));
     (azimuth, sigma)
 }

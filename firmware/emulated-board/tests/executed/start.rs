@@ -3,6 +3,7 @@
 use std::fs;
 
 use emulated_board::controller::ResetReason;
+use emulated_board::controller::rcc::Oscillators;
 use emulated_board::run::Order;
 use execution::built::root;
 use firmware::platform::Platform;
@@ -10,6 +11,9 @@ use firmware::platform::Platform;
 use super::support::board::Board;
 use super::support::executed::executed;
 use super::support::worlds::usual;
+
+/// A crystal that is dead, and an internal oscillator that is right.
+const DEAD: Oscillators = Oscillators { has_crystal: false, msi_error: 0.0 };
 
 /// Nothing waits for the crystal in a critical section.
 #[test]
@@ -22,7 +26,7 @@ fn interrupts_are_off_for_a_millisecond_at_most() {
 /// The wait for the crystal ends; what is known of it is forgotten with the supply.
 #[test]
 fn a_board_with_a_dead_crystal_starts_within_three_seconds() {
-    let order = Order { has_crystal: false, ..Order::usual(Platform::Vehicle, 1) };
+    let order = Order { oscillators: DEAD, ..Order::usual(Platform::Vehicle, 1) };
     let mut board = Board::ordered(&order, usual(order.carrier));
     let words = "board: started by Supply, clock follows its crystal: false";
     let starts = [0, 1].map(|_| {
@@ -38,7 +42,7 @@ fn a_board_with_a_dead_crystal_starts_within_three_seconds() {
 /// What is known of the crystal outlasts a reset.
 #[test]
 fn a_dead_crystal_is_not_waited_for_after_a_reset() {
-    let order = Order { has_crystal: false, ..Order::usual(Platform::Vehicle, 1) };
+    let order = Order { oscillators: DEAD, ..Order::usual(Platform::Vehicle, 1) };
     let mut board = Board::ordered(&order, usual(order.carrier));
     board.until("clock follows its crystal: false", 3.0);
     board.execution.processor.reset(ResetReason::Pin);

@@ -67,11 +67,6 @@ impl AngleIncrement {
         increment
     }
 
-    /// Increment of a rate over a time in µs, as [`Self::of_rate_over`].
-    pub fn of_rate(rate: AngularRate, microseconds: u32, carried: &mut i64) -> Self {
-        Self::of_rate_over(rate, 1000 * u64::from(microseconds), carried)
-    }
-
     /// Increment of a rate over a time in ns, at most four seconds; the remainder `carried`, 10⁻¹⁸ rad,
     /// begins at zero and belongs to the axis. A saturated rate gives a saturated increment.
     pub fn of_rate_over(rate: AngularRate, nanoseconds: u64, carried: &mut i64) -> Self {

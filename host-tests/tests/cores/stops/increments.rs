@@ -15,24 +15,24 @@ proptest! {
 
     #[test]
     fn rates_sum_to_the_angle_of_whole_numbers(
-        rates in prop::collection::vec((-2_000_000_000..2_000_000_000i32, 1..20_000u32), 1..400),
+        rates in prop::collection::vec((-2_000_000_000..2_000_000_000i32, 1..20_000_000u64), 1..400),
     ) {
         let (mut carried, mut steps, mut exact) = (0, 0i128, 0i128);
-        for (rate, microseconds) in rates {
-            let increment = AngleIncrement::of_rate(AngularRate(rate), microseconds, &mut carried);
+        for (rate, nanoseconds) in rates {
+            let increment = AngleIncrement::of_rate_over(AngularRate(rate), nanoseconds, &mut carried);
             steps += i128::from(increment.0);
-            exact += i128::from(rate) * i128::from(microseconds);
+            exact += i128::from(rate) * i128::from(nanoseconds);
         }
-        // A step is 4 nrad, a product of whole numbers 10⁻¹⁵ rad, what is carried counts in 10⁻¹⁸ rad.
-        prop_assert!((steps * 4_000_000 - exact).abs() < 4_000_000);
-        prop_assert_eq!(1000 * exact - steps * 4_000_000_000, i128::from(carried));
+        // A step is 4 nrad, a product of whole numbers 10⁻¹⁸ rad, as is what is carried.
+        prop_assert!((steps * 4_000_000_000 - exact).abs() < 4_000_000_000);
+        prop_assert_eq!(exact - steps * 4_000_000_000, i128::from(carried));
     }
 }
 
 #[test]
 fn a_rate_at_its_limit_makes_an_increment_at_its_limit() {
     for (rate, limit) in [(i32::MAX, i32::MAX), (i32::MIN, i32::MIN)] {
-        let increment = AngleIncrement::of_rate(AngularRate(rate), 500, &mut 0);
+        let increment = AngleIncrement::of_rate_over(AngularRate(rate), 500_000, &mut 0);
         assert_eq!(increment.0, limit);
         assert!(increment.is_saturated());
     }
