@@ -198,7 +198,11 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
-        let shown = self.pointing.read(late).await?;
+        // An angle belongs to the conversion with which it is read: where that is lost, it is read with the next.
+        let shown = match rate {
+            Some(_) => self.pointing.read(late).await?,
+            None => None,
+        };
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
         if let Some(base) = self.asked(true, base) {
             self.rates.until_next(base.answered()).await;

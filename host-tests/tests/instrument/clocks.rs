@@ -10,7 +10,7 @@ use firmware::acquire::{Source, TriadAcquisition, acquire, on_mount, on_stage};
 use firmware::calibration::Harmonics;
 use firmware::configuration::{Configuration, FramesConfiguration, VehicleConfiguration};
 use firmware::ports::{
-    Accelerometer, BaseReading, BaseSensors, Encoder, ForceReading, Frames, Gyro, InStep,
+    Accelerometer, BaseReading, BaseSensors, Encoder, ForceReading, Frames, Gyro, InStep, NoBase,
     RateReading, Sensors, Startable, VehicleSensors,
 };
 use firmware::shared::Channels;
@@ -110,7 +110,8 @@ impl InStep for Sensor {
 
 impl Encoder for Sensor {
     async fn read(&mut self) -> Result<Angle, Fault> {
-        Ok(Angle(0))
+        let [rate, ..] = self.rates;
+        Ok(Angle::from_rad(rate(0) * true_seconds(self.controller)))
     }
 }
 
@@ -161,6 +162,11 @@ fn channels<S>(clocks: Timebase) -> Channels<'static, S> {
     channels
 }
 
+/// The true time, s, by a controller's clock.
+fn true_seconds([actual, nominal]: [u64; 2]) -> f64 {
+    Instant::now().as_micros() as f64 * 1e-6 * nominal as f64 / actual as f64
+}
+
 /// Gives the motions that a source makes to a test, until it wants no more.
 fn follow<'a, S: Source<'a>>(
     mut source: S,
@@ -189,7 +195,7 @@ fn drive(gyros: [Sensor; 3], sample_rate: f64, clocks: Timebase, take: impl FnMu
     follow(TriadAcquisition::new(&mut sensors, &configuration, &channels), &channels, take);
 }
 
-/// Of an instrument with a gyro on a base, what its base has.
+/// The sensors of an instrument that turns a gyro on a base.
 fn sensors<E>(
     gyro: Sensor,
     encoder: E,
@@ -249,10 +255,10 @@ fn turning(seconds: f64, lasted: f64) -> [f64; 3] {
     [level * cosine, -level * sine, about_down - down]
 }
 
-/// A keeper that has the azimuth of a sample, with what an hour from there has come to.
+/// A keeper that is given the azimuth of its first sample.
 struct Held {
     keeper: Keeper,
-    begun: Option<f64>,
+    has_begun: bool,
 }
 
 impl Held {
@@ -263,19 +269,19 @@ impl Held {
             scale_sigma: 5e-4,
         };
         let setting = Setting::precise(place(), Seconds(period), gyro);
-        Self { keeper: Keeper::new(&setting), begun: None }
+        Self { keeper: Keeper::new(&setting), has_begun: false }
     }
 
-    /// Takes a motion that ends so long after the begin of the first conversion, s: its first sample has the azimuth.
+    /// Takes a sample that ends so long after the begin of the first conversion, s.
     fn take(&mut self, sample: &InertialSample, seconds: f64) {
         self.keeper.push(sample);
-        if self.begun.replace(self.begun.unwrap_or(seconds)).is_none() {
+        if !std::mem::replace(&mut self.has_begun, true) {
             let angle = Radians(course(seconds).rem_euclid(TURN));
             self.keeper.hand_over(Azimuth { angle, sigma: Radians(1e-5) });
         }
     }
 
-    /// Error of the azimuth at the end, °.
+    /// Error of the azimuth at the latest sample, which has ended so long after that, s, in °.
     fn error(&self, seconds: f64) -> f64 {
         let azimuth = self.keeper.report().azimuth.expect("it is held");
         let off = azimuth.angle.0 - course(seconds);
@@ -297,7 +303,7 @@ fn drifted(loses: u64) -> f64 {
     let (mut held, mut seconds) = (Held::new(0.01), 0.0);
     drive(gyros, 100.0, clocks, |motion| {
         let Motion::Moved(sample) = motion else { return true };
-        seconds = sample.time.seconds();
+        seconds = true_seconds(LOCKED);
         held.take(&sample, seconds);
         seconds < SAMPLES as f64 * 0.01
     });
@@ -330,7 +336,7 @@ fn carried(loses: u64) -> f64 {
     let configuration = Configuration::at(HERTZ);
     follow(on_stage(&mut sensors, &configuration, &channels), &channels, |motion| {
         let Motion::Moved(sample) = motion else { return true };
-        seconds = sample.time.seconds();
+        seconds = true_seconds(LOCKED);
         held.take(&sample, seconds);
         seconds < 600.0
     });
@@ -353,17 +359,17 @@ fn the_vertical_gyro_turns_by_the_better_clock_whatever_is_lost() {
     // The converter is off by one and a half per cent, or by nothing where its clock is the better one.
     let slow = PERIOD * 203 / 200;
     for (clocks, controller, period) in [(crystal, LOCKED, slow), (dead, FREE, PERIOD)] {
-        let frames = TwoFrame::default();
         let frames = FramesConfiguration::new(
-            frames,
+            TwoFrame::default(),
             Frames { outer: Harmonics::default(), inner: Harmonics::default() },
             MetresPerSecondSquared(1e-3),
         );
         let (frames, channels) = (frames.expect("a geometry"), channels(clocks));
         let gyro = Sensor { period, loses: 11, ..Sensor::new(controller, RATE) };
         let mut base = Sensor::new(controller, RATE);
-        let mut sensors = sensors(gyro, Frames { outer: gyro, inner: gyro }, &mut base);
-        let (mut turned, mut first, mut last) = (0.0, None, 0);
+        let still = Sensor::new(controller, |_| 0.0);
+        let mut sensors = sensors(gyro, Frames { outer: still, inner: still }, &mut base);
+        let (mut turned, mut first, mut last) = (0.0, None, 0.0);
         let configuration = Configuration::at(HERTZ);
         let source = on_mount(&mut sensors, &configuration, &frames, &channels);
         let mut is_precise = false;
@@ -376,17 +382,45 @@ fn the_vertical_gyro_turns_by_the_better_clock_whatever_is_lost() {
                         assert!(!down.is_saturated(), "rotation is lost");
                         turned += AngleIncrement::rad(down);
                     }
-                    (first, last) = (first.or(Some(sample.time.0)), sample.time.0);
+                    last = true_seconds(controller);
+                    first = first.or(Some(last));
                 }
                 _ => {}
             }
-            last < 600_000_000
+            last < 600.0
         });
-        let shown = (last - first.expect("the axis is vertical")) as f64 * 1e-6;
-        let [actual, nominal] = controller.map(|hertz| hertz as f64);
-        let true_time = if clocks == dead { shown * nominal / actual } else { shown };
-        let off = turned / (RATE(0) * true_time) - 1.0;
+        let first = first.expect("the axis is vertical");
+        let off = turned / (RATE(0) * (last - first)) - 1.0;
         // A conversion at either end may stand for three periods.
         assert!(off.abs() < 4.0 * 2.5e-3 / 600.0, "the angle is {off} off");
     }
+}
+
+#[test]
+fn an_angle_of_a_platform_belongs_to_the_sample_that_has_it_first_whatever_is_lost() {
+    const RATE: Rate = |_| 50.0 * DEGREE;
+    let channels = channels(Timebase::nominal(Clock::Converter, Clock::Crystal));
+    let exact = Sensor::new([1, 1], RATE);
+    let mut sensors = Sensors {
+        gyro: Sensor { loses: 7, ..exact },
+        accelerometer: exact,
+        encoder: exact,
+        base: NoBase,
+    };
+    let configuration = Configuration::at(HERTZ);
+    let mut source = on_stage(&mut sensors, &configuration, &channels);
+    let taking = async {
+        let (mut before, mut new) = (Angle(0), 0);
+        while new < 1000 {
+            let sample = channels.samples.receive().await;
+            if core::mem::replace(&mut before, sample.stage) == sample.stage {
+                continue;
+            }
+            new += 1;
+            let off =
+                (sample.stage - Angle::from_rad(RATE(0) * sample.time.seconds())).signed_rad();
+            assert!(off.abs() < 1e-8, "{} s: an angle is {off} rad off", sample.time.seconds());
+        }
+    };
+    virtual_time::run_beside(acquire(&mut source), taking).expect("conversions come");
 }
