@@ -11,6 +11,7 @@ use orientation::checksum::crc32;
 use orientation::words;
 
 use crate::check_ins::{CheckIns, Parts};
+use crate::kept_lines::KeptLines;
 
 /// Number of return addresses that are kept.
 pub const CALLERS: usize = 6;
@@ -132,6 +133,8 @@ pub struct Outlasting {
     seconds: AtomicU32,
     /// Which parts go on.
     pub check_ins: CheckIns,
+    /// Lines of the log that are to be kept.
+    pub lines: KeptLines,
 }
 
 impl Default for Outlasting {
@@ -148,6 +151,7 @@ impl Outlasting {
             record: [const { AtomicU32::new(0) }; WORDS],
             seconds: AtomicU32::new(0),
             check_ins: CheckIns::new(),
+            lines: KeptLines::new(),
         }
     }
 
@@ -159,6 +163,9 @@ impl Outlasting {
             running: self.check_ins.running(),
             missing: self.check_ins.missing(),
         });
+        if last.is_none() {
+            self.lines.clear();
+        }
         self.check_ins.clear();
         self.seconds.store(0, Ordering::Relaxed);
         self.note(&last.map_or_else(Record::default, |last| Record {
@@ -185,6 +192,7 @@ impl Outlasting {
     /// Counts a second of this run.
     pub fn pass_second(&self) {
         self.seconds.store(self.seconds.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+        self.lines.pass_second();
     }
 }
 

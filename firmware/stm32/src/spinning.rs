@@ -37,8 +37,9 @@ fn begin(
 ) -> Result<(&'static mut Flight, &'static Channels<SpinSample>), NotBegun> {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
-    let SpinWires { converters, outlets: Outlets { mut flash, log, .. } } = wires;
-    let settings = settings::load(&mut flash, settings::spin)?;
+    let SpinWires { converters, outlets } = wires;
+    let Outlets { log, .. } = outlets;
+    let settings = settings::load(&outlets, settings::spin)?;
     let configuration = configuration::spinning().ok_or(NotBegun::NoScale)?;
     let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
     let flight = FLIGHT.init_with(|| configuration::flight(&settings));

@@ -41,8 +41,8 @@ fn begin_on_a_stage(
     wires: AxisPlatformWires,
 ) -> Result<Begun<Session>, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { mut flash, log, .. } = outlets;
-    let settings = settings::load(&mut flash, settings::stage)?;
+    let Outlets { flash, log, .. } = outlets;
+    let settings = settings::load(&outlets, settings::stage)?;
     let session = session(configuration::setting(&settings), configuration::procedure(&settings))?;
     let encoder = ports::encoder(axes.encoder);
     let base = SwayCompensation::new(on_base(base));
@@ -91,8 +91,8 @@ fn begin_on_two_frames(
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let frames = configuration::frames()?;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let (Outlets { mut flash, log, .. }, Frames { outer, inner }) = (outlets, axes);
-    let settings = settings::load(&mut flash, settings::two_frame)?;
+    let (Outlets { flash, log, .. }, Frames { outer, inner }) = (outlets, axes);
+    let settings = settings::load(&outlets, settings::two_frame)?;
     let procedure = configuration::mount_procedure(&settings);
     let session = session(configuration::mount_setting(&settings), procedure)?;
     let (frames, channels) = (&*FRAMES.init(frames), channels(log));

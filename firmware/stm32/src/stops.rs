@@ -34,8 +34,8 @@ fn begin(
 ) -> Result<Begun<Session, InertialSample>, NotBegun> {
     static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let VehicleWires { converters, accelerometer, outlets } = wires;
-    let Outlets { mut flash, log, .. } = outlets;
-    let settings = settings::load(&mut flash, settings::vehicle)?;
+    let Outlets { flash, log, .. } = outlets;
+    let settings = settings::load(&outlets, settings::vehicle)?;
     let session = session(&settings)?;
     let channels: &'static Channels<_> = CHANNELS.init_with(|| Channels::new(log));
     let sensors = ports::triad((converters, &settings.gyro), accelerometer)?;

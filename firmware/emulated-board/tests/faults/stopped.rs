@@ -22,6 +22,8 @@ const MAIN: &str = "board::__cortex_m_rt_main";
 const UNUSED: u32 = 0x1000_7FF0;
 /// The exception of the interrupt TSC (position 77 of the vector table of RM0351), which polls motors and keeper.
 const CONTROL: u32 = 16 + 77;
+/// That of the interrupt SWPMI1, which polls acquisition, above it.
+const ACQUISITION: u32 = CONTROL - 1;
 /// A branch to itself.
 const ENDLESS: u16 = 0xE7FE;
 /// The shortest and longest time from a fault to the first line of the next log where the watchdog resets, s.
@@ -74,9 +76,13 @@ fn causes(board: &Board) -> [u32; 2] {
     board.controller(|controller| [0, 1].map(|register| controller.system.faults[register]))
 }
 
-/// Whether motors or keeper are being polled.
+/// Whether motors or keeper are being polled, with interrupts on.
 fn polls_control(board: &Board) -> bool {
-    board.controller(|controller| controller.exceptions.active.has(CONTROL))
+    let is_at_work = board.controller(|controller| {
+        let active = &controller.exceptions.active;
+        active.has(CONTROL) && !active.has(ACQUISITION)
+    });
+    is_at_work && !board.execution.processor.is_masked()
 }
 
 /// A task of motors and keeper that never returns. Interrupts are still served, and acquisition above it goes on.
