@@ -79,8 +79,9 @@ impl KeptLines {
 
     /// Adds to the credit what a second brings.
     pub(crate) fn pass_second(&self) {
-        let credit = self.credit.load(Ordering::Relaxed);
-        self.credit.store(FULL.min(credit.saturating_add(1)), Ordering::Relaxed);
+        if self.credit.load(Ordering::Relaxed) < FULL {
+            self.credit.fetch_add(1, Ordering::Relaxed);
+        }
     }
 
     /// Has a record be written, where the credit allows it, and whether that is so. No other part may be doing so at the same
@@ -106,7 +107,9 @@ impl KeptLines {
     #[must_use]
     pub fn first(&self) -> Option<[u8; CONTENT]> {
         let taken = self.taken.load(Ordering::Relaxed);
-        (self.given.load(Ordering::Acquire) != taken)
+        let waiting = self.given.load(Ordering::Acquire).wrapping_sub(taken);
+        (1..=CAPACITY)
+            .contains(&waiting)
             .then(|| self.place(taken).each_ref().map(|place| place.load(Ordering::Relaxed)))
     }
 
@@ -119,11 +122,8 @@ impl KeptLines {
     #[must_use]
     pub fn take_omitted(&self) -> Option<u32> {
         let may_say = self.credit.load(Ordering::Relaxed) >= Weight::Symptom.least();
-        let omitted = self.omitted.load(Ordering::Relaxed);
-        (omitted > 0 && may_say).then(|| {
-            self.omitted.store(0, Ordering::Relaxed);
-            omitted
-        })
+        let omitted = if may_say { self.omitted.swap(0, Ordering::Relaxed) } else { 0 };
+        (omitted > 0).then_some(omitted)
     }
 
     /// The place of the record of a number.

@@ -17,8 +17,9 @@ use crate::kept_lines::KeptLines;
 pub const CALLERS: usize = 6;
 /// Words of a record: the first one, how it ended, its number, resets, crystal, registers, return addresses, checksum.
 pub const WORDS: usize = 5 + 8 + CALLERS + 1;
-/// The first word of a record, with the version of its form.
-const FIRST: u32 = 0x4D52_4401;
+/// The first word of a record, with the version of its form and of what else outlasts a reset with it: what another
+/// program has left is not taken for that.
+const FIRST: u32 = 0x4D52_4402;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -162,6 +163,7 @@ impl Outlasting {
             seconds: self.seconds.load(Ordering::Relaxed),
             running: self.check_ins.running(),
             missing: self.check_ins.missing(),
+            lost: self.check_ins.lost(),
         });
         if last.is_none() {
             self.lines.clear();
@@ -207,6 +209,8 @@ pub struct Last {
     pub running: Parts,
     /// Parts that had not checked in.
     pub missing: Parts,
+    /// Those of them that were looked for again and again, and in vain.
+    pub lost: Parts,
 }
 
 /// The lines that tell how the last run ended.
@@ -255,10 +259,12 @@ impl Last {
         })
     }
 
-    /// The part in which it ended: the one that was being polled, or else one that had not checked in.
+    /// The part in which it ended: the one that was being polled, or else one that was looked for in vain. Where none was,
+    /// who looks for them did not go on: a task of the thread that never returns, and is no part.
     #[must_use]
-    pub fn part(&self) -> &'static str {
-        self.running.first().or(self.missing.first()).unwrap_or("no part")
+    pub fn part(&self, how: How) -> &'static str {
+        let outside = if how == How::Stuck { "the thread, outside of any part" } else { "no part" };
+        self.running.first().or(self.lost.first()).unwrap_or(outside)
     }
 
     /// The lines of the log that tell how it ended.
@@ -296,8 +302,8 @@ words! { How:
 
 words! { Line<'_>:
     Self::End(how, last) =>
-        "last reset: {} after {} s, {} resets before; running: {}; missing: {}",
-        how, last.seconds, last.record.resets, last.running, last.missing;
+        "last reset: {} in {} after {} s, {} resets before; running: {}; missing: {}",
+        how, last.part(how), last.seconds, last.record.resets, last.running, last.missing;
     Self::Place(registers) =>
         "PC {:#010x}, LR {:#010x}, PSR {:#010x}, SP {:#010x}",
         registers.pc, registers.lr, registers.psr, registers.sp;

@@ -53,13 +53,17 @@ mod priorities;
 mod stack;
 mod unmaskable;
 
+use core::pin::pin;
+
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_stm32::interrupt;
 use embassy_time::{Duration, Instant, block_for};
+use firmware::check_ins::{Checked, Part};
 use firmware::kept_lines::Weight;
 use firmware::link;
 use firmware::platform::Platform;
+use firmware::ports::Observer as _;
 use firmware::postmortem::Last;
 use stm32::watchdog::Reason;
 use stm32::wiring::{Clock, Link};
@@ -140,7 +144,7 @@ async fn main(spawner: Spawner) -> ! {
     tell(last.as_ref(), reason, ring.found, &mut link).await;
     spawner.spawn(defmt::unwrap!(stack::watch()));
     run(spawner, board, link);
-    LOG.write(ring).await;
+    Checked::new(LOG.check_ins(), Part::Log, pin!(LOG.write(ring))).await
 }
 
 /// Has the option bytes hold the level of the supply below which the board is reset: once, for a controller as it is
@@ -168,7 +172,7 @@ async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link
         for line in last.lines(how).iter().flatten() {
             LOG.keep(Weight::Outcome, || defmt::warn!("board: {}", line));
         }
-        words = ["last reset: ", how.brief(), " in ", last.part(), "\r\n", ""];
+        words = ["last reset: ", how.brief(), " in ", last.part(how), "\r\n", ""];
     }
     if records > 0 {
         defmt::info!("board: {} records of the log in flash", records);

@@ -106,6 +106,35 @@ static STUCK: LazyLock<Restart> = LazyLock::new(|| {
     })
 });
 
+/// Whether the thread's executor polls nothing.
+fn idles(board: &Board) -> bool {
+    board.controller(|controller| controller.exceptions.active.is_empty())
+        && board.execution.processor.place().contains("thread::Executor::run")
+}
+
+/// The thread never returns, outside of any part. Motors, keeper and acquisition above it go on until the watchdog, and the
+/// keeper has no motion that it lacks.
+#[test]
+fn a_thread_that_is_stuck_outside_of_any_part_is_told_and_the_keeper_goes_on() {
+    let restart = Restart::after(|board| {
+        for _ in 0..1000 {
+            if !idles(board) {
+                board.run(2e-5);
+            }
+        }
+        assert!(idles(board), "{}", board.execution.processor.place());
+        assert!(board.execution.processor.poke(UNUSED, &ENDLESS.to_le_bytes()));
+        board.execution.processor.jump(UNUSED);
+        let stuck = board.seconds();
+        board.run(6.5);
+        let lines = board.lines(stuck, f64::INFINITY);
+        assert!(!lines.iter().any(|line| line.contains("keeping")), "{board}");
+    });
+    assert!(WATCHDOG.contains(&restart.after), "{} s", restart.after);
+    let words = ["last reset: stuck task in the thread, outside of any part"];
+    assert_eq!(restart.telling(&words), 2.0, "log and link: {:?}", restart.lines);
+}
+
 /// The program begins once more, and panics since its first task runs already.
 static PANIC: LazyLock<Restart> =
     LazyLock::new(|| Restart::after(|board| board.execution.processor.jump(function(MAIN))));
