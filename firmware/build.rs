@@ -51,7 +51,7 @@ fn limits(budget: &str) -> io::Result<String> {
     let sum = |sections: &[&str]| {
         sections.iter().map(|name| format!("SIZEOF({name})")).collect::<Vec<_>>().join(" + ")
     };
-    let flash = sum(&[".vector_table", ".text", ".etalon", ".rodata", ".data"]);
+    let flash = sum(&[".vector_table", ".text", ".etalon", ".build_id", ".rodata", ".data"]);
     let ram = sum(&[".data", ".bss", ".uninit"]);
     let sram2 = sum(&[".outlasting"]);
     Ok(format!(

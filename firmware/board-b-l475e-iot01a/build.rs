@@ -9,6 +9,8 @@ fn main() {
     println!("cargo::rerun-if-changed=../../memory.x");
     // Functions of the same code are one.
     println!("cargo::rustc-link-arg-bins=--icf=all");
+    // By its identity in a note, the lines that an image has kept in flash find the ELF file with their words.
+    println!("cargo::rustc-link-arg-bins=--build-id=fast");
     for script in ["link.x", "defmt.x", "budget.x"] {
         println!("cargo::rustc-link-arg-bins=-T{script}");
     }

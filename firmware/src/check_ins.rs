@@ -23,6 +23,10 @@ pub enum Part {
     Link,
     /// The navigator, which keeps the attitude.
     Keeper,
+    /// The store of the heading.
+    Store,
+    /// The writer of the log's lines that are kept.
+    Log,
 }
 
 words! { Part:
@@ -39,12 +43,21 @@ impl Part {
             Self::Mechanism => "mechanism",
             Self::Link => "link",
             Self::Keeper => "keeper",
+            Self::Store => "store",
+            Self::Log => "log",
         }
     }
 
     /// All parts, in the order of their numbers.
-    const ALL: [Self; 5] =
-        [Self::Acquisition, Self::Aligner, Self::Mechanism, Self::Link, Self::Keeper];
+    const ALL: [Self; 7] = [
+        Self::Acquisition,
+        Self::Aligner,
+        Self::Mechanism,
+        Self::Link,
+        Self::Keeper,
+        Self::Store,
+        Self::Log,
+    ];
 
     /// The set of this part alone.
     const fn bit(self) -> u32 {
@@ -104,6 +117,8 @@ pub struct CheckIns {
     present: AtomicU32,
     /// Number of the part that is being polled.
     running: AtomicU32,
+    /// How often in a row a part was looked for in vain.
+    vain: AtomicU32,
 }
 
 impl Default for CheckIns {
@@ -120,6 +135,7 @@ impl CheckIns {
             expected: AtomicU32::new(0),
             present: AtomicU32::new(0),
             running: AtomicU32::new(NO_PART),
+            vain: AtomicU32::new(0),
         }
     }
 
@@ -128,6 +144,7 @@ impl CheckIns {
         self.expected.store(0, Ordering::Relaxed);
         self.present.store(0, Ordering::Relaxed);
         self.running.store(NO_PART, Ordering::Relaxed);
+        self.vain.store(0, Ordering::Relaxed);
     }
 
     /// The part that is being polled. Of two priorities it is the one that has interrupted the other.
@@ -148,10 +165,18 @@ impl CheckIns {
     #[must_use]
     pub fn renew(&self) -> bool {
         let are_all = self.missing().is_empty();
+        let vain = self.vain.load(Ordering::Relaxed);
+        self.vain.store(if are_all { 0 } else { vain.saturating_add(1) }, Ordering::Relaxed);
         if are_all {
             self.present.store(0, Ordering::Relaxed);
         }
         are_all
+    }
+
+    /// The parts that were looked for in vain, twice in a row or more often; none where who looks for them was stuck itself.
+    #[must_use]
+    pub fn lost(&self) -> Parts {
+        if self.vain.load(Ordering::Relaxed) > 1 { self.missing() } else { Parts(0) }
     }
 
     /// A part begins to be polled; returns the number of the one that it interrupts.

@@ -5,9 +5,11 @@ use drivers::fault::Fault;
 use orientation::alignment::Progress;
 use orientation::device::{Device, Trouble};
 use orientation::navigation;
+use orientation::roll;
 use orientation::words;
 use orientation::words::Rounded;
 
+use crate::kept_lines::Weight;
 use crate::remembered::Remembered;
 use crate::retry_budget::Symptom;
 
@@ -72,6 +74,39 @@ pub enum Event {
     HeadingNotKept(Fault),
     /// The link does not accept status lines.
     LinkSilent,
+}
+
+impl Event {
+    /// How much it tells once the supply was lost: which device failed and how, and what came of an alignment or of the
+    /// azimuth that is kept; [`None`] for what goes as it should.
+    #[must_use]
+    pub const fn weight(&self) -> Option<Weight> {
+        use navigation::Progress as Navigated;
+        match self {
+            Self::Lost(..)
+            | Self::Clipped(_)
+            | Self::Restarting(..)
+            | Self::Missing(_)
+            | Self::Late(_)
+            | Self::Overflowed(_)
+            | Self::Blocked(_)
+            | Self::LinkSilent => Some(Weight::Symptom),
+            Self::Navigation(
+                Navigated::Keeping(_) | Navigated::DownGyro(_) | Navigated::Realigning,
+            ) => None,
+            Self::GivenUp(..)
+            | Self::Alignment(
+                Progress::Concluded(_)
+                | Progress::Refused(_)
+                | Progress::Roll(roll::Progress::Flown(..) | roll::Progress::Ended(_)),
+            )
+            | Self::Navigation(_)
+            | Self::CalibrationUnreadable(_)
+            | Self::CalibrationNotSaved(_)
+            | Self::HeadingNotKept(_) => Some(Weight::Outcome),
+            _ => None,
+        }
+    }
 }
 
 words! { Event:

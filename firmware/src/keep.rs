@@ -3,7 +3,9 @@
 //!
 //! The navigator takes only samples that the aligner has had the chance to take, but for those that come
 //! while it computes. An azimuth belongs to the last sample of its alignment: it is handed over exactly
-//! between that sample and the next, or carried on from the course that was marked there.
+//! between that sample and the next, or carried on from the course that was marked there. Where the aligner
+//! does not go on, as where the thread is busy or stuck, the navigator does before its queue is full; an azimuth
+//! of a sample that it has left behind so is refused.
 //!
 //! **Endurance of the flash.** An item is written when the vehicle has come to rest, when it sets
 //! off, and between them at most once a minute and only if azimuth or σ have changed: about five

@@ -52,6 +52,7 @@ pub mod check_ins;
 pub mod date;
 pub mod event;
 pub mod health;
+pub mod kept_lines;
 pub mod link;
 pub mod not_begun;
 pub mod remembered;

@@ -12,6 +12,7 @@ use orientation::checksum::crc32;
 use orientation::words;
 
 use crate::check_ins::{CheckIns, Parts};
+use crate::kept_lines::KeptLines;
 
 /// Number of return addresses that are kept.
 pub const CALLERS: usize = 6;
@@ -19,8 +20,9 @@ pub const CALLERS: usize = 6;
 const TEXT: usize = 40;
 /// Words of a record: the first one, how it ended, its number, resets, crystal, registers, return addresses, text, checksum.
 pub const WORDS: usize = 5 + 8 + CALLERS + TEXT + 1;
-/// The first word of a record, with the version of its form.
-const FIRST: u32 = 0x4D52_4402;
+/// The first word of a record, with the version of its form and of what else outlasts a reset with it: what another
+/// program has left is not taken for that.
+const FIRST: u32 = 0x4D52_4403;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -173,6 +175,8 @@ pub struct Outlasting {
     seconds: AtomicU32,
     /// Which parts go on.
     pub check_ins: CheckIns,
+    /// Lines of the log that are to be kept.
+    pub lines: KeptLines,
 }
 
 impl Default for Outlasting {
@@ -189,6 +193,7 @@ impl Outlasting {
             record: [const { AtomicU32::new(0) }; WORDS],
             seconds: AtomicU32::new(0),
             check_ins: CheckIns::new(),
+            lines: KeptLines::new(),
         }
     }
 
@@ -199,7 +204,11 @@ impl Outlasting {
             seconds: self.seconds.load(Ordering::Relaxed),
             running: self.check_ins.running(),
             missing: self.check_ins.missing(),
+            lost: self.check_ins.lost(),
         });
+        if last.is_none() {
+            self.lines.clear();
+        }
         self.check_ins.clear();
         self.seconds.store(0, Ordering::Relaxed);
         self.note(&last.map_or_else(Record::default, |last| Record {
@@ -226,6 +235,7 @@ impl Outlasting {
     /// Counts a second of this run.
     pub fn pass_second(&self) {
         self.seconds.store(self.seconds.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+        self.lines.pass_second();
     }
 }
 
@@ -240,6 +250,8 @@ pub struct Last {
     pub running: Parts,
     /// Parts that had not checked in.
     pub missing: Parts,
+    /// Those of them that were looked for again and again, and in vain.
+    pub lost: Parts,
 }
 
 /// The lines that tell how the last run ended.
@@ -290,10 +302,12 @@ impl Last {
         })
     }
 
-    /// The part in which it ended: the one that was being polled, or else one that had not checked in.
+    /// The part in which it ended: the one that was being polled, or else one that was looked for in vain. Where none was,
+    /// who looks for them did not go on: a task of the thread that never returns, and is no part.
     #[must_use]
-    pub fn part(&self) -> &'static str {
-        self.running.first().or(self.missing.first()).unwrap_or("no part")
+    pub fn part(&self, how: How) -> &'static str {
+        let outside = if how == How::Stuck { "the thread, outside of any part" } else { "no part" };
+        self.running.first().or(self.lost.first()).unwrap_or(outside)
     }
 
     /// The lines of the log that tell how it ended.
@@ -333,8 +347,8 @@ words! { How:
 
 words! { Line<'_>:
     Self::End(how, last) =>
-        "last reset: {} after {} s, {} resets before; running: {}; missing: {}",
-        how, last.seconds, last.record.resets, last.running, last.missing;
+        "last reset: {} in {} after {} s, {} resets before; running: {}; missing: {}",
+        how, last.part(how), last.seconds, last.record.resets, last.running, last.missing;
     Self::Text(text) => "panicked at {}", text;
     Self::Place(registers) =>
         "PC {:#010x}, LR {:#010x}, PSR {:#010x}, SP {:#010x}",

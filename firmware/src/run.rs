@@ -98,5 +98,7 @@ pub async fn find<L: Write, R: Recorder<S>, T: Store, S: Timed>(
     let storing = pin!(remember(&mut store, shared));
     // The link wakes all of them once a second.
     let aligning = shared.checked(Part::Aligner, aligning);
-    select4(aligning, shared.checked(Part::Link, reporting), watching, storing).await;
+    let (reporting, storing) =
+        (shared.checked(Part::Link, reporting), shared.checked(Part::Store, storing));
+    select4(aligning, reporting, watching, storing).await;
 }

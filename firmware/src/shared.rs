@@ -234,10 +234,11 @@ impl<'a> Shared<'a> {
         self.caught_up.signal(());
     }
 
-    /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs
-    /// none.
+    /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs none, or is
+    /// so far behind that motions would be lost. An azimuth of a sample before is none any more, then, for the navigator.
     pub(crate) fn may_move(&self) -> bool {
-        !self.is_behind.get() || self.is_computing.get()
+        let is_filling = self.motions.len() > QUEUE / 2;
+        !self.is_behind.get() || self.is_computing.get() || is_filling
     }
 
     /// Signals the navigator that the aligner has taken all samples of the queue.

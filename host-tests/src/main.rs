@@ -16,6 +16,7 @@ use host::output::say;
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
+use crate::command::log::LogOptions;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
@@ -52,6 +53,9 @@ enum Command {
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
     /// and holds its instructions and memory to their budget. Needs qemu-system-arm.
     Emulate(EmulateOptions),
+    /// Prints the lines of its log that a board has kept in flash: which device failed and how, how a run ended, what came
+    /// of an alignment.
+    Log(LogOptions),
 }
 
 /// What was asked, and which options stand on the command line.
@@ -176,6 +180,7 @@ fn answer(command: &Command, stated: &Stated, as_json: bool) -> Result<bool, Fai
         Command::Allan(options) => command::allan::run(options, as_json)?,
         Command::Campaign(options) => command::campaign::run(options, as_json)?,
         Command::Emulate(options) => command::emulate::run(options, as_json)?,
+        Command::Log(options) => command::log::run(options, as_json)?,
     };
     print(&answer.printed())?;
     warn(&answer.warnings);

@@ -53,12 +53,17 @@ mod priorities;
 mod stack;
 mod unmaskable;
 
+use core::pin::pin;
+
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_stm32::interrupt;
 use embassy_time::{Duration, Instant, block_for};
+use firmware::check_ins::{Checked, Part};
+use firmware::kept_lines::Weight;
 use firmware::link;
 use firmware::platform::Platform;
+use firmware::ports::Observer as _;
 use firmware::postmortem::Last;
 use stm32::watchdog::Reason;
 use stm32::wiring::{Clock, Link};
@@ -102,11 +107,20 @@ fn executors() -> Executors {
     Executors { acquisition: ACQUISITION.start(acquisition), control: CONTROL.start(control) }
 }
 
+/// Symbols of the linker.
+mod symbols {
+    #[expect(unsafe_code, reason = "refers to a symbol of the linker's script")]
+    // SAFETY: `memory.x` defines it before six words.
+    unsafe extern "C" {
+        pub safe static _build_id: [u32; 6];
+    }
+}
+
 /// The log, and where the parts check in.
-static LOG: BoardLog = BoardLog(&RUN.check_ins);
+static LOG: BoardLog = BoardLog { run: &RUN, image: &symbols::_build_id };
 
 #[embassy_executor::main]
-async fn main(spawner: Spawner) {
+async fn main(spawner: Spawner) -> ! {
     stack::guard();
     let reason = watchdog::reason();
     let last = RUN.begin();
@@ -120,15 +134,17 @@ async fn main(spawner: Spawner) {
     record.is_crystal_dead = !has_crystal;
     RUN.note(&record);
     priorities::set();
-    defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
+    LOG.keep(Weight::Outcome, || {
+        defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
+    });
     set_brown_out_level(reason);
     let board = Board::new(peripherals, &LOG, Clock { has_crystal });
     let (board, mut link) = defmt::unwrap!(board);
-    if let Some(last) = last {
-        tell(&last, reason, &mut link).await;
-    }
+    let ring = board.flash().ring();
+    tell(last.as_ref(), reason, ring.found, &mut link).await;
     spawner.spawn(defmt::unwrap!(stack::watch()));
     run(spawner, board, link);
+    Checked::new(LOG.check_ins(), Part::Log, pin!(LOG.write(ring))).await
 }
 
 /// Has the option bytes hold the level of the supply below which the board is reset: once, for a controller as it is
@@ -146,14 +162,25 @@ fn set_brown_out_level(reason: Reason) {
     brown_out::set();
 }
 
-/// Tells log and link how the last run ended, unless it did so on purpose.
-async fn tell(last: &Last, reason: Reason, link: &mut Link) {
-    let how = last.how(reason == Reason::Watchdog, reason == Reason::Supply);
-    let Some(how) = how else { return };
-    last.lines(how).iter().flatten().for_each(|line| defmt::warn!("board: {}", line));
-    let text = last.record.text.as_str();
-    let place = if text.is_empty() { "" } else { " at " };
-    let words = ["last reset: ", how.brief(), " in ", last.part(), place, text, "\r\n"];
+/// Tells log and link how the last run ended, unless it did so on purpose, and how many records of the log the flash holds.
+async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link) {
+    let how = |last: &Last| last.how(reason == Reason::Watchdog, reason == Reason::Supply);
+    let mut words = [""; 8];
+    if let Some(last) = last
+        && let Some(how) = how(last)
+    {
+        for line in last.lines(how).iter().flatten() {
+            LOG.keep(Weight::Outcome, || defmt::warn!("board: {}", line));
+        }
+        let text = last.record.text.as_str();
+        let place = if text.is_empty() { "" } else { " at " };
+        let [what, part] = [how.brief(), last.part(how)];
+        words = ["last reset: ", what, " in ", part, place, text, "\r\n", ""];
+    }
+    if records > 0 {
+        defmt::info!("board: {} records of the log in flash", records);
+        words[7] = "log in flash\r\n";
+    }
     link::say(link, &words).await;
 }
 

@@ -15,13 +15,14 @@ use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use firmware::platform::Platform;
 use firmware::ports::Frames;
 use stm32::edges::{self, Line};
+use stm32::flash;
 use stm32::i2c::{BaseBus, serve};
 use stm32::spi::Bus;
 use stm32::wiring::{
     AxisPlatformWires, Buses, Clock, FramesWires, Link, Outlets, PlatformWires, SpinWires,
     VehicleWires, sensor_settings, stage_settings,
 };
-use stm32::{BoardLog, PLATFORM, chain};
+use stm32::{BoardLog, PLATFORM, UpperBank, chain};
 
 use crate::clock;
 
@@ -121,7 +122,7 @@ impl Board {
         let board = Self {
             buses,
             converter: (p.PA2, ready),
-            outlets: Outlets { flash: p.FLASH, log, clock: timing },
+            outlets: Outlets { flash: flash::take(p.FLASH), log, clock: timing },
             accelerometer: p.PA15,
             axis: (p.PD0, p.PD5),
             motor_enable: p.PD2,
@@ -131,6 +132,11 @@ impl Board {
             lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
         };
         Ok((board, link))
+    }
+
+    /// Flash of the controller.
+    pub const fn flash(&self) -> UpperBank {
+        self.outlets.flash
     }
 
     /// Connections of a stage or a turntable.

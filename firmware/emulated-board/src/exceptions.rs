@@ -83,7 +83,8 @@ impl Set {
     }
 
     /// Whether it is none.
-    const fn is_empty(self) -> bool {
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 

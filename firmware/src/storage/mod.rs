@@ -1,12 +1,15 @@
 //! Data kept over a loss of supply: the axis misalignment of the gyro on a turntable, one for each
-//! speed, with date and temperature; the heading of a vehicle at rest; and the [`settings`](crate::settings).
+//! speed, with date and temperature; the heading of a vehicle at rest; and the [`settings`](crate::settings). Apart from
+//! them, a [`Ring`] of what the log has told.
 //!
 //! The axis misalignment is estimated by rate-modulated turns; a recent one makes these turns
 //! unnecessary. Images without storage contain none of this code.
 
 mod flash;
+mod ring;
 
 pub use flash::FlashStore;
+pub use ring::{CONTENT, PAGE, Pages, Ring, Row, records};
 
 use drivers::fault::Fault;
 use embassy_futures::select::select;

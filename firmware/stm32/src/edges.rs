@@ -99,11 +99,6 @@ impl Noted {
     }
 }
 
-/// The latest edge of a line.
-pub(crate) fn latest(line: usize) -> Edge {
-    NOTED[line % LINES].latest()
-}
-
 /// The latest edge of a line, for an interrupt of the same priority: the lower and the upper half of its time, µs, and its
 /// count.
 #[inline]

@@ -1,5 +1,5 @@
-//! Flash of the controller, for data that must outlast a loss of supply: its driver and the store in it, for an STM32L4
-//! with two banks (RM0351, chapter 3). The program lies in the lower bank, the store in the upper one.
+//! Flash of the controller, for data that must outlast a loss of supply: its driver, the store in it and the ring of lines
+//! of the log, for an STM32L4 with two banks (RM0351, chapter 3). The program lies in the lower bank, these in the upper one.
 //!
 //! Reading and programming are embassy's. Other tasks run after each row that is programmed, 82 µs, and after some that are
 //! read, since a store is searched for the end of what it holds. What embassy-stm32 0.6.0 lacks is here:
@@ -13,6 +13,7 @@
 //!
 //! An erasure that does not end is an error; a row that does not is polled until the watchdog resets.
 
+use core::cell::RefCell;
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
@@ -25,13 +26,21 @@ use embassy_time::Timer;
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use firmware::storage::FlashStore;
+use firmware::storage;
+use firmware::storage::{FlashStore, Pages, Row};
+use static_cell::StaticCell;
 
 /// Store in flash.
-pub type Store<'d> = FlashStore<UpperBank<'d>>;
+pub type Store = FlashStore<UpperBank>;
+/// Ring of lines of the log in flash.
+pub type Ring = storage::Ring<UpperBank>;
 
-/// Range of the store: the last two pages, which no image reaches (`memory.x`).
-const KEPT: Range<u32> = (FLASH_SIZE - 2 * MAX_ERASE_SIZE) as u32..FLASH_SIZE as u32;
+/// Range of what is kept: the last pages, which no image reaches (`memory.x`).
+const KEPT: Range<u32> = LINES.start..FLASH_SIZE as u32;
+/// First byte of the store: the last two pages.
+const STORE: u32 = (FLASH_SIZE - 2 * MAX_ERASE_SIZE) as u32;
+/// Range of the ring: the sixteen pages before them.
+const LINES: Range<u32> = STORE - 16 * MAX_ERASE_SIZE as u32..STORE;
 /// Bytes of a bank.
 const BANK: u32 = FLASH_SIZE as u32 / 2;
 /// Bytes of a page.
@@ -46,16 +55,16 @@ const ROWS_AT_ONCE: u32 = 16;
 /// No offset.
 const NONE: u32 = u32::MAX;
 
-/// Offset of the row of the store that could not be read last.
+/// Offset of the row of what is kept that could not be read last.
 static UNREADABLE: AtomicU32 = AtomicU32::new(NONE);
 
-/// The store in the controller's flash.
-pub fn store(flash: Peri<'_, FLASH>) -> Store<'_> {
-    let flash = UpperBank { flash: Flash::new_blocking(flash), rows_read: 0 };
-    FlashStore::new(flash, KEPT.start)
+/// Takes the flash, once.
+pub fn take(flash: Peri<'static, FLASH>) -> UpperBank {
+    static DRIVER: StaticCell<RefCell<Flash<'static, Blocking>>> = StaticCell::new();
+    UpperBank { driver: DRIVER.init(RefCell::new(Flash::new_blocking(flash))), rows_read: 0 }
 }
 
-/// Notes the row of the store that has raised the non-maskable interrupt, for the read that came upon it. `false` if
+/// Notes the row of what is kept that has raised the non-maskable interrupt, for the read that came upon it. `false` if
 /// something else has raised it, which is a fault.
 #[must_use]
 pub fn note_unreadable_row() -> bool {
@@ -93,10 +102,12 @@ impl NorFlashError for Trouble {
     }
 }
 
-/// The flash, of which the program's own bank is neither programmed nor erased.
-pub struct UpperBank<'d> {
-    /// The driver for what it does right.
-    flash: Flash<'d, Blocking>,
+/// The flash, of which the program's own bank is neither programmed nor erased. Store and ring have it each: where one
+/// erases a page, the other waits.
+#[derive(Clone, Copy)]
+pub struct UpperBank {
+    /// The driver for what it does right. It is borrowed for a row at a time.
+    driver: &'static RefCell<Flash<'static, Blocking>>,
     /// Rows read, which wrap.
     rows_read: u32,
 }
@@ -107,27 +118,55 @@ struct WithoutCache;
 impl WithoutCache {
     /// Switches the cache off.
     fn new() -> Self {
-        pac::FLASH.acr().modify(|access| access.set_dcen(false));
+        switch_cache_off();
         Self
     }
 }
 
 impl Drop for WithoutCache {
     fn drop(&mut self) {
-        pac::FLASH.acr().modify(|access| access.set_dcrst(true));
-        pac::FLASH.acr().modify(|access| access.set_dcrst(false));
-        pac::FLASH.acr().modify(|access| access.set_dcen(true));
+        switch_cache_on();
     }
 }
 
-impl UpperBank<'_> {
+/// Switches the data cache off.
+fn switch_cache_off() {
+    pac::FLASH.acr().modify(|access| access.set_dcen(false));
+}
+
+/// Empties the data cache, and switches it on.
+fn switch_cache_on() {
+    pac::FLASH.acr().modify(|access| access.set_dcrst(true));
+    pac::FLASH.acr().modify(|access| access.set_dcrst(false));
+    pac::FLASH.acr().modify(|access| access.set_dcen(true));
+}
+
+/// Whether an operation is under way.
+fn is_busy() -> bool {
+    pac::FLASH.sr().read().bsy()
+}
+
+impl UpperBank {
+    /// The store in it.
+    #[must_use]
+    pub const fn store(self) -> Store {
+        FlashStore::new(self, STORE)
+    }
+
+    /// The ring in it. No erasure may be under way: the core would wait for it.
+    #[must_use]
+    pub fn ring(self) -> Ring {
+        Ring::open(self, LINES)
+    }
+
     /// Reads a row, or a part of it.
-    fn read_row(&mut self, offset: u32, row: &mut [u8]) -> Result<(), Trouble> {
+    #[inline(never)]
+    fn read_row(&self, offset: u32, row: &mut [u8]) -> Result<(), Trouble> {
         // The address of an earlier finding would stay.
         clear_findings();
         UNREADABLE.store(NONE, Ordering::Relaxed);
         fence(Ordering::SeqCst);
-        self.flash.blocking_read(offset, row).map_err(|_| Trouble::Refused)?;
+        self.driver.borrow_mut().blocking_read(offset, row).map_err(|_| Trouble::Refused)?;
         fence(Ordering::SeqCst);
         let is_pending = pac::FLASH.eccr().read().eccd();
         if is_pending || UNREADABLE.load(Ordering::Relaxed) != NONE {
@@ -137,12 +176,24 @@ impl UpperBank<'_> {
         }
         Ok(())
     }
+
+    /// Programs a row.
+    #[inline(never)]
+    fn program_row(&self, offset: u32, row: &[u8]) -> Result<(), Trouble> {
+        let _without_cache = WithoutCache::new();
+        self.driver.borrow_mut().blocking_write(offset, row).map_err(|_| Trouble::Refused)
+    }
 }
 
-/// Waits until nothing is under way, not even an erasure whose future was dropped.
-async fn idle() -> Result<(), Trouble> {
+/// Whether nothing is under way, nor an erasure whose end has not been seen by its part: the cache is off until then.
+fn is_free() -> bool {
+    !is_busy() && pac::FLASH.acr().read().dcen()
+}
+
+/// Waits until something is so, as that nothing is under way, not even an erasure whose future was dropped.
+async fn until(is_so: fn() -> bool) -> Result<(), Trouble> {
     for _ in 0..LONGEST_MILLISECONDS {
-        if !pac::FLASH.sr().read().bsy() {
+        if is_so() {
             return Ok(());
         }
         Timer::after_millis(1).await;
@@ -161,8 +212,16 @@ pub(crate) fn unlock() {
 
 /// Erases the page at this offset.
 async fn erase_page(offset: u32) -> Result<(), Trouble> {
-    idle().await?;
+    until(is_free).await?;
     let _without_cache = WithoutCache::new();
+    begin_erasure(offset);
+    let ended = until(|| !is_busy()).await;
+    end_erasure().and(ended)
+}
+
+/// Begins to erase the page at this offset.
+#[inline(never)]
+fn begin_erasure(offset: u32) {
     unlock();
     // Errors of before are cleared by ones; with one of them nothing would begin.
     pac::FLASH.sr().modify(|_| {});
@@ -172,20 +231,54 @@ async fn erase_page(offset: u32) -> Result<(), Trouble> {
         control.set_pnb((offset % BANK / PAGE) as u8);
         control.set_start(true);
     });
-    let ended = idle().await;
+}
+
+/// Leaves an erasure that is over, or counts as failed.
+#[inline(never)]
+fn end_erasure() -> Result<(), Trouble> {
     pac::FLASH.cr().modify(|control| control.set_per(false));
     pac::FLASH.cr().modify(|control| control.set_lock(true));
-    ended?;
     let status = pac::FLASH.sr().read();
     let is_refused = status.operr() || status.wrperr() || status.pgserr();
     if is_refused { Err(Trouble::Refused) } else { Ok(()) }
 }
 
-impl ErrorType for UpperBank<'_> {
+impl Pages for UpperBank {
+    fn row(&self, offset: u32) -> Option<Row> {
+        let mut row = [0; WRITE_SIZE];
+        self.read_row(offset, &mut row).ok()?;
+        Some(row)
+    }
+
+    fn is_idle(&self) -> bool {
+        is_free()
+    }
+
+    fn program(&mut self, offset: u32, row: Row) -> bool {
+        self.program_row(offset, &row).is_ok()
+    }
+
+    fn begin_erasure(&mut self, offset: u32) {
+        switch_cache_off();
+        begin_erasure(offset);
+    }
+
+    fn end_erasure(&mut self) -> bool {
+        let is_over = !is_busy();
+        if is_over {
+            // A refusal shows in the rows.
+            let _ = end_erasure();
+            switch_cache_on();
+        }
+        is_over
+    }
+}
+
+impl ErrorType for UpperBank {
     type Error = Trouble;
 }
 
-impl ReadNorFlash for UpperBank<'_> {
+impl ReadNorFlash for UpperBank {
     const READ_SIZE: usize = WRITE_SIZE;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Trouble> {
@@ -193,6 +286,8 @@ impl ReadNorFlash for UpperBank<'_> {
             if self.rows_read.is_multiple_of(ROWS_AT_ONCE) {
                 yield_now().await;
             }
+            // The core would wait for the row while its bank is erased.
+            until(is_free).await?;
             self.rows_read = self.rows_read.wrapping_add(1);
             self.read_row(offset, row)?;
         }
@@ -204,7 +299,7 @@ impl ReadNorFlash for UpperBank<'_> {
     }
 }
 
-impl NorFlash for UpperBank<'_> {
+impl NorFlash for UpperBank {
     const WRITE_SIZE: usize = WRITE_SIZE;
     const ERASE_SIZE: usize = MAX_ERASE_SIZE;
 
@@ -224,11 +319,8 @@ impl NorFlash for UpperBank<'_> {
             return Err(Trouble::Refused);
         }
         for (offset, row) in (offset..).step_by(WRITE_SIZE).zip(bytes.chunks(WRITE_SIZE)) {
-            idle().await?;
-            let without_cache = WithoutCache::new();
-            let written = self.flash.blocking_write(offset, row);
-            drop(without_cache);
-            written.map_err(|_| Trouble::Refused)?;
+            until(is_free).await?;
+            self.program_row(offset, row)?;
             yield_now().await;
         }
         Ok(())

@@ -16,8 +16,9 @@ pub mod brown_out;
 pub mod chain;
 mod configuration;
 pub mod edges;
-mod flash;
+pub mod flash;
 pub mod i2c;
+pub mod log;
 mod ports;
 mod settings;
 pub mod spi;
@@ -30,22 +31,20 @@ pub mod stops;
 pub mod turning;
 
 pub use configuration::PLATFORM;
-pub use flash::note_unreadable_row;
+pub use flash::{UpperBank, note_unreadable_row};
+pub use log::BoardLog;
 
 use core::future::pending;
 use core::pin::pin;
 
 use embassy_executor::SendSpawner;
 use embassy_futures::select::select;
-use embassy_stm32::Peri;
-use embassy_stm32::peripherals::FLASH;
-use embassy_time::{Duration, Instant, Timer};
+use embassy_time::{Duration, Timer};
 use firmware::acquire::{acquire, on_stage};
-use firmware::check_ins::{CheckIns, Checked, Part};
-use firmware::event::Event;
+use firmware::check_ins::{Checked, Part};
 use firmware::keep::{Keep, Keeping};
+use firmware::kept_lines::Weight;
 use firmware::link;
-use firmware::log::DefmtLog;
 use firmware::mechanism::Mechanism;
 use firmware::not_begun::NotBegun;
 use firmware::ports::{NoRecorder, Observer, Recorder, Store};
@@ -59,7 +58,6 @@ use orientation::signal::{Sample, Timed};
 use orientation::timebase::Timebase;
 use static_cell::StaticCell;
 
-use flash::store;
 use i2c::BaseBus;
 use wiring::Link;
 
@@ -79,24 +77,10 @@ pub struct Executors {
 type Channels<S = Sample> = firmware::shared::Channels<'static, S>;
 
 /// What the thread is given: a method, the flash for what is to be kept, and the channels.
-type Begun<M, S = Sample> = (&'static mut M, Peri<'static, FLASH>, &'static Channels<S>);
+type Begun<M, S = Sample> = (&'static mut M, UpperBank, &'static Channels<S>);
 
 /// The IMU on the base, which measures its motion.
 type OnBase = SwayCompensation<'static, ports::Base>;
-
-/// The observer of the instrument on a board: the log, and where the parts check in.
-#[derive(Debug)]
-pub struct BoardLog(pub &'static CheckIns);
-
-impl Observer for BoardLog {
-    fn event(&self, at: Instant, event: &Event) {
-        DefmtLog.event(at, event);
-    }
-
-    fn check_ins(&self) -> Option<&CheckIns> {
-        Some(self.0)
-    }
-}
 
 /// Channels of the instrument on a platform, at their final place in memory.
 fn channels(log: &'static BoardLog, clocks: Timebase) -> &'static Channels {
@@ -173,7 +157,7 @@ async fn go_on<M: Method<S>, S: Timed>(
 ) -> ! {
     match begun {
         Ok((method, flash, channels)) => {
-            find_and_report(method, link, &mut NoRecorder, store(flash), channels).await
+            find_and_report(method, link, &mut NoRecorder, flash.store(), channels).await
         }
         Err(reason) => refuse(reason, link, log).await,
     }
@@ -181,6 +165,6 @@ async fn go_on<M: Method<S>, S: Timed>(
 
 /// Says why nothing begins: once in the log, every second over the link.
 async fn refuse(reason: NotBegun, link: &mut Link, log: &BoardLog) -> ! {
-    defmt::error!("board: {}", reason);
+    log.keep(Weight::Outcome, || defmt::error!("board: {}", reason));
     Checked::new(log.check_ins(), Part::Link, pin!(link::refuse(link, reason.brief()))).await
 }

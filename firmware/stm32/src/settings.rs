@@ -25,8 +25,7 @@
 
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
 use embassy_futures::block_on;
-use embassy_stm32::Peri;
-use embassy_stm32::peripherals::FLASH;
+use firmware::kept_lines::Weight;
 use firmware::not_begun::NotBegun;
 use firmware::settings;
 use firmware::settings::{
@@ -42,7 +41,7 @@ use orientation::units::{DEGREE, Radians, RadiansPerSecond, Seconds, TURN};
 use orientation::words::Rounded;
 
 use crate::configuration::{CONVERTER, period};
-use crate::flash::store;
+use crate::wiring::Outlets;
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond which no azimuth is determined.
 const LATITUDE: f64 = 47.58;
@@ -163,18 +162,23 @@ pub fn spin() -> Settings<SpinSchedule> {
 /// # Errors
 /// Settings that must not be used.
 pub fn load<C: CarrierSchedule>(
-    flash: &mut Peri<'static, FLASH>,
+    Outlets { flash, log, .. }: &Outlets,
     of_image: fn() -> Settings<C>,
 ) -> Result<Settings<C>, NotBegun> {
-    let mut store = store(flash.reborrow());
+    let mut store = flash.store();
     // Nothing else runs yet that the thread would keep waiting, and no task needs room for these futures.
-    match block_on(store.take_over()) {
-        Ok(false) => {}
-        Ok(true) => defmt::warn!("board: the flash held no store, and was erased for one"),
-        Err(fault) => defmt::error!(
-            "board: the flash holds no store, and cannot be erased for one: {}",
-            fault
-        ),
+    let taken_over = block_on(store.take_over());
+    if taken_over != Ok(false) {
+        log.keep(Weight::Outcome, || {
+            if let Err(fault) = taken_over {
+                defmt::error!(
+                    "board: the flash holds no store, and cannot be erased for one: {}",
+                    fault
+                );
+            } else {
+                defmt::warn!("board: the flash held no store, and was erased for one");
+            }
+        });
     }
     let (settings, source) = match block_on(settings::load(&mut store))? {
         Some(settings) => (settings, "a record in flash"),

@@ -37,9 +37,10 @@ fn begin(
 ) -> Result<(&'static mut Flight, &'static Channels<SpinSample>), NotBegun> {
     static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
-    let SpinWires { converters, outlets: Outlets { mut flash, log, clock } } = wires;
+    let SpinWires { converters, outlets } = wires;
+    let settings = settings::load(&outlets, settings::spin)?;
+    let Outlets { log, clock, .. } = outlets;
     let clocks = configuration::timebase(clock);
-    let settings = settings::load(&mut flash, settings::spin)?;
     let configuration = configuration::spinning().ok_or(NotBegun::NoScale)?;
     let channels = CHANNELS.init_with(|| Channels::new(log));
     channels.shared.clocks = clocks;

@@ -41,9 +41,9 @@ fn begin_on_a_stage(
     wires: AxisPlatformWires,
 ) -> Result<Begun<Session>, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { mut flash, log, clock } = outlets;
+    let settings = settings::load(&outlets, settings::stage)?;
+    let Outlets { flash, log, clock } = outlets;
     let clocks = configuration::timebase(clock);
-    let settings = settings::load(&mut flash, settings::stage)?;
     let procedure = configuration::procedure(&settings, clocks);
     let session = session(configuration::setting(&settings), procedure)?;
     let encoder = ports::encoder(axes.encoder);
@@ -93,9 +93,9 @@ fn begin_on_two_frames(
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let frames = configuration::frames()?;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let (Outlets { mut flash, log, clock }, Frames { outer, inner }) = (outlets, axes);
+    let settings = settings::load(&outlets, settings::two_frame)?;
+    let (Outlets { flash, log, clock }, Frames { outer, inner }) = (outlets, axes);
     let clocks = configuration::timebase(clock);
-    let settings = settings::load(&mut flash, settings::two_frame)?;
     let procedure = configuration::mount_procedure(&settings, clocks);
     let session = session(configuration::mount_setting(&settings), procedure)?;
     let (frames, channels) = (&*FRAMES.init(frames), channels(log, clocks));

@@ -35,9 +35,9 @@ fn begin(
 ) -> Result<Begun<Session, InertialSample>, NotBegun> {
     static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
     let VehicleWires { converters, accelerometer, outlets } = wires;
-    let Outlets { mut flash, log, clock } = outlets;
+    let settings = settings::load(&outlets, settings::vehicle)?;
+    let Outlets { flash, log, clock } = outlets;
     let clocks = configuration::timebase(clock);
-    let settings = settings::load(&mut flash, settings::vehicle)?;
     let session = session(&settings, clocks)?;
     let channels = CHANNELS.init_with(|| Channels::new(log));
     channels.shared.clocks = clocks;

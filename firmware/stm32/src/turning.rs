@@ -14,7 +14,7 @@ use orientation::alignment::rotating::session::Session;
 use orientation::alignment::setup::SetupError;
 use static_cell::StaticCell;
 
-use crate::flash::{Store, store};
+use crate::flash::Store;
 use crate::ports::AxisMotor;
 use crate::wiring::{AxisPlatformWires, Link, Outlets};
 use crate::{
@@ -43,15 +43,15 @@ async fn begin(
     link: &mut Link,
 ) -> Result<Infallible, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
-    let Outlets { mut flash, log, clock } = outlets;
+    let settings = settings::load(&outlets, settings::turntable)?;
+    let Outlets { flash, log, clock } = outlets;
     let clocks = configuration::timebase(clock);
-    let settings = settings::load(&mut flash, settings::turntable)?;
     let channels = channels(log, clocks);
     let base = SwayCompensation::for_keeping(on_base(base));
     let encoder = ports::encoder(axes.encoder);
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
-    let store = &SharedStore::new(store(flash));
+    let store = &SharedStore::new(flash.store());
     let session = session(&settings, store, channels).await?;
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
@@ -81,7 +81,7 @@ async fn platform(
 /// A procedure that is none.
 async fn session(
     settings: &Settings<TurntableSchedule>,
-    mut store: &SharedStore<Store<'static>>,
+    mut store: &SharedStore<Store>,
     channels: &Channels,
 ) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();

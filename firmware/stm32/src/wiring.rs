@@ -9,16 +9,15 @@ use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Pin, Pull, Speed};
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::FLASH;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
 use embassy_stm32::usart::UartTx;
 use firmware::ports::Frames;
 
-use crate::BoardLog;
 use crate::chain;
 use crate::edges::Line;
 use crate::i2c::BaseBus;
 use crate::spi::{Bus, Device};
+use crate::{BoardLog, UpperBank};
 
 /// The serial port for status lines.
 pub type Link = UartTx<'static, Async>;
@@ -64,9 +63,10 @@ pub struct SpinWires {
 }
 
 /// Where results go, beside the link for status lines.
+#[derive(Clone, Copy)]
 pub struct Outlets {
     /// Flash of the controller, for what must outlast a loss of supply.
-    pub flash: Peri<'static, FLASH>,
+    pub flash: UpperBank,
     /// The log, and where the parts check in.
     pub log: &'static BoardLog,
     /// The clock by which everything is timed.

@@ -5,6 +5,7 @@ pub mod campaign;
 pub mod emulate;
 pub mod faults;
 pub mod files;
+pub mod log;
 pub mod plan;
 pub mod replay;
 pub mod run;

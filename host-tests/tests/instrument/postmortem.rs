@@ -90,7 +90,7 @@ fn a_fault_is_told_with_its_registers_and_a_run_that_ended_on_purpose_is_not() {
     assert_eq!(
         told,
         [
-            "last reset: fault of the core after 1 s, 0 resets before; running: none; missing: none",
+            "last reset: fault of the core in no part after 1 s, 0 resets before; running: none; missing: none",
             "PC 0x08001234, LR 0x00000000, PSR 0x00000000, SP 0x00000000",
             "CFSR 0x00000100, HFSR 0x40000000, MMFAR 0x00000000, BFAR 0x00000000",
             "called from 0x08000001 0x08000001 0x08000001 0x08000001 0x08000001 0x08000001",
@@ -162,8 +162,28 @@ fn a_part_that_never_returns_is_the_one_that_runs() {
     };
     assert_eq!(
         told,
-        ["last reset: stuck task after 0 s, 0 resets before; running: aligner; missing: aligner"]
+        [
+            "last reset: stuck task in aligner after 0 s, 0 resets before; running: aligner; missing: aligner"
+        ]
     );
+}
+
+/// What a start after the watchdog calls the part, where all went on until then, but for so many looks for a part.
+fn part_after(vain: u32) -> &'static str {
+    let run = Outlasting::new();
+    run.begin();
+    let mut link = Checked::new(Some(&run.check_ins), Part::Link, pending::<()>());
+    assert!(!poll(&mut link) && run.check_ins.renew());
+    (0..vain).for_each(|_| assert!(!run.check_ins.renew()));
+    let last = run.begin().expect("a run has begun before");
+    last.part(last.how(true, false).expect("the watchdog has ended it"))
+}
+
+#[test]
+fn a_thread_that_is_stuck_outside_of_any_part_is_told_from_a_part_that_waits_for_ever() {
+    // Who looks for the parts does so no more, although the link had not checked in.
+    assert_eq!([0, 1].map(part_after), ["the thread, outside of any part"; 2]);
+    assert_eq!([2, 7].map(part_after), ["link"; 2]);
 }
 
 #[test]

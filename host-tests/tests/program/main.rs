@@ -6,6 +6,7 @@ mod support;
 
 mod command_line;
 mod emulate;
+mod log;
 mod program;
 mod records;
 mod report;

@@ -81,7 +81,9 @@ const OPTIONS_TAKE: Time = Time::microseconds(25_000);
 /// A loss of supply that is injected: within an operation, at its beginning or at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
-    /// How many operations, rows and pages, are begun before the one in which it falls.
+    /// Whether it falls in an operation on the pages of the log; otherwise in one on any other.
+    pub is_in_log: bool,
+    /// How many such operations, rows and pages, are begun before the one in which it falls.
     pub after: u64,
     /// Which part of that operation is over: 0 at its beginning, 1 where it has just been completed.
     pub reached: f64,
@@ -111,8 +113,10 @@ pub struct Flash {
     /// The bank that the core executes its program from. The core would wait for its instructions while that bank is
     /// erased or programmed, which is not modelled.
     pub program: Option<Bank>,
-    /// What was done to it.
+    /// What was done to it, but for the pages of the log.
     pub used: FlashUse,
+    /// Operations on the pages of the log, rows and pages.
+    pub log_operations: u64,
     /// `FLASH_OPTR`, as it was loaded or written.
     options: u32,
     /// The option bytes themselves.
@@ -154,6 +158,7 @@ impl Flash {
             is_broken: false,
             program: None,
             used: FlashUse::default(),
+            log_operations: 0,
             options: STARTED,
             programmed_options: STARTED,
             are_options_half_open: false,
@@ -221,8 +226,9 @@ impl Flash {
     /// An operation has begun. The supply may be lost in it.
     fn run(&mut self, now: Time) {
         self.is_running = true;
+        let [log, others] = [self.log_operations, self.used.rows + self.used.pages];
         if let Some(Cut { reached, .. }) =
-            self.cut.take_if(|cut| cut.after < self.used.rows + self.used.pages)
+            self.cut.take_if(|cut| cut.after < if cut.is_in_log { log } else { others })
             && let Some(busy) = self.array.busy(since_start(now))
         {
             let lasts = busy.until.saturating_sub(since_start(now));
@@ -373,7 +379,9 @@ impl Flash {
         };
         match begun {
             Ok(()) => {
-                self.used.pages += 1;
+                let start = bank.start() + u32::from(page.unwrap_or(0)) * PAGE as u32;
+                let is_of_log = page.is_some() && LOG.contains(&start);
+                *(if is_of_log { &mut self.log_operations } else { &mut self.used.pages }) += 1;
                 self.run(now);
             }
             Err(_) => self.status |= SEQUENCE,
@@ -402,7 +410,12 @@ impl Flash {
                 let data = (u64::from(value) << 32 | u64::from(first)).to_le_bytes();
                 match self.array.program(start, data, since_start(now)) {
                     Ok(()) => {
-                        self.used.rows += 1;
+                        let is_of_log = LOG.contains(&start);
+                        *(if is_of_log {
+                            &mut self.log_operations
+                        } else {
+                            &mut self.used.rows
+                        }) += 1;
                         self.used.rows_with_cache_on += u64::from(self.access & CACHES_DATA != 0);
                         self.run(now);
                     }
@@ -447,3 +460,5 @@ impl Flash {
 
 /// The pages of the store: the last two.
 pub const STORE: std::ops::Range<u32> = (SIZE - 2 * PAGE) as u32..SIZE as u32;
+/// The pages in which a board keeps lines of its log: the sixteen before them.
+pub const LOG: std::ops::Range<u32> = STORE.start - 16 * PAGE as u32..STORE.start;

@@ -56,6 +56,11 @@ impl Processor {
         self.set(RegisterARM::PC, u64::from(address | 1));
     }
 
+    /// Whether interrupts are off.
+    pub fn is_masked(&self) -> bool {
+        self.state.borrow().masked_since.is_some()
+    }
+
     /// Function and line of the code that is executed.
     pub fn place(&self) -> String {
         self.image.place(self.get(RegisterARM::PC) as u32)

@@ -12,6 +12,7 @@ mod figure;
 mod hung;
 #[path = "../support/images.rs"]
 mod images;
+mod kept;
 mod power;
 mod readme;
 mod saving;

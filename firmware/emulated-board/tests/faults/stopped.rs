@@ -22,6 +22,8 @@ const MAIN: &str = "board::__cortex_m_rt_main";
 const UNUSED: u32 = 0x1000_7FF0;
 /// The exception of the interrupt TSC (position 77 of the vector table of RM0351), which polls motors and keeper.
 const CONTROL: u32 = 16 + 77;
+/// That of the interrupt SWPMI1, which polls acquisition, above it.
+const ACQUISITION: u32 = CONTROL - 1;
 /// A branch to itself.
 const ENDLESS: u16 = 0xE7FE;
 /// The shortest and longest time from a fault to the first line of the next log where the watchdog resets, s.
@@ -74,9 +76,13 @@ fn causes(board: &Board) -> [u32; 2] {
     board.controller(|controller| [0, 1].map(|register| controller.system.faults[register]))
 }
 
-/// Whether motors or keeper are being polled.
+/// Whether motors or keeper are being polled, with interrupts on.
 fn polls_control(board: &Board) -> bool {
-    board.controller(|controller| controller.exceptions.active.has(CONTROL))
+    let is_at_work = board.controller(|controller| {
+        let active = &controller.exceptions.active;
+        active.has(CONTROL) && !active.has(ACQUISITION)
+    });
+    is_at_work && !board.execution.processor.is_masked()
 }
 
 /// A task of motors and keeper that never returns. Interrupts are still served, and acquisition above it goes on.
@@ -99,6 +105,35 @@ static STUCK: LazyLock<Restart> = LazyLock::new(|| {
         assert!((1500..4000).contains(&taken), "{taken} interrupts are served in a second");
     })
 });
+
+/// Whether the thread's executor polls nothing.
+fn idles(board: &Board) -> bool {
+    board.controller(|controller| controller.exceptions.active.is_empty())
+        && board.execution.processor.place().contains("thread::Executor::run")
+}
+
+/// The thread never returns, outside of any part. Motors, keeper and acquisition above it go on until the watchdog, and the
+/// keeper has no motion that it lacks.
+#[test]
+fn a_thread_that_is_stuck_outside_of_any_part_is_told_and_the_keeper_goes_on() {
+    let restart = Restart::after(|board| {
+        for _ in 0..1000 {
+            if !idles(board) {
+                board.run(2e-5);
+            }
+        }
+        assert!(idles(board), "{}", board.execution.processor.place());
+        assert!(board.execution.processor.poke(UNUSED, &ENDLESS.to_le_bytes()));
+        board.execution.processor.jump(UNUSED);
+        let stuck = board.seconds();
+        board.run(6.5);
+        let lines = board.lines(stuck, f64::INFINITY);
+        assert!(!lines.iter().any(|line| line.contains("keeping")), "{board}");
+    });
+    assert!(WATCHDOG.contains(&restart.after), "{} s", restart.after);
+    let words = ["last reset: stuck task in the thread, outside of any part"];
+    assert_eq!(restart.telling(&words), 2.0, "log and link: {:?}", restart.lines);
+}
 
 /// The program begins once more, and panics since its first task runs already.
 static PANIC: LazyLock<Restart> =

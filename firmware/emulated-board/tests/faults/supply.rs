@@ -59,7 +59,7 @@ fn is_usual(line: &&str) -> bool {
 
 /// Whether a status line is that of a start after a brown-out.
 fn is_after_brown_out(line: &&str) -> bool {
-    is_usual(line) || line.starts_with("last reset: brown-out")
+    is_usual(line) || line.starts_with("last reset: brown-out") || *line == "log in flash"
 }
 
 /// Twelve seconds after the start the vehicle knows its azimuth again.

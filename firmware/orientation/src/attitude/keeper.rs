@@ -114,11 +114,11 @@ impl Keeper {
         self.mark = Some(Mark::new(at, &self.vertical));
     }
 
-    /// An azimuth of a time, carried on to the present where that time was marked.
-    pub(crate) fn carried(&mut self, at: Instant, azimuth: Azimuth) -> Azimuth {
+    /// An azimuth of a time, carried on to the present; [`None`] where that time was not marked.
+    pub(crate) fn carried(&mut self, at: Instant, azimuth: Azimuth) -> Option<Azimuth> {
         let [.., gyro] = &self.setting.gyros;
-        let mark = self.mark.take().filter(|mark| mark.at == at);
-        mark.map_or(azimuth, |mark| mark.carry(azimuth, gyro, &self.vertical))
+        let mark = self.mark.take().filter(|mark| mark.at == at)?;
+        Some(mark.carry(azimuth, gyro, &self.vertical))
     }
 
     /// Notes for an azimuth that is being computed that the error of the turn restarts.

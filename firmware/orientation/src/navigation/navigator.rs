@@ -17,6 +17,9 @@ use crate::units::{
 const LOOK: u64 = 100_000;
 /// Number of checks in one second, after which everything else is done.
 const LOOKS: u8 = 10;
+/// Time after the latest sample of an alignment within which its azimuth, or its computation, must be announced, µs: what
+/// turns in a few samples is less than any σ, and the course of before is not kept.
+const LATE: u64 = 15_000;
 /// Time without any inertial sample after which the motion counts as unmeasured, µs.
 const SILENCE: u64 = 1_000_000;
 /// 1σ of the bias of a coarse gyro after a comparison with the precise one over ten seconds or
@@ -274,19 +277,30 @@ impl<'k> Navigator<'k> {
     }
 
     /// Does what belongs to samples before an increment of the time `before`: marks the course for an azimuth
-    /// that is being computed, and takes one that was found. It is refused if the body has set off meanwhile.
+    /// that is being computed, and takes one that was found. It is refused if the body has set off meanwhile, or if the
+    /// course was not marked before increments of later times were taken.
     fn settle(&mut self, before: Instant, outlet: Outlet) {
-        if let Some(at) = self.concluding.take_if(|at| *at < before) {
+        if let Some(at) = self.concluding.take_if(|at| *at < before)
+            && !self.is_behind(at)
+        {
             self.keeper.mark(at);
         }
         let Some((at, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
             let reason = Refusal::MovedDuringAlignment;
             outlet(Output::Progress(Progress::Refused(reason)));
-        } else {
-            let carried = self.keeper.carried(at, azimuth);
+        } else if let Some(carried) = self.keeper.carried(at, azimuth) {
             self.align(carried, outlet);
+        } else if self.is_behind(at) {
+            outlet(Output::Progress(Progress::TooLate));
+        } else {
+            self.align(azimuth, outlet);
         }
+    }
+
+    /// Whether increments of so much later times than this one were taken that the course at it is not known any more.
+    fn is_behind(&self, at: Instant) -> bool {
+        self.moved.is_some_and(|moved| moved.0 > at.0 + LATE)
     }
 
     /// Whether a body that was at rest has been in motion for so long that an alignment of that

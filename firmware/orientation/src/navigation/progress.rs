@@ -25,6 +25,8 @@ pub enum Progress {
     HandedOver(Azimuth, Realigned),
     /// An azimuth is refused, because the vehicle has set off since its alignment.
     Refused(Refusal),
+    /// An azimuth is not taken, because increments of later times were taken before it was announced.
+    TooLate,
     /// The attitude keeper has changed its state.
     Keeping(State),
     /// No inertial samples arrive any more.
@@ -55,6 +57,7 @@ crate::words! { Progress:
         "azimuth {}° ± {}° (1σ) disagrees with what was kept, by {} σ: neither is believed",
         Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees()), Rounded::<1>(sigmas);
     Self::Refused(reason) => "no azimuth: {}", reason;
+    Self::TooLate => "the azimuth comes too late to be kept: what was turned meanwhile is not known";
     Self::Keeping(state) => "keeping: {}", state;
     Self::NoMotion => "keeping: no motion is measured any more";
     Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";

@@ -1,14 +1,18 @@
 //! Converters in step that are read one after the other by direct memory access, whatever the tasks do meanwhile.
 //!
 //! ```text
-//!  edges of all lines ─▶ transfer 1 ─▶ transfer 2 ─▶ … ─▶ transfer 5 ─▶ a full set ─▶ acquisition, eight sets at a time
+//!  edge of the last line ─▶ transfer 1 ─▶ transfer 2 ─▶ … ─▶ transfer 5 ─▶ a full set ─▶ acquisition, eight sets at a time
 //! ```
 //!
 //! A spinning body's five converters leave 69 µs for a set of conversions, of which the wires take 35 µs: there is no
 //! time to wake a task for each. So the interrupt of the edge that completes a set begins the first transfer, and the
 //! interrupt at the end of a transfer the next one. [`noted`] and [`transferred`] are called from interrupts of one
-//! priority, so that neither interrupts the other. A driver that uses the bus meanwhile, to start a converter, stops the
-//! chain; acquisition begins it again.
+//! priority, so that neither interrupts the other.
+//!
+//! **Lines take turns.** Each interrupt of an edge takes a fiftieth of the time between two sets. So the line of the last
+//! converter, which was begun last and ends last, is watched always, and the others one after the other: how long before the
+//! last one each ends changes only where a converter is out of step, or silent, and no set is then read until it is found. A
+//! driver that uses the bus meanwhile, to start a converter, stops the chain; acquisition begins it again.
 
 mod reader;
 mod set;
@@ -22,10 +26,11 @@ use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Pin};
 use embassy_stm32::pac::bdma::regs::{Cr, Isr, Ndtr};
 use embassy_stm32::pac::bdma::vals::{Dir, Pl};
+use embassy_stm32::pac::exti::regs::Lines;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::regs::Bsrr;
 use embassy_stm32::pac::spi::regs::Cr1;
-use embassy_stm32::pac::{DMA1, GPIOA, GPIOB, GPIOC, GPIOD, GPIOE, SPI1};
+use embassy_stm32::pac::{DMA1, EXTI, GPIOA, GPIOB, GPIOC, GPIOD, GPIOE, SPI1};
 use embassy_sync::once_lock::OnceLock;
 use embassy_sync::waitqueue::AtomicWaker;
 use firmware::spin::configuration::CHANNELS;
@@ -49,6 +54,8 @@ const REQUEST: u8 = 1;
 /// Cycles that pass after the fall of a select line, at least, before the controllers of a transfer are written: with these
 /// writes the 50 ns until the first edge of the clock that an ADS1262 asks for (SBAS661C, section 7.6).
 const SELECTED: u32 = 1;
+/// The converter that is begun last.
+const LAST: usize = CHANNELS - 1;
 /// The bus of the converters.
 const BUS: Bus = Bus::First;
 /// What is sent for a reading: the command, and zeros while the frame comes back.
@@ -68,6 +75,10 @@ struct Chain {
     wires: OnceLock<[Wires; CHANNELS]>,
     /// Lines whose edge the next set still waits for, as bits; none while the chain is stopped.
     awaited: AtomicU32,
+    /// The converter whose line is watched beside the last one's.
+    watched: AtomicUsize,
+    /// How long before the last one's the conversion of each converter ends, µs; it wraps.
+    before: [AtomicU32; CHANNELS],
     /// The converter that is being read; [`CHANNELS`] between two sets.
     place: AtomicUsize,
     /// Whether the conversions of the next set have ended while one is being read.
@@ -101,6 +112,11 @@ impl Wires {
         Self { select: (port, 1 << (pin & 0xF)), line: ready.number().into() }
     }
 
+    /// The data-ready line as a bit.
+    const fn bit(&self) -> u32 {
+        1 << self.line
+    }
+
     /// Selects the converter.
     fn select(&self) {
         let (port, bit) = self.select;
@@ -121,6 +137,8 @@ impl Chain {
         Self {
             wires: OnceLock::new(),
             awaited: AtomicU32::new(0),
+            watched: AtomicUsize::new(0),
+            before: [const { AtomicU32::new(0) }; CHANNELS],
             place: AtomicUsize::new(CHANNELS),
             is_next_complete: AtomicBool::new(false),
             filled: AtomicU32::new(0),
@@ -136,7 +154,7 @@ impl Chain {
 
     /// The data-ready lines of all, as bits.
     fn lines(&self) -> u32 {
-        self.wires().iter().fold(0, |lines, wires| lines | 1 << wires.line)
+        self.wires().iter().fold(0, |lines, wires| lines | wires.bit())
     }
 
     /// The set of a number.
@@ -160,7 +178,8 @@ impl Chain {
             DMA1.ch(channel).par().write_value(SPI1.dr8().as_ptr() as u32);
         }
         DMA1.ch(SENDING).mar().write_value(COMMAND.as_ptr() as u32);
-        self.awaited.store(self.lines(), Ordering::Release);
+        self.before.iter().for_each(|before| before.store(0, Ordering::Relaxed));
+        critical_section::with(|_| self.watch(0));
     }
 
     /// Stops reading. A transfer that is under way is given up.
@@ -175,6 +194,7 @@ impl Chain {
             clear();
             BUS.reset();
             self.wires().iter().for_each(Wires::release);
+            EXTI.imr(0).modify(|lines| lines.0 |= self.lines());
         });
     }
 
@@ -182,20 +202,36 @@ impl Chain {
     /// critical section may have delayed that. One that comes while another waits is lost, which the counts show.
     #[inline(never)]
     fn complete(&self) {
+        let watched = self.watched.load(Ordering::Relaxed);
+        let [Some(last), Some(other)] = [LAST, watched].map(|place| self.wires().get(place)) else {
+            return;
+        };
+        let (end, [other, ..]) = (edges::words(last.line), edges::words(other.line));
+        self.before[watched].store(end[0].wrapping_sub(other), Ordering::Relaxed);
+        self.watch(if watched + 1 < LAST { watched + 1 } else { 0 });
         let is_reading = self.place.load(Ordering::Relaxed) != CHANNELS;
         if is_reading && self.is_next_complete.load(Ordering::Relaxed) {
             return;
         }
         let filled = self.filled.load(Ordering::Relaxed);
         let set = self.set(if is_reading { filled.wrapping_add(1) } else { filled });
-        for (place, wires) in self.wires().iter().enumerate() {
-            set.set_end(place, edges::words(wires.line));
-        }
+        set.set_ends(end, &self.before);
         if is_reading {
             self.is_next_complete.store(true, Ordering::Relaxed);
         } else {
             self.read(0, set);
         }
+    }
+
+    /// Watches the line of a converter beside that of the last one. What its edges left while it was not watched is old.
+    fn watch(&self, place: usize) {
+        let all = self.lines();
+        let bits = [LAST, place].map(|place| self.wires().get(place).map_or(0, Wires::bit));
+        let watched = bits[0] | bits[1];
+        EXTI.pr(0).write_value(Lines(bits[1]));
+        EXTI.imr(0).modify(|lines| lines.0 = lines.0 & !all | watched);
+        self.watched.store(place, Ordering::Relaxed);
+        self.awaited.store(watched, Ordering::Relaxed);
     }
 
     /// Begins to read a converter, where there is one at that place.
@@ -254,7 +290,6 @@ pub(crate) fn noted(lines: u32) {
     if left != 0 {
         CHAIN.awaited.store(left, Ordering::Relaxed);
     } else if awaited != 0 {
-        CHAIN.awaited.store(CHAIN.lines(), Ordering::Relaxed);
         CHAIN.complete();
     }
 }

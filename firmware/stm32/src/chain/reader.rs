@@ -8,16 +8,11 @@ use drivers::ads1262::codec;
 use drivers::data_ready::Edge;
 use drivers::fault::Fault;
 use embassy_stm32::pac::spi::regs::Cr1;
-use embassy_time::{Duration, Instant};
 use firmware::ports::{Code, RateReading, Together};
 use firmware::spin::configuration::CHANNELS;
 
 use super::set::Set;
 use super::{CHAIN, SETS, Wires};
-use crate::edges;
-
-/// Time after its latest edge from which a line is silent: some periods.
-const SILENT: Duration = Duration::from_micros(300);
 
 /// Reads the converters of the chain together. Where no set becomes full, since a converter is silent or a transfer hangs,
 /// a converter is started anew, which stops the chain; it begins again with the next conversions.
@@ -74,11 +69,10 @@ impl<C> Together<C, Code, CHANNELS> for ChainReader {
         codec::decode(self.set.frame(index)).map(RateReading::from)
     }
 
-    /// The first whose line is silent; where none is, the first of all.
+    /// The first whose edge the chain waits for; where it waits for none, the first of all.
     fn awaited(&self) -> usize {
-        let now = Instant::now().as_micros();
-        let is_silent =
-            |wires: &Wires| now.saturating_sub(edges::latest(wires.line).at.0) > SILENT.as_micros();
-        CHAIN.wires().iter().position(is_silent).unwrap_or_default()
+        let awaited = CHAIN.awaited.load(Ordering::Relaxed);
+        let is_awaited = |wires: &Wires| awaited & wires.bit() != 0;
+        CHAIN.wires().iter().position(is_awaited).unwrap_or_default()
     }
 }

@@ -13,8 +13,10 @@ const WORDS: usize = BYTES_PER_SAMPLE.div_ceil(4);
 
 /// One conversion of each converter.
 pub(super) struct Set {
-    /// Ends of the conversions: the lower and the upper half of the time, µs, and the count.
-    ends: [[AtomicU32; 3]; CHANNELS],
+    /// End of the last converter's conversion: the lower and the upper half of the time, µs, and the count.
+    end: [AtomicU32; 3],
+    /// How long before that each conversion ended, µs; it wraps.
+    before: [AtomicU32; CHANNELS],
     /// What came back for the command, and with it.
     readings: [[AtomicU32; WORDS]; CHANNELS],
 }
@@ -23,7 +25,8 @@ impl Set {
     /// An empty set.
     pub(super) const fn new() -> Self {
         Self {
-            ends: [const { [const { AtomicU32::new(0) }; 3] }; CHANNELS],
+            end: [const { AtomicU32::new(0) }; 3],
+            before: [const { AtomicU32::new(0) }; CHANNELS],
             readings: [const { [const { AtomicU32::new(0) }; WORDS] }; CHANNELS],
         }
     }
@@ -33,19 +36,20 @@ impl Set {
         self.readings[place].as_ptr() as u32
     }
 
-    /// Stores the end of the conversion of a converter, as its line has it.
-    pub(super) fn set_end(&self, place: usize, words: [u32; 3]) {
-        self.ends[place]
-            .iter()
-            .zip(words)
-            .for_each(|(kept, word)| kept.store(word, Ordering::Relaxed));
+    /// Stores the end of the last converter's conversion, as its line has it, and how long before it each ended.
+    pub(super) fn set_ends(&self, end: [u32; 3], before: &[AtomicU32; CHANNELS]) {
+        self.end.iter().zip(end).for_each(|(kept, word)| kept.store(word, Ordering::Relaxed));
+        for (kept, before) in self.before.iter().zip(before) {
+            kept.store(before.load(Ordering::Relaxed), Ordering::Relaxed);
+        }
     }
 
-    /// End of the conversion of a converter.
+    /// End of the conversion of a converter, with the count of the last one's.
     pub(super) fn end(&self, place: usize) -> Edge {
-        let [low, high, count] =
-            self.ends[place].each_ref().map(|word| word.load(Ordering::Relaxed));
-        Edge { at: Instant(u64::from(high) << 32 | u64::from(low)), count }
+        let [low, high, count] = self.end.each_ref().map(|word| word.load(Ordering::Relaxed));
+        let before = self.before[place].load(Ordering::Relaxed).cast_signed();
+        let last = u64::from(high) << 32 | u64::from(low);
+        Edge { at: Instant(last.wrapping_add_signed(-i64::from(before))), count }
     }
 
     /// Frame of a converter.

@@ -64,6 +64,7 @@ fn is_wrong(event: &Event) -> bool {
         )
         | Event::Navigation(
             navigation::Progress::NoMotion
+            | navigation::Progress::TooLate
             | navigation::Progress::AzimuthLost
             | navigation::Progress::BiasBeyondStated
             | navigation::Progress::RecallRefused(_)

@@ -15,9 +15,9 @@ use firmware::event::Event;
 use simulated::hold::Hold;
 
 /// Turn of a sample about down, rad: 10 °/s at 100 Hz.
-const TURN: f64 = 0.1 * DEGREE;
+pub const TURN: f64 = 0.1 * DEGREE;
 
-fn sample(index: u64, turn: f64) -> InertialSample {
+pub fn sample(index: u64, turn: f64) -> InertialSample {
     InertialSample {
         time: Instant(index * 10_000),
         turned: [0.0, 0.0, turn].map(|angle| AngleIncrement::from_rad(angle, &mut 0.0)),
@@ -29,7 +29,7 @@ fn gyro() -> Gyro {
     Gyro { scale_sigma: 1e-4, bias_sigma: RadiansPerSecond(1e-6), ..Gyro::default() }
 }
 
-fn policy() -> Policy {
+pub fn policy() -> Policy {
     Policy {
         hold_seconds: Seconds(f64::INFINITY),
         realignment: Realignment::Never,
@@ -40,11 +40,11 @@ fn policy() -> Policy {
     }
 }
 
-fn moved(index: u64, turn: f64) -> Input {
+pub fn moved(index: u64, turn: f64) -> Input {
     Input::Motion(Motion::Moved(sample(index, turn)))
 }
 
-fn keeper() -> Keeper {
+pub fn keeper() -> Keeper {
     let latitude = Latitude::from_degrees(45.0).expect("a latitude");
     Keeper::new(&Setting::precise(latitude, Seconds(0.01), gyro()))
 }
@@ -76,7 +76,7 @@ fn what_turns_between_the_sessions_last_sample_and_the_handing_over_counts() {
 }
 
 /// An azimuth and its 1σ, °.
-fn azimuth(angle: f64, sigma: f64) -> Azimuth {
+pub fn azimuth(angle: f64, sigma: f64) -> Azimuth {
     Azimuth { angle: Radians::from_degrees(angle), sigma: Radians::from_degrees(sigma) }
 }
 

@@ -1,5 +1,6 @@
 //! The instrument goes on after its alignment: it keeps what it found, on a vehicle, two frames and a stage.
 
+mod behind;
 mod faults;
 mod handing;
 mod healthy;

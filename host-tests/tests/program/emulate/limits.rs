@@ -55,7 +55,7 @@ fn the_budget_of_the_firmware_is_that_of_its_file() {
     assert_eq!((budget::FILTER_INSTRUCTIONS, budget::IDLE_PERCENT), (115, 86));
     assert_eq!(
         (budget::BOARD_FLASH_BYTES, budget::BOARD_STATIC_RAM_BYTES),
-        (384 * 1024, 32 * 1024)
+        (384 * 1024, 36 * 1024)
     );
     // The README's 4 200 instructions are 13.1 % of the board's 64 million at 2 000 samples a second.
     assert_eq!(budget::SAMPLE_INSTRUCTIONS * 2000 * 1000 / 64_000_000, 131);
@@ -118,10 +118,10 @@ type Worse = fn(&mut [Run], &mut Memory);
 fn a_figure_beyond_its_limit_is_found() {
     let sample = "instructions a sample, ";
     let idle = "percent idle at 2000 Hz, at least, ";
-    // A hundredth of 64 MHz at 2 kHz is 320 instructions a sample: 200 more than the limit take the next one.
+    // A hundredth of 64 MHz at 2 kHz is 320 instructions a sample: 400 more than the limit take the next one.
     let changes: [(Worse, &[&str]); 8] = [
-        (|runs, _| run_of(runs, &BRIEF_STAGE).instructions += 2010, &[sample, idle]),
-        (|runs, _| run_of(runs, &TURNTABLE).instructions += 2010, &[sample, idle]),
+        (|runs, _| run_of(runs, &BRIEF_STAGE).instructions += 4010, &[sample, idle]),
+        (|runs, _| run_of(runs, &TURNTABLE).instructions += 4010, &[sample, idle]),
         (|runs, _| run_of(runs, &VEHICLE).instructions += 10, &[sample]),
         (|runs, _| run_of(runs, &SPIN).instructions += 10, &[sample]),
         (|runs, _| run_of(runs, &VEHICLE).tasks[1].worst += 1, &["instructions of the longest"]),
