@@ -8,6 +8,7 @@ mod clocks;
 mod conclusion;
 mod cost;
 mod list;
+mod readme;
 mod rules;
 mod settings;
 mod sound;

@@ -1,0 +1,76 @@
+//! What the project's page says of the cost of each carrier's image is what executions show.
+//!
+//! `MERIDIAN_GOLDEN=write cargo test -p emulated-board --test executed readme` writes it anew.
+
+use std::path::PathBuf;
+
+use execution::built::root;
+use execution::report::Report;
+use firmware::platform::Platform;
+
+use super::support::executed::executed;
+
+/// Greatest relative deviation of a figure: where an image is built moves its code, and with it what runs when.
+const ALIKE: f64 = 0.03;
+
+/// A row of the table: its name, and its figure of a report.
+type Row = (&'static str, fn(&Report) -> f64);
+
+/// The rows.
+const ROWS: [Row; 5] = [
+    ("instructions a sample, all in", |report| {
+        report.instructions_per_sample.expect("it has measured")
+    }),
+    ("percent of the time asleep", |report| 100.0 * report.idle),
+    ("bytes of flash", |report| report.flash_bytes.into()),
+    ("bytes of static RAM", |report| report.static_bytes.into()),
+    ("bytes of stack at its deepest", |report| report.stack_bytes.into()),
+];
+
+/// The page.
+fn page() -> PathBuf {
+    root().join("README.md")
+}
+
+/// A row as the page has it.
+fn line(name: &str, figures: &[f64]) -> String {
+    let figures: String = figures.iter().map(|figure| format!(" {figure:.0} |")).collect();
+    format!("| {name} |{figures}")
+}
+
+/// The figures of a row of the page.
+fn figures(line: &str) -> Option<Vec<f64>> {
+    line.split('|')
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+        .skip(1)
+        .map(|part| part.parse().ok())
+        .collect()
+}
+
+#[test]
+fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
+    let mut text = std::fs::read_to_string(page()).expect("the page is there");
+    for (name, of) in ROWS {
+        let found = Platform::ALL.map(|carrier| of(&executed(carrier, 1).report));
+        let row = |line: &&str| {
+            line.starts_with(&format!("| {name} |")) && line.matches('|').count() == 7
+        };
+        let kept = text.lines().find(row).unwrap_or_else(|| panic!("no row {name}")).to_owned();
+        if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+            text = text.replace(&kept, &line(name, &found));
+            continue;
+        }
+        let shown = figures(&kept).unwrap_or_else(|| panic!("no figures in {kept}"));
+        let is_alike = |(shown, found): (&f64, f64)| (shown - found).abs() <= ALIKE * found + 1.0;
+        let agree = shown.len() == found.len() && shown.iter().zip(found).all(is_alike);
+        assert!(
+            agree,
+            "{kept}\n{}\nREADME.md; MERIDIAN_GOLDEN=write writes it anew",
+            line(name, &found)
+        );
+    }
+    if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+        std::fs::write(page(), text).expect("the page is ours");
+    }
+}
