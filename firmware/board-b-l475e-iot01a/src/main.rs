@@ -48,6 +48,7 @@
 
 mod clock;
 mod crash;
+mod critical;
 mod pins;
 mod priorities;
 mod stack;
@@ -125,6 +126,8 @@ async fn main(spawner: Spawner) -> ! {
     let reason = watchdog::reason();
     let last = RUN.begin();
     watchdog::arm();
+    // Before any is enabled: what a critical section is to hold back must not have the priority of the edges.
+    priorities::set();
     let peripherals = clock::start();
     spawner.spawn(defmt::unwrap!(watchdog::feed(&RUN)));
     // Log and link tell of the last reset once the crystal oscillates, or is known not to.

@@ -72,6 +72,12 @@ fn EXTI15_10() {
     edges::take_pending(0x3F << 10);
 }
 
+/// Wakes the tasks that wait for edges.
+#[interrupt]
+fn LPTIM2() {
+    edges::notify();
+}
+
 /// The end of a transfer of the converters' bus, on a spinning body.
 #[interrupt]
 fn DMA1_CHANNEL2() {
@@ -118,6 +124,11 @@ impl Board {
             clock: clock::SYSTEM,
         };
         let ready = Line::new(p.PD14, p.EXTI14);
+        #[expect(unsafe_code, reason = "an interrupt is enabled by hand where no driver does")]
+        // SAFETY: its handler wakes tasks, as that of any driver, and no mutex relies on its being off.
+        unsafe {
+            edges::NOTIFIER.enable();
+        }
         let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
         let board = Self {
             buses,

@@ -2,13 +2,15 @@
 //!
 //! | priority | interrupts | why |
 //! |--:|---|---|
-//! | 0 | edges of the data-ready lines; on a spinning body the transfers that they begin | a stamp is as late as its interrupt: nothing but a critical section may come first |
+//! | 0 | edges of the data-ready lines; on a spinning body the transfers that they begin | a stamp is as late as its interrupt: nothing may come first, no critical section either |
+//! | 1 | the notifier of these | it wakes their tasks, as what a critical section holds back may |
 //! | 2 | alarms of the time driver, the bus of the base, direct memory access | they move data and wake tasks, which may take some microseconds |
 //! | 6 | the executor of acquisition | what is read belongs to the moment of its conversion |
 //! | 8 | the executor of control: motors and keeper | they must not wait for a conclusion, but may work for a millisecond |
 //! | thread | the executor of the thread: aligner, conclusions, link, store | |
 
 use embassy_stm32::interrupt::{Interrupt, InterruptExt, Priority};
+use stm32::edges::NOTIFIER;
 
 /// The edges of the data-ready lines, and the ends of the transfers that they begin.
 const EDGES: [Interrupt; 6] = [
@@ -31,8 +33,9 @@ pub const EXECUTORS: [Interrupt; 2] = [Interrupt::SWPMI1, Interrupt::TSC];
 /// Sets the priorities.
 pub fn set() {
     let [acquisition, control] = EXECUTORS;
-    let groups: [(&[Interrupt], Priority); 4] = [
+    let groups: [(&[Interrupt], Priority); 5] = [
         (&EDGES, Priority::P0),
+        (&[NOTIFIER], Priority::P1),
         (&OTHERS, Priority::P2),
         (&[acquisition], Priority::P6),
         (&[control], Priority::P8),

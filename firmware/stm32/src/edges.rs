@@ -4,18 +4,21 @@
 //! the line and wakes the task that waits for it; a task that comes late finds the end of the conversion as it was,
 //! and by the count how many ended before.
 //!
-//! The board gives these interrupts the highest priority of all, so that nothing but a critical section, of some
-//! microseconds, comes between an edge and its stamp.
+//! The board gives these interrupts the highest priority of all, which its critical sections do not hold back: so nothing
+//! comes between an edge and its stamp, and the handlers touch nothing but words that are atomic. To wake a task takes
+//! more: that is left to the interrupt of the [`NOTIFIER`], which [`notify`] serves.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use core::task::{Poll, Waker};
 
+use cortex_m::peripheral::NVIC;
 use drivers::data_ready::{DataReady, Edge};
 use drivers::fault::Fault;
 use embassy_stm32::Peri;
 use embassy_stm32::exti::{ExtiInput, TriggerEdge};
 use embassy_stm32::gpio::{ExtiPin, Pin, Pull};
+use embassy_stm32::interrupt::Interrupt;
 use embassy_stm32::mode::Blocking;
 use embassy_stm32::pac::EXTI;
 use embassy_stm32::pac::exti::regs::Lines;
@@ -28,6 +31,13 @@ use crate::{PLATFORM, chain};
 
 /// Number of lines that are pins.
 const LINES: usize = 16;
+
+/// The interrupt that wakes the tasks which wait for edges. Its peripheral, a timer, is not used.
+pub const NOTIFIER: Interrupt = Interrupt::LPTIM2;
+/// The chain among what waits for the notifier, beside the lines.
+pub(crate) const CHAIN: u32 = 1 << LINES;
+/// What waits for the notifier: lines, as bits, and the chain.
+static DUE: AtomicU32 = AtomicU32::new(0);
 
 /// What the interrupts note.
 static NOTED: [Noted; LINES] = [const { Noted::new() }; LINES];
@@ -60,16 +70,16 @@ impl Noted {
         low.store(now as u32, Ordering::Relaxed);
         high.store((now >> 32) as u32, Ordering::Relaxed);
         self.count.store(self.count.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
-        if self.is_awaited.load(Ordering::Relaxed) {
-            self.wake();
-        }
     }
 
-    /// Wakes the task that waits. Not inlined: most edges of a spinning body wake none.
-    #[inline(never)]
-    fn wake(&self) {
-        self.is_awaited.store(false, Ordering::Relaxed);
-        self.waiting.wake();
+    /// Whether a task waits for an edge, which is then to be woken.
+    #[inline]
+    fn takes_waiting(&self) -> bool {
+        let is_awaited = self.is_awaited.load(Ordering::Relaxed);
+        if is_awaited {
+            self.is_awaited.store(false, Ordering::Relaxed);
+        }
+        is_awaited
     }
 
     /// The latest edge, for an interrupt of the same priority.
@@ -106,11 +116,33 @@ pub(crate) fn words(line: usize) -> [u32; 3] {
     NOTED[line % LINES].words()
 }
 
+/// Has the notifier wake what waits for lines, as bits, or for the chain.
+pub(crate) fn wake(waiting: u32) {
+    DUE.fetch_or(waiting, Ordering::Release);
+    NVIC::pend(NOTIFIER);
+}
+
+/// Wakes the tasks that are due; called from the interrupt of the notifier.
+pub fn notify() {
+    let mut due = DUE.swap(0, Ordering::Acquire);
+    if PLATFORM == Platform::Spin && due & CHAIN != 0 {
+        chain::wake();
+    }
+    due &= !CHAIN;
+    while due != 0 {
+        NOTED[due.trailing_zeros() as usize % LINES].waiting.wake();
+        due &= due - 1;
+    }
+}
+
 /// Takes the edge of a line whose interrupt is its own.
 #[inline]
 pub fn take(line: usize) {
     EXTI.pr(0).write_value(Lines(1 << line));
     NOTED[line].note(Instant::now().as_micros());
+    if NOTED[line].takes_waiting() {
+        wake(1 << line);
+    }
     if PLATFORM == Platform::Spin {
         chain::noted(1 << line);
     }

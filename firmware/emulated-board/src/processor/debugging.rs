@@ -56,7 +56,7 @@ impl Processor {
         self.set(RegisterARM::PC, u64::from(address | 1));
     }
 
-    /// Whether interrupts are off.
+    /// Whether interrupts are held back.
     pub fn is_masked(&self) -> bool {
         self.state.borrow().masked_since.is_some()
     }

@@ -90,7 +90,7 @@ pub(super) struct State {
     pub(super) is_pending: bool,
     /// An event that the next wait takes.
     pub(super) event: bool,
-    /// Since when interrupts are off.
+    /// Since when interrupts are held back, all of them or those below a priority.
     pub(super) masked_since: Option<Time>,
     /// Number of the exception that is being handled.
     pub(super) active: u32,
@@ -265,7 +265,7 @@ impl State {
         if self.level.is_unprivileged && self.controller.system.protection.is_on() {
             self.halt.get_or_insert(Halt::Protecting);
         }
-        match (masks.all, self.masked_since) {
+        match (masks.all || masks.base != 0, self.masked_since) {
             (true, None) => self.masked_since = Some(self.now),
             (false, Some(since)) => {
                 self.counts.masked = self.counts.masked.max((self.now - since, address));

@@ -20,6 +20,7 @@ mod set;
 use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
 use cortex_m::asm::delay;
+use cortex_m::interrupt;
 use drivers::ads1262::BYTES_PER_SAMPLE;
 use drivers::ads1262::registers::RDATA1;
 use embassy_stm32::Peri;
@@ -179,12 +180,12 @@ impl Chain {
         }
         DMA1.ch(SENDING).mar().write_value(COMMAND.as_ptr() as u32);
         self.before.iter().for_each(|before| before.store(0, Ordering::Relaxed));
-        critical_section::with(|_| self.watch(0));
+        interrupt::free(|_| self.watch(0));
     }
 
     /// Stops reading. A transfer that is under way is given up.
     fn stop(&self) {
-        critical_section::with(|_| {
+        interrupt::free(|_| {
             self.awaited.store(0, Ordering::Relaxed);
             self.place.store(CHANNELS, Ordering::Relaxed);
             self.is_next_complete.store(false, Ordering::Relaxed);
@@ -264,7 +265,7 @@ impl Chain {
             self.read(0, self.set(filled));
         }
         if filled.is_multiple_of(WOKEN) {
-            self.waiting.wake();
+            edges::wake(edges::CHAIN);
         }
     }
 }
@@ -274,6 +275,11 @@ pub(crate) fn connect(wires: &[(Peri<'static, AnyPin>, Line); CHANNELS]) {
     CHAIN.wires.get_or_init(|| {
         wires.each_ref().map(|(select, ready)| Wires::new([select.port(), select.pin()], ready))
     });
+}
+
+/// Wakes acquisition.
+pub(crate) fn wake() {
+    CHAIN.waiting.wake();
 }
 
 /// Leaves the bus to a driver: where the chain runs, it stops.

@@ -52,13 +52,13 @@ fn an_image_without_stack_symbols_is_refused() {
 
 #[test]
 fn the_budget_of_the_firmware_is_that_of_its_file() {
-    assert_eq!((budget::FILTER_INSTRUCTIONS, budget::IDLE_PERCENT), (115, 86));
+    assert_eq!((budget::FILTER_INSTRUCTIONS, budget::IDLE_PERCENT), (115, 88));
     assert_eq!(
         (budget::BOARD_FLASH_BYTES, budget::BOARD_STATIC_RAM_BYTES),
         (384 * 1024, 36 * 1024)
     );
-    // The README's 4 200 instructions are 13.1 % of the board's 64 million at 2 000 samples a second.
-    assert_eq!(budget::SAMPLE_INSTRUCTIONS * 2000 * 1000 / 64_000_000, 131);
+    // As the file says, less than 12 % of the board's 64 million at 2 000 samples a second.
+    assert!(budget::SAMPLE_INSTRUCTIONS * 2000 * 100 < 12 * 64_000_000);
 }
 
 /// A run of ten samples of so many instructions, whose longest poll takes so many.
