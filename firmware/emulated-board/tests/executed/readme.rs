@@ -34,8 +34,8 @@ fn page() -> PathBuf {
 
 /// A row as the page has it.
 fn line(name: &str, figures: &[f64]) -> String {
-    let figures: String = figures.iter().map(|figure| format!(" {figure:.0} |")).collect();
-    format!("| {name} |{figures}")
+    let figures: Vec<_> = figures.iter().map(|figure| format!(" {figure:.0} |")).collect();
+    format!("| {name} |{}", figures.concat())
 }
 
 /// The figures of a row of the page.
