@@ -31,6 +31,35 @@ fn a_hung_transfer_of_the_sensors_is_ended_and_told_by_its_bus() {
     within(silent, TOLD, words);
 }
 
+/// The chain of transfers that reads the converters stops, no set of conversions comes, and a converter is started again,
+/// with which the chain begins anew.
+#[test]
+fn a_spinning_body_is_followed_on_where_one_transfer_hangs() {
+    let mut board = Board::new(Platform::Spin);
+    board.until("roll: locked", 5.0);
+    board.run(0.5);
+    let hung = board.seconds();
+    board.controller(|controller| controller.spi[0].hangs = true);
+    let silent = board.takes("no data in time: starting it again", 1.0);
+    board.until("roll: locked", 2.0);
+    board.run(0.5);
+    let lines = board.lines(hung, f64::INFINITY);
+    let restarts = lines.iter().filter(|line| line.contains("starting it again")).count();
+    assert_eq!(restarts, 1, "{board}");
+    let words = "s after a transfer of the sensors on a spinning body hangs no line tells of it";
+    within(silent, TOLD, words);
+}
+
+/// A start of a converter uses the bus, too, and says what is wrong with it.
+#[test]
+fn a_spinning_body_is_no_longer_followed_where_each_transfer_hangs() {
+    let mut board = Board::new(Platform::Spin);
+    board.until("roll: locked", 5.0);
+    board.controller(|controller| controller.spi[0].is_stuck = true);
+    board.until("given up: ", 5.0);
+    assert!(board.log.iter().any(|(_, line)| line.contains("its bus hangs")), "{board}");
+}
+
 /// Where each transfer hangs, the sensors are given up, which ends the alignment, and the platform comes to rest.
 #[test]
 fn a_platform_comes_to_rest_where_a_transfer_of_the_sensors_hangs() {
