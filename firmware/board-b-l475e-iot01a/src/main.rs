@@ -49,6 +49,7 @@
 mod clock;
 mod crash;
 mod critical;
+mod log_buffer;
 mod pins;
 mod priorities;
 mod stack;
@@ -118,7 +119,8 @@ mod symbols {
 }
 
 /// The log, and where the parts check in.
-static LOG: BoardLog = BoardLog { run: &RUN, image: &symbols::_build_id };
+static LOG: BoardLog =
+    BoardLog { run: &RUN, image: &symbols::_build_id, buffer: log_buffer::BUFFER };
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) -> ! {

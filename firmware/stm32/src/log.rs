@@ -7,11 +7,6 @@
 //! The thread writes what waits as soon as it has nothing else to do, a row of 82 µs every millisecond. Others have their way
 //! meanwhile, but for the store, which may wait for the erasure of a page, 22 ms.
 
-#![expect(unsafe_code, reason = "reads the buffer of the log as a probe does")]
-
-use core::ptr::{read_volatile, with_exposed_provenance};
-use core::sync::atomic::{AtomicU32, Ordering};
-
 use embassy_time::{Duration, Instant, Timer};
 use firmware::check_ins::CheckIns;
 use firmware::event::Event;
@@ -28,36 +23,13 @@ const PERIOD: Duration = Duration::from_millis(20);
 /// Time between two rows of a record, and between two looks at an erasure.
 const STEP: Duration = Duration::from_millis(1);
 
-/// Symbols of the linker.
-mod symbols {
-    use super::AtomicU32;
-
-    // SAFETY: defmt-rtt defines it; it is words alone, in the form that probes expect (SEGGER, "RTT control block"): mark,
-    // numbers of channels, then of the first its name, buffer, size, and where the target writes and the host reads next.
-    unsafe extern "C" {
-        pub(super) safe static _SEGGER_RTT: [AtomicU32; 11];
-    }
-}
-
-/// Where the next byte of the log goes.
-fn end() -> u32 {
-    let [.., write, _] = &symbols::_SEGGER_RTT;
-    write.load(Ordering::Relaxed)
-}
-
-/// Copies the log from a place up to its end, as far as there is room; where it goes on. Nothing may log meanwhile.
-fn copy(mut from: u32, to: &mut [u8]) -> u32 {
-    let [.., buffer, size, _, _] = &symbols::_SEGGER_RTT;
-    let [buffer, size] = [buffer, size].map(|word| word.load(Ordering::Relaxed));
-    for byte in to {
-        if from == end() {
-            break;
-        }
-        // SAFETY: a byte of the buffer, which is a static.
-        *byte = unsafe { read_volatile(with_exposed_provenance((buffer + from) as usize)) };
-        from = if from + 1 < size { from + 1 } else { 0 };
-    }
-    from
+/// The buffer in which the log waits for a probe. A program has it, since to read it is not safe.
+#[derive(Clone, Copy, Debug)]
+pub struct Buffer {
+    /// Where the next byte of the log goes.
+    pub end: fn() -> u32,
+    /// Copies the log from a place up to its end, as far as there is room; where it goes on. Nothing may log meanwhile.
+    pub copy: fn(u32, &mut [u8]) -> u32,
 }
 
 /// The observer of the instrument on a board: the log, and where the parts check in.
@@ -67,13 +39,15 @@ pub struct BoardLog {
     pub run: &'static Outlasting,
     /// The identity of the image, in the linker's note: three words and a name before it (`--build-id`).
     pub image: &'static [u32; 6],
+    /// Where the log waits for a probe.
+    pub buffer: Buffer,
 }
 
 impl BoardLog {
-    /// Keeps what is logged meanwhile over a loss of supply. Interrupts are off.
+    /// Keeps what is logged meanwhile over a loss of supply, within a critical section.
     pub fn keep(&self, weight: Weight, line: impl FnOnce()) {
         critical_section::with(|_| {
-            let from = end();
+            let from = (self.buffer.end)();
             line();
             self.give(weight, from);
         });
@@ -104,10 +78,10 @@ impl BoardLog {
     #[inline(never)]
     fn give(&self, weight: Weight, mut from: u32) {
         let [.., image, _] = self.image;
-        while from != end() {
+        while from != (self.buffer.end)() {
             let mut record = [0; CONTENT];
             record[..IMAGE].copy_from_slice(&image.to_le_bytes());
-            from = copy(from, &mut record[IMAGE..]);
+            from = (self.buffer.copy)(from, &mut record[IMAGE..]);
             if !self.run.lines.give(weight, &record) {
                 break;
             }
