@@ -5,9 +5,9 @@
 //! read, since a store is searched for the end of what it holds. What embassy-stm32 0.6.0 lacks is here:
 //! - the data cache, which a write of one bank may corrupt while the other is read (an erratum: Zephyr's pull request 13732),
 //!   is off while a row is programmed or a page erased, and emptied before it is on again, since an erasure leaves in it
-//!   what the page held. The release after 0.6.0 does so (embassy's pull request 6384); [`WithoutCache`] goes then;
+//!   what the page held. The release after 0.6.0 does so (embassy's pull request 6384); `WithoutCache` goes then;
 //! - an erasure, 22 ms, is waited for by the timer. The interrupt of the release's asynchronous driver clears errors before
-//!   they are read; once it does not, it can take the place of [`erase_page`];
+//!   they are read; once it does not, it can take the place of `erase_page`;
 //! - a row with two wrong bits, as of a loss of supply amid its programming, raises the non-maskable interrupt. Its handler
 //!   asks [`note_unreadable_row`], and the read ends with an error.
 //!

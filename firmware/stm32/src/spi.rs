@@ -11,7 +11,7 @@
 //! **Mode and clock** belong to a device, and are written where the latest device had others. The interface
 //! stays enabled between transfers, and drives the clock at its idle level.
 //!
-//! Between the fall of a select line and the first edge of the clock lie [`SELECTED`] cycles. Between two transactions of a
+//! Between the fall of a select line and the first edge of the clock lie `SELECTED` cycles. Between two transactions of a
 //! device lie more than the 180 ns that a TMC5160 asks for.
 
 use core::mem::forget;
