@@ -18,7 +18,7 @@ mod choice {
 
 #[cfg(feature = "preemptive")]
 mod choice {
-    /// Parts of a higher priority interrupt others: what is read and written by both is so with interrupts off,
+    /// Parts of a higher priority interrupt others: what is read and written by both is so within a critical section,
     /// for some ten instructions.
     pub type Lock = embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     /// An observer that parts of different priority call.

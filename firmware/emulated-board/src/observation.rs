@@ -55,7 +55,7 @@ pub struct Observation {
     outcome: String,
     /// When the alignment ended.
     ended: Option<Time>,
-    /// When the first line of the log came, and the longest time with interrupts off until then.
+    /// When the first line of the log came, and the longest time with interrupts held back until then.
     first: Option<(Time, Time)>,
     /// What the link has sent.
     link: Vec<u8>,

@@ -48,7 +48,7 @@ pub struct Report {
     pub flash_bytes: u32,
     /// Bytes of static RAM.
     pub static_bytes: u32,
-    /// The longest time with interrupts off: at the start, and after it, s.
+    /// The longest time with interrupts held back: at the start, and after it, s.
     pub masked_seconds: [f64; 2],
     /// What was done to chips and buses that data sheets forbid, and a stack that reached the statics.
     pub violations: Vec<String>,

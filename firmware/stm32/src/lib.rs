@@ -6,6 +6,7 @@
 //!
 //! | priority | what | how long at most |
 //! |---|---|---|
+//! | interrupts of data-ready edges | stamp them; on a spinning body read its converters | a microsecond |
 //! | interrupts of devices and of the clock | wake tasks | some microseconds |
 //! | executor of acquisition | reads the sensors, queues samples and motions | 0.4 ms |
 //! | executor of control | motors; attitude and heading from the motions | 1.5 ms, once a second |

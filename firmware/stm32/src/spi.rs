@@ -151,7 +151,7 @@ pub struct Device {
     control: Cr1,
     /// Turns of waiting within which a byte must pass.
     turns: u16,
-    /// Whether its transactions run with interrupts off.
+    /// Whether its transactions run within critical sections.
     is_uninterrupted: bool,
 }
 

@@ -21,7 +21,7 @@ impl Processor {
         self.state.borrow().now
     }
 
-    /// Counts the longest time with interrupts off anew.
+    /// Counts the longest time with interrupts held back anew.
     pub fn forget_masked(&self) {
         self.state.borrow_mut().counts.masked = (Time::ZERO, 0);
     }

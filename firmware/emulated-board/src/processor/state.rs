@@ -51,7 +51,7 @@ pub struct Counts {
     pub exceptions: u64,
     /// Time asleep.
     pub asleep: Time,
-    /// The longest time with interrupts off, and the address at which it ended.
+    /// The longest time with interrupts held back, and the address at which it ended.
     pub masked: (Time, u32),
     /// The lowest value of the main stack pointer that was seen.
     pub lowest_stack: Option<u32>,

@@ -6,8 +6,7 @@
 //!
 //! A spinning body's five converters leave 69 µs for a set of conversions, of which the wires take 35 µs: there is no
 //! time to wake a task for each. So the interrupt of the edge that completes a set begins the first transfer, and the
-//! interrupt at the end of a transfer the next one. Both are of one
-//! priority, so that neither interrupts the other.
+//! interrupt at the end of a transfer the next one. Both have one priority, so that neither interrupts the other.
 //!
 //! **Lines take turns.** Each interrupt of an edge takes a fiftieth of the time between two sets. So the line of the last
 //! converter, which was begun last and ends last, is watched always, and the others one after the other: how long before the
