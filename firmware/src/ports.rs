@@ -108,6 +108,11 @@ pub trait Together<C, V, const N: usize> {
 
     /// The first converter whose conversion has not ended, where waiting was given up.
     fn awaited(&self) -> usize;
+
+    /// How many conversions of every converter it reads and keeps although none is taken.
+    fn room(&self) -> usize {
+        0
+    }
 }
 
 impl<T: Together<C, V, N>, C, V, const N: usize> Together<C, V, N> for &mut T {
@@ -125,6 +130,10 @@ impl<T: Together<C, V, N>, C, V, const N: usize> Together<C, V, N> for &mut T {
 
     fn awaited(&self) -> usize {
         (**self).awaited()
+    }
+
+    fn room(&self) -> usize {
+        (**self).room()
     }
 }
 

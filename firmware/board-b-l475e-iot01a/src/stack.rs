@@ -15,6 +15,10 @@ use embassy_time::{Duration, Timer};
 
 /// Time between two looks at the stack.
 const PERIOD: Duration = Duration::from_secs(60);
+/// Bytes of a piece of the stack that is looked at in one go.
+const PIECE: usize = 4096;
+/// Time between two pieces.
+const PAUSE: Duration = Duration::from_millis(1);
 /// Size of a word, bytes.
 const WORD: usize = size_of::<u32>();
 /// The guard: 64 KiB up to the beginning of RAM, as base address and as attributes (ARMv7-M Architecture Reference
@@ -45,8 +49,8 @@ pub fn guard() {
     asm::isb();
 }
 
-/// Logs how deep the stack has been, once a minute where it has become deeper. It looks from the end upwards, for a
-/// millisecond and a half; what must not wait for that has executors above the thread.
+/// Logs how deep the stack has been, once a minute where it has become deeper. It looks from the end upwards, in pieces of
+/// some hundred microseconds.
 #[embassy_executor::task]
 pub async fn watch() -> ! {
     let [start, end] = [&symbols::_stack_start, &symbols::_stack_end]
@@ -57,6 +61,9 @@ pub async fn watch() -> ! {
         let mut place = end;
         while place < known && is_painted(place) {
             place += WORD;
+            if place.is_multiple_of(PIECE) {
+                Timer::after(PAUSE).await;
+            }
         }
         if place < known {
             known = place;

@@ -97,6 +97,11 @@ impl<'a, C: InStep<V>, R: Together<C, V, N>, V: Quantity, const N: usize> Group<
         self.out_of_step = 0;
     }
 
+    /// How many conversions of every converter are kept although none is taken.
+    pub(super) fn room(&self) -> usize {
+        self.reader.room()
+    }
+
     /// Takes the next conversion of every converter: the median of their ends, with the count of the first, and their
     /// values, where all were read; none after a fault.
     pub(super) async fn next(&mut self) -> Result<Option<(Edge, Option<[V; N]>)>, Refusal> {

@@ -37,6 +37,11 @@ impl<'a, S> Outlet<'a, S> {
         &self.channels.shared
     }
 
+    /// Whether the queue has no room for another sample.
+    pub(super) fn is_full(&self) -> bool {
+        self.channels.samples.is_full()
+    }
+
     /// Queues a sample for the session, and reports an overflow of the queue. While the aligner computes, it
     /// needs none: they are passed by.
     pub(super) fn hand_over(&mut self, sample: S) {

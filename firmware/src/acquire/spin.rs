@@ -6,6 +6,7 @@
 
 use core::convert::Infallible;
 
+use embassy_time::{Duration, Timer};
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::SpinSample;
@@ -27,6 +28,11 @@ const NAMES: [Device; CHANNELS] = [
     Device::UpAccelerometer,
     Device::RightAccelerometer,
 ];
+
+/// Conversions for which there is always room, where others wait until the queue has some.
+const SPARE: usize = 8;
+/// Time between two looks whether the queue has room.
+const LOOK: Duration = Duration::from_micros(200);
 
 /// Acquisition of the sensors of a spinning body.
 pub struct SpinAcquisition<'a, C, R> {
@@ -106,6 +112,10 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> Source<'a> for SpinAcq
 
     async fn run(&mut self) -> Result<Infallible, Refusal> {
         loop {
+            // The evaluation of a turn takes the aligner longer than the queue lasts now and then.
+            while self.outlet.is_full() && self.converters.room() > SPARE {
+                Timer::after(LOOK).await;
+            }
             if let Some(sample) = self.sample().await? {
                 self.outlet.hand_over(sample);
             }

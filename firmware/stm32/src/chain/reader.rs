@@ -14,6 +14,9 @@ use firmware::spin::configuration::CHANNELS;
 use super::set::Set;
 use super::{CHAIN, SETS, Wires};
 
+/// Full sets that are kept: one is being filled, one may wait for that, and one is being taken.
+const KEPT: usize = SETS - 3;
+
 /// Reads the converters of the chain together. Where no set becomes full, since a converter is silent or a transfer hangs,
 /// a converter is started anew, which stops the chain; it begins again with the next conversions.
 pub struct ChainReader {
@@ -38,7 +41,7 @@ impl ChainReader {
         if waiting == 0 {
             return None;
         }
-        self.taken = if waiting as usize > SETS - 3 { filled } else { self.taken.wrapping_add(1) };
+        self.taken = if waiting as usize > KEPT { filled } else { self.taken.wrapping_add(1) };
         self.set = CHAIN.set(self.taken.wrapping_sub(1));
         Some(())
     }
@@ -67,6 +70,11 @@ impl<C> Together<C, Code, CHANNELS> for ChainReader {
 
     fn reading(&self, index: usize) -> Result<RateReading<Code>, Fault> {
         codec::decode(self.set.frame(index)).map(RateReading::from)
+    }
+
+    fn room(&self) -> usize {
+        let waiting = CHAIN.filled.load(Ordering::Acquire).wrapping_sub(self.taken);
+        KEPT.saturating_sub(waiting as usize)
     }
 
     /// The first whose edge the chain waits for; where it waits for none, the first of all.
