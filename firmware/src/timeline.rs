@@ -7,9 +7,6 @@ use drivers::data_ready::Edge;
 /// clock is accurate to some per cent, so that over a long gap the count is better than the time.
 const COUNTED: u32 = 32;
 
-/// Time by which the stamp of a conversion may be late in any case, µs: a critical section may delay it.
-const DELAYED: u32 = 50;
-
 /// The arrival of a sample relative to the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
@@ -39,8 +36,7 @@ impl Timeline {
     }
 
     /// Judges the next sample by the end of its conversion. A deviation of up to a quarter of the
-    /// period is tolerated, since a converter that is awaited anew may be in any phase, and of up to 50 µs, but not of more
-    /// than half a period.
+    /// period is tolerated: a converter that is awaited anew may be in any phase.
     pub fn judge(&mut self, end: Edge) -> Arrival {
         let Some(last) = self.last.replace(end) else { return Arrival::InTime };
         let gap = u32::try_from(end.at.0.saturating_sub(last.at.0)).unwrap_or(u32::MAX);
@@ -51,16 +47,9 @@ impl Timeline {
         let missing = if is_counted { counted } else { timed }.saturating_sub(1);
         let beside = gap.wrapping_sub(self.period).cast_signed();
         match missing {
-            0 if beside.unsigned_abs() <= self.tolerance() => Arrival::InTime,
+            0 if beside.unsigned_abs() <= self.period / 4 => Arrival::InTime,
             0 => Arrival::Late(beside),
             _ => Arrival::Missing(missing),
         }
-    }
-
-    /// Greatest deviation of a sample in time, µs.
-    const fn tolerance(&self) -> u32 {
-        let half = self.period / 2;
-        let delayed = if DELAYED < half { DELAYED } else { half };
-        if delayed > self.period / 4 { delayed } else { self.period / 4 }
     }
 }

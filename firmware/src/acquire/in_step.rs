@@ -24,7 +24,7 @@ use crate::shared::Shared;
 /// line is no reason for a restart.
 const MOST_OUT_OF_STEP: u8 = 3;
 /// Time by which conversions may end apart in any case, µs: they are begun one after the other, some
-/// 8 µs each, and a critical section may delay the stamps of some.
+/// 8 µs each, and an interrupt may come between.
 const APART: u64 = 50;
 
 /// Group of `N` converters with sensors that measure values `V`.

@@ -156,8 +156,8 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         }
     }
 
-    /// Asks for a coarse reading at one of the two moments of a sample; whoever does waits for it until the
-    /// next conversion at the longest.
+    /// The compensation by the base's sensors, where a coarse reading is asked for at one of the two moments of a
+    /// sample. The caller waits for the reading until the next conversion at the longest.
     fn asked<'b>(
         &self,
         is_angle_read: bool,

@@ -51,13 +51,14 @@ fn figures(line: &str) -> Option<Vec<f64>> {
 #[test]
 fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
     let mut text = std::fs::read_to_string(page()).expect("the page is there");
+    let is_written = std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write");
     for (name, of) in ROWS {
         let found = Platform::ALL.map(|carrier| of(&executed(carrier, 1).report));
         let row = |line: &&str| {
             line.starts_with(&format!("| {name} |")) && line.matches('|').count() == 7
         };
         let kept = text.lines().find(row).unwrap_or_else(|| panic!("no row {name}")).to_owned();
-        if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+        if is_written {
             text = text.replace(&kept, &line(name, &found));
             continue;
         }
@@ -70,7 +71,7 @@ fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
             line(name, &found)
         );
     }
-    if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+    if is_written {
         std::fs::write(page(), text).expect("the page is ours");
     }
 }
