@@ -12,10 +12,9 @@ use orientation::signal::Timed;
 use crate::ports::{Aiding, Recorder};
 use crate::shared::{Channels, QUEUE, Shared};
 
-/// Longest rest once the queue is empty. Samples of a fast gyro are then taken several at a time,
-/// because waking for each would cost more than processing it. A quarter of the queue's capacity at
-/// 2 kHz.
-const REST: Duration = Duration::from_millis(2);
+/// Longest rest once the queue is empty. Samples are then taken several at a time, because waking for each would cost
+/// more than processing it.
+const REST: Duration = Duration::from_millis(10);
 
 /// Runs alignments for ever: the first at once, others as they are ordered.
 pub async fn align<R: Recorder<S>, S: Timed>(

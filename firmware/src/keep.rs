@@ -30,9 +30,8 @@ use crate::ports::{Aiding, Store};
 use crate::shared::{QUEUE, Saving, Shared};
 use crate::storage::HEADING;
 
-/// Longest time for which inertial samples wait in the queue. They are taken several at a time, because waking for
-/// each would cost more than processing it.
-const REST: Duration = Duration::from_millis(10);
+/// Longest time for which inertial samples wait in the queue, where the aligner does not say that it has had theirs.
+const REST: Duration = Duration::from_millis(50);
 /// Time without an inertial sample after which the navigator goes by the clock, µs.
 const SILENCE: u64 = 100_000;
 
@@ -94,12 +93,7 @@ async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_
         keeper.give(Input::Remembered(heading));
     }
     while !keeper.navigator.is_over() {
-        let rest = rest(shared.motion_period.get());
-        Timer::after(rest).await;
-        shared.caught_up.reset();
-        if !shared.may_move() {
-            select(shared.caught_up.wait(), Timer::after(rest)).await;
-        }
+        select(shared.caught_up.wait(), Timer::after(rest(shared.motion_period.get()))).await;
         keeper.give(Input::Idle(shared.is_idle()));
         if shared.may_move() {
             keeper.take_moves();

@@ -114,7 +114,7 @@
 //! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`alignment::rotating::misalignment`] |
 //! | axis misalignment | angle between the sensitive axis and the plane of rotation | [`alignment::rotating::misalignment::AxisMisalignment`] |
 //! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`alignment::stops`] |
-//! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`attitude::quaternion`] |
+//! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`math::quaternion`] |
 //! | coning | rotation that the order of small rotations adds, and its compensation | [`signal::strapdown`] |
 //! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`alignment::stops`], [`attitude`] |
 //! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`attitude`] |

@@ -3,7 +3,6 @@
 use execution::report::Report;
 use firmware::platform::Platform;
 
-use super::support::defect::hold;
 use super::support::executed::{executed, sampled_fast};
 use super::support::figure::within;
 use super::support::worlds::calibrated_two_frames;
@@ -57,13 +56,11 @@ fn nothing_is_lost_at_2400_samples_a_second() {
     }
 }
 
+/// At 400 samples of three gyros and an accelerometer a second.
 #[test]
-#[should_panic(
-    expected = "between 8200 and 9200 instructions a sample of three gyros in a vehicle takes all in"
-)]
 fn a_sample_of_three_gyros_takes_8000_instructions_at_most() {
     let words = "instructions a sample of three gyros in a vehicle takes all in";
-    hold(all_in(&executed(Platform::Vehicle, 1).report), 0.0..=8000.0, 8200.0..=9200.0, words);
+    within(all_in(&executed(Platform::Vehicle, 1).report), 0.0..=8000.0, words);
 }
 
 /// Bytes of stack at the deepest, and half of what the statics leave.

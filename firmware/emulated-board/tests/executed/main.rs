@@ -1,13 +1,10 @@
-//! The images of all carriers, executed: what holds today, and every defect that is known, with its figure.
-//!
-//! `DEFECTS.md` lists the defects, and those of a board with a fault (`tests/faults`); `support::defect` says how a test
-//! holds one.
+//! The images of all carriers, executed: what each holds from power-on through its result to keeping. What a board with a
+//! fault does is in `tests/faults`.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 mod clocks;
 mod conclusion;
 mod cost;
-mod list;
 mod readme;
 mod rules;
 mod settings;

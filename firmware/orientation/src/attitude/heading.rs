@@ -5,11 +5,11 @@
 //! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
 //! over the net turn, of a ramp of its bias, and of rotation during gaps.
 
-use super::quaternion as attitude;
 use super::setting::Gyro;
 use super::vertical::Vertical;
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
+use crate::math::quaternion::angles;
 use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other.
@@ -158,7 +158,7 @@ pub(super) fn frame_rate(
 
 /// Course of body x on the level frame, rad.
 fn course(vertical: &Vertical) -> f64 {
-    let [course, ..] = attitude::angles(vertical.attitude().parts());
+    let [course, ..] = angles(vertical.attitude().parts());
     course
 }
 

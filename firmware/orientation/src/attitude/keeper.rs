@@ -2,11 +2,11 @@
 //! from switch-on and reports pitch, roll and azimuth.
 
 use super::heading::{Heading, Mark, Realigned, frame_rate};
-use super::quaternion as attitude;
 use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical, rates};
+use crate::math::quaternion::{angles, quaternion};
 use crate::signal::InertialSample;
 use crate::units::{Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds};
 
@@ -196,7 +196,7 @@ impl Keeper {
     pub fn report(&self) -> Report {
         let vertical = &self.vertical;
         let azimuth = self.azimuth();
-        let [course, pitch, roll] = attitude::angles(vertical.attitude().parts());
+        let [course, pitch, roll] = angles(vertical.attitude().parts());
         let course = azimuth.map_or(course, |azimuth| azimuth.angle.0);
         let time = vertical.time();
         let seconds = azimuth.map_or(0.0, |_| time.seconds() - self.handed.seconds());
@@ -206,7 +206,7 @@ impl Keeper {
             roll: Radians(roll),
             level_sigma: Radians(vertical.sigma().into()),
             azimuth,
-            attitude: attitude::quaternion([course, pitch, roll]),
+            attitude: quaternion([course, pitch, roll]),
             state: self.state(),
             is_at_rest: vertical.is_at_rest(),
             biases: rates(vertical.bias),

@@ -8,7 +8,6 @@
 
 pub(crate) mod heading;
 pub(crate) mod keeper;
-pub mod quaternion;
 mod report;
 pub mod restart;
 mod setting;

@@ -2,6 +2,7 @@
 //! tails, a bounded minimisation.
 
 pub mod brent;
+pub mod quaternion;
 pub mod reference_table;
 pub mod regression;
 pub mod rotation;

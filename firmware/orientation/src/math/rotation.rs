@@ -84,7 +84,9 @@ pub fn about_down(angle: f64) -> Matrix {
 /// Rotation matrix of a rotation vector, whose length is the angle, rad.
 #[must_use]
 pub fn by(rotation: &Vector) -> Matrix {
-    Quaternion::ONE.turned(rotation).matrix()
+    let (cosine, factor) = half(dot(rotation, rotation));
+    let [x, y, z] = scaled(rotation, factor);
+    matrix([cosine, x, y, z])
 }
 
 /// Axis of a rotation times the sine of its angle: the rotation vector of a small rotation.
@@ -114,60 +116,9 @@ pub(crate) fn matrix<T: Scalar>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     ]
 }
 
-/// Attitude as a unit quaternion: the rotation from body axes to those of a reference.
-#[must_use]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quaternion([f64; 4]);
-
 /// Angle up to which sine and cosine of its half are taken from their series, rad: their errors are
 /// then below 1e-16.
 const SERIES: f64 = 0.02;
-
-impl Quaternion {
-    /// The identity rotation.
-    pub const ONE: Self = Self([1.0, 0.0, 0.0, 0.0]);
-
-    /// Attitude after a further rotation of the body by a rotation vector on its own axes, rad.
-    #[inline(never)]
-    pub fn turned(&self, rotation: &Vector) -> Self {
-        let square = dot(rotation, rotation);
-        let (cosine, factor) = half(square);
-        let Self([w, x, y, z]) = *self;
-        let [a, b, c] = scaled(rotation, factor);
-        Self([
-            w * cosine - x * a - y * b - z * c,
-            w * a + x * cosine + y * c - z * b,
-            w * b - x * c + y * cosine + z * a,
-            w * c + x * b - y * a + z * cosine,
-        ])
-    }
-
-    /// Renormalised quaternion: rounding changes its norm by 1e-16 a rotation.
-    pub(crate) fn normalised(&self) -> Self {
-        let Self([w, x, y, z]) = *self;
-        // One Newton step towards 1/√n: exact as long as the norm is nearly one.
-        let factor = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
-        Self([w * factor, x * factor, y * factor, z * factor])
-    }
-
-    /// Rotation matrix of the attitude.
-    #[must_use]
-    pub fn matrix(&self) -> Matrix {
-        matrix(self.0)
-    }
-
-    /// Rotation matrix of the attitude in single precision, to 1e-7.
-    #[must_use]
-    pub fn rough_matrix(&self) -> [[f32; 3]; 3] {
-        matrix(self.0.map(|part| part as f32))
-    }
-}
-
-impl Default for Quaternion {
-    fn default() -> Self {
-        Self::ONE
-    }
-}
 
 /// Cosine of half an angle, and sine of half the angle over the angle, from the angle's square.
 fn half(square: f64) -> (f64, f64) {

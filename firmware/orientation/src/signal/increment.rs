@@ -65,21 +65,18 @@ impl Increment {
         x.unsigned_abs().max(y.unsigned_abs()).max(z.unsigned_abs()) > LARGE_STEPS
     }
 
-    /// Rotation vector since the last attitude update, rad, in double precision; the sums begin
-    /// again.
+    /// Sum of the increments since the last attitude update, and the part of the rotation vector that is due to their
+    /// order, rad; the sums begin again.
     #[inline]
-    pub(crate) fn take(&mut self) -> [f64; 3] {
-        let rotation = core::array::from_fn(|axis| {
-            f64::from(self.sums[axis]) * AngleIncrement::STEP
-                + f64::from(self.coning[axis] * (STEP * STEP))
-        });
+    pub(crate) fn take_exactly(&mut self) -> ([AngleIncrement; 3], [f32; 3]) {
+        let taken = (self.sums.map(AngleIncrement), self.coning.map(|part| part * (STEP * STEP)));
         self.restart();
-        rotation
+        taken
     }
 
     /// Rotation vector since the last attitude update, rad, in single precision (relative error
     /// 6e-8); the sums begin again.
-    pub(crate) fn take_rough(&mut self) -> [f32; 3] {
+    pub(crate) fn take(&mut self) -> [f32; 3] {
         let ([x, y, z], [about_x, about_y, about_z]) = (self.sums, self.coning);
         self.restart();
         [

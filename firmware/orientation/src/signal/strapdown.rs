@@ -15,7 +15,8 @@
 
 use super::InertialSample;
 use super::increment::{Increment, STEADY, STEP};
-use crate::math::rotation::{Quaternion, difference, dot, sum, turned};
+use crate::math::quaternion::Attitude;
+use crate::math::rotation::{difference, dot, sum, turned};
 use crate::units::{AngleIncrement, Instant};
 
 /// Time between attitude updates, µs: 50 Hz.
@@ -35,7 +36,7 @@ pub(crate) type Rough = [[f32; 3]; 3];
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Carried {
     /// Rotation from the body axes to the frozen start axes.
-    pub attitude: Quaternion,
+    pub attitude: Attitude,
     /// Rotation of the start frame per gyro bias, rad per rad/s; rows are start axes, columns body
     /// axes.
     pub bias: Rough,
@@ -114,7 +115,7 @@ impl Strapdown {
     /// Begins at the given time, at which the interval of the first sample starts.
     #[must_use]
     pub fn since(time: Instant) -> Self {
-        let matrix = Quaternion::ONE.rough_matrix();
+        let matrix = Attitude::default().rough_matrix();
         Self { since: time, matrix, ..Self::default() }
     }
 
@@ -145,7 +146,8 @@ impl Strapdown {
         let steps = self.increment.sums;
         let small = steps.map(|sum| sum as f32 * STEP);
         let carried = &mut self.carried;
-        carried.attitude = carried.attitude.turned(&self.increment.take());
+        let (turned, by_order) = self.increment.take_exactly();
+        carried.attitude.turn_by(&turned, &by_order);
         let after = carried.attitude.rough_matrix();
         // Sum of the attitudes at both ends: twice the one in the middle.
         let both: Rough = core::array::from_fn(|row| sum(&self.matrix[row], &after[row]));
@@ -227,9 +229,9 @@ impl Strapdown {
     }
 
     /// Takes the sums up to the last update, which begin again. It must be called now and then:
-    /// rounding changes the quaternion's norm by 1e-16 a rotation, and the norm is restored here.
+    /// rounding changes the quaternion's norm by at most 1e-9 a rotation, and the norm is restored here.
     pub fn take(&mut self) -> Sums {
-        self.carried.attitude = self.carried.attitude.normalised();
+        self.carried.attitude.normalise();
         core::mem::take(&mut self.sums)
     }
 }

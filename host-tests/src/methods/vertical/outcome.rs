@@ -1,6 +1,6 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
-use orientation::attitude::quaternion::angles;
+use orientation::math::quaternion::angles;
 
 use crate::cause;
 use crate::methods::asked::Question;

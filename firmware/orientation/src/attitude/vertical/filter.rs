@@ -16,8 +16,8 @@
 use super::floor::{Floor, Verdict};
 use super::motion::{FADING, LEAST_SPEED, Motion};
 use super::stretch::Stretch;
-use crate::attitude::quaternion::Vector;
 use crate::attitude::setting::Setting;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::dot;
 
 /// Number of states.

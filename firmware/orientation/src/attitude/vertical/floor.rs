@@ -16,7 +16,7 @@
 
 use super::motion::{BAND, GRAVITY, Motion};
 use super::stretch::Stretch;
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::length;
 
 /// Significance, in σ, at which the floor deviates from the filter's vertical.

@@ -5,7 +5,7 @@ use super::judge::{Findings, Task};
 use super::stretch::Stretch;
 use super::sums::{Rested, Sums, Window};
 use super::{Trust, Vertical};
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::{difference, length, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::{Increment, STEP};

@@ -6,7 +6,7 @@ use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
 use super::sums::{Rested, Window};
 use super::{Trust, Vertical};
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::{difference, dot, length, scaled, sum, turned};
 
 /// Time between two steps of the filter, s.
@@ -212,7 +212,7 @@ impl Vertical {
         let is_calm = beside < CALM_FORCE && dot(&rate, &rate) < CALM_RATE * CALM_RATE;
         let [about_north, about_east] = tilt(&turned(&self.matrix, &force));
         self.attitude.correct(&[about_north, about_east, 0.0]);
-        self.matrix = self.attitude.matrix();
+        self.matrix = self.attitude.rough_matrix();
         let is_first = self.trust == Trust::Starting;
         self.filter.relevel(if is_first && is_calm { START_TILT } else { MOVING_TILT });
         if !is_calm {
@@ -427,7 +427,7 @@ impl Vertical {
     pub(super) fn correct(&mut self) {
         let Correction { rotation, bias, axes } = self.filter.take();
         self.attitude.correct(&rotation);
-        self.matrix = self.attitude.matrix();
+        self.matrix = self.attitude.rough_matrix();
         self.bias = sum(&self.bias, &bias);
         for (row, more) in self.axes.iter_mut().zip(axes) {
             *row = sum(row, &more);

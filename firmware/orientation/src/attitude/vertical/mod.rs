@@ -28,8 +28,8 @@ use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
-use super::quaternion::{Attitude, Matrix, Vector};
 use super::setting::Setting;
+use crate::math::quaternion::{Attitude, Matrix, Vector};
 use crate::math::rotation::{difference, dot, length, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
@@ -140,7 +140,7 @@ impl Vertical {
             force_tilt: force_tilt(setting),
             period,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate().0 as f32)],
-            matrix: Attitude::default().matrix(),
+            matrix: Attitude::default().rough_matrix(),
             filter: Filter::new(sigmas, &expected),
             expected,
             tasks_per_sample: Self::tasks_per_sample(period),
@@ -201,7 +201,7 @@ impl Vertical {
     fn tick(&mut self, now: Instant) {
         let seconds = seconds_between(self.since, now);
         self.since = now;
-        let rotation = self.increment.take_rough();
+        let rotation = self.increment.take();
         if seconds > 0.0 {
             self.advance(&rotation, seconds);
         }
@@ -217,7 +217,7 @@ impl Vertical {
         let shown = difference(rotation, &frame);
         let rotation = self.rotation(&difference(&shown, &scaled(&self.bias, seconds)));
         self.attitude.turn(&rotation);
-        let after = self.attitude.matrix();
+        let after = self.attitude.rough_matrix();
         let middle: Matrix = core::array::from_fn(|row| {
             core::array::from_fn(|column| 0.5 * (self.matrix[row][column] + after[row][column]))
         });
@@ -252,7 +252,7 @@ impl Vertical {
         let frame = turned(&transposed(&self.matrix), &self.frame);
         let drift = scaled(&sum(&frame, &self.bias), seconds);
         let mut attitude = self.attitude;
-        attitude.turn(&difference(&increment.take_rough(), &drift));
+        attitude.turn(&difference(&increment.take(), &drift));
         attitude
     }
 

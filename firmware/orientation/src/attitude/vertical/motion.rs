@@ -14,7 +14,7 @@
 //! counts fully.
 
 use super::stretch::Stretch;
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 
 /// Standard gravity, m/s².
 pub(super) const GRAVITY: f32 = 9.806_65;

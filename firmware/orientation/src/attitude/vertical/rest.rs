@@ -20,7 +20,7 @@
 //! Earth's, for gyros that resolve it. They test an average on its own without a predecessor, which
 //! is impossible with coarse gyros.
 
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::{cross, difference, dot, scaled, sum};
 
 /// Significance, in σ, at which a mean deviates.

@@ -1,6 +1,6 @@
 //! Integrals of the motion since the filter's last step.
 
-use crate::attitude::quaternion::{Matrix, Vector};
+use crate::math::quaternion::{Matrix, Vector};
 use crate::math::rotation::{dot, length, scaled, sum};
 
 /// Integrals of the motion since the filter's last step.

@@ -1,6 +1,6 @@
 //! Sums between two evaluations.
 
-use crate::attitude::quaternion::Vector;
+use crate::math::quaternion::Vector;
 use crate::math::rotation::{difference, scaled, sum};
 use crate::units::{AngleIncrement, Instant, SpecificForce};
 

@@ -3,18 +3,25 @@
 //! A software `f64` product takes ninety instructions on a Cortex-M4, a product of 32 by 32 bits
 //! with a 64-bit sum takes one. A quaternion of `f32` would lose every rotation below 6e-8, which
 //! is the size of the Earth's rotation between two samples. Here a rotation is given as `f32`, with
-//! a relative error of 6e-8, and nothing of it is lost.
+//! a relative error of 6e-8, or as increments of angle, and nothing of it is lost.
 
-use crate::math::rotation;
+use core::array;
+
+use crate::math::rotation::{self, dot};
+use crate::units::AngleIncrement;
 
 /// Value of one, in steps of the stored components.
 const ONE: i64 = 1 << 62;
 /// Size of a step of the components' upper words.
 const UPPER: f32 = 1.0 / (1u32 << 30) as f32;
-/// Steps of a rotation's components in a radian.
-const FINE: f32 = (1u64 << 35) as f32;
-/// Largest rotation applied at once, rad: up to it the series are accurate to 1e-11.
+/// Bits of the steps, of which 2ᴮ are a radian, in which half a rotation is taken.
+const FINE: u32 = 35;
+/// Largest rotation applied at once, rad: up to it the series are accurate to 1e-11, and half of it is less than 2³¹ steps.
 const LARGEST: f32 = 0.1;
+/// Bits of the steps of a small rotation: of the Earth's rotation in 20 ms, a step is 6e-7.
+const FINER: u32 = 41;
+/// Largest rotation that is taken in the finer steps, rad.
+const SMALL: f32 = LARGEST / (1 << (FINER - FINE)) as f32;
 /// Greatest number of pieces of a rotation: a turn and a half.
 const PIECES: u32 = 100;
 /// Distance from the vertical within which a body counts as standing on end, rad: rounding then
@@ -54,32 +61,59 @@ impl Attitude {
     /// Rotates the body about its own axes by a rotation vector, rad; rotation beyond a turn and a
     /// half is ignored.
     pub fn turn(&mut self, rotation: &[f32; 3]) {
-        let [x, y, z] = *rotation;
-        let square = x * x + y * y + z * z;
+        let square = dot(rotation, rotation);
         if square <= LARGEST * LARGEST {
-            return self.turn_little(x, y, z, square);
+            return self.turn_at_once(rotation, square);
         }
         let length = libm::sqrtf(square);
         let pieces = ((length / LARGEST) as u32).saturating_add(1);
         let part = if pieces > PIECES { LARGEST / length } else { 1.0 / pieces as f32 };
         for _ in 0..pieces.min(PIECES) {
-            self.turn_little(part * x, part * y, part * z, part * part * square);
+            self.turn_at_once(&rotation.map(|turned| part * turned), part * part * square);
         }
     }
 
-    /// Rotates by a small rotation vector, given its squared length.
+    /// Rotates the body about its own axes by increments, and by a vector beside them, rad. Up to [`LARGEST`] of both,
+    /// increments are taken in integers, with a relative error of 1e-9: a sum of turns is off by no scale factor.
+    pub fn turn_by(&mut self, increments: &[AngleIncrement; 3], beside: &[f32; 3]) {
+        const STEP: f32 = AngleIncrement::STEP as f32;
+        let rotation = array::from_fn(|axis| increments[axis].0 as f32 * STEP + beside[axis]);
+        let square = dot(&rotation, &rotation);
+        if square <= SMALL * SMALL {
+            self.turn_in_steps::<FINER>(halves::<FINER>(increments, beside), &rotation, square);
+        } else if square <= LARGEST * LARGEST {
+            self.turn_in_steps::<FINE>(halves::<FINE>(increments, beside), &rotation, square);
+        } else {
+            self.turn(&rotation);
+        }
+    }
+
+    /// Rotates by a rotation vector up to [`LARGEST`], given its squared length.
+    fn turn_at_once(&mut self, rotation: &[f32; 3], square: f32) {
+        const NONE: [AngleIncrement; 3] = [AngleIncrement(0); 3];
+        if square <= SMALL * SMALL {
+            self.turn_in_steps::<FINER>(halves::<FINER>(&NONE, rotation), rotation, square);
+        } else {
+            self.turn_in_steps::<FINE>(halves::<FINE>(&NONE, rotation), rotation, square);
+        }
+    }
+
+    /// Rotates by a rotation vector, given half of it in steps of 2⁻ᴮ rad, and its squared length.
     #[inline]
-    fn turn_little(&mut self, x: f32, y: f32, z: f32, square: f32) {
-        let factor = FINE * (0.5 - square * (1.0 / 48.0 - square * (1.0 / 3840.0)));
-        let less = (FINE * square * (0.125 - square * (1.0 / 384.0))) as i32;
-        let [x, y, z] = [(x * factor) as i32, (y * factor) as i32, (z * factor) as i32];
+    fn turn_in_steps<const BITS: u32>(&mut self, half: [i32; 3], rotation: &[f32; 3], square: f32) {
+        let steps = (1u64 << BITS) as f32;
+        let less = nearest(steps * square * (0.125 - square * (1.0 / 384.0)));
+        let shorter = steps * square * (1.0 / 48.0 - square * (1.0 / 3840.0));
+        let [x, y, z] = array::from_fn(|axis| half[axis] - nearest(shorter * rotation[axis]));
         let [a, b, c, d] = self.upper();
         let times = |one: i32, other: i32| i64::from(one) * i64::from(other);
+        // Products are in steps of 2⁻³⁰ by 2⁻ᴮ.
+        let shift = 30 + BITS - 62;
         let [w, i, j, k] = &mut self.0;
-        *w -= (times(a, less) + times(b, x) + times(c, y) + times(d, z)) >> 3;
-        *i += (times(a, x) - times(b, less) + times(c, z) - times(d, y)) >> 3;
-        *j += (times(a, y) - times(b, z) - times(c, less) + times(d, x)) >> 3;
-        *k += (times(a, z) + times(b, y) - times(c, x) - times(d, less)) >> 3;
+        *w -= (times(a, less) + times(b, x) + times(c, y) + times(d, z)) >> shift;
+        *i += (times(a, x) - times(b, less) + times(c, z) - times(d, y)) >> shift;
+        *j += (times(a, y) - times(b, z) - times(c, less) + times(d, x)) >> shift;
+        *k += (times(a, z) + times(b, y) - times(c, x) - times(d, less)) >> shift;
     }
 
     /// Rotates the frame by a small rotation vector on its own axes, rad, to correct an attitude
@@ -109,8 +143,14 @@ impl Attitude {
     }
 
     /// Rotation matrix, to 1e-7.
-    pub(crate) fn matrix(&self) -> Matrix {
+    pub(crate) fn rough_matrix(&self) -> Matrix {
         rotation::matrix(self.rough())
+    }
+
+    /// Rotation matrix in double precision, to the deviation of the norm from one.
+    #[must_use]
+    pub fn matrix(&self) -> rotation::Matrix {
+        rotation::matrix(self.parts())
     }
 
     /// Components in single precision.
@@ -126,6 +166,25 @@ impl Attitude {
         let upper = |part: i64| ((part + (1 << 31)) >> 32) as i32;
         [upper(w), upper(x), upper(y), upper(z)]
     }
+}
+
+/// Half of increments and of a vector beside them, rad, in steps of 2⁻ᴮ rad.
+#[inline]
+fn halves<const BITS: u32>(increments: &[AngleIncrement; 3], beside: &[f32; 3]) -> [i32; 3] {
+    const CUT: u32 = 24;
+    // Half an increment in these steps, with bits that are cut off, to 1e-9.
+    let half = const { (AngleIncrement::STEP * (1u128 << (BITS - 1 + CUT)) as f64 + 0.5) as i64 };
+    let steps = (1u64 << (BITS - 1)) as f32;
+    array::from_fn(|axis| {
+        let product = i64::from(increments[axis].0) * half + (1 << (CUT - 1));
+        (product >> CUT) as i32 + nearest(steps * beside[axis])
+    })
+}
+
+/// The nearest integer.
+#[inline]
+fn nearest(number: f32) -> i32 {
+    (number + 0.5f32.copysign(number)) as i32
 }
 
 /// Course, pitch and roll, rad, of a quaternion (w, x, y, z) from body axes to north, east, down.
