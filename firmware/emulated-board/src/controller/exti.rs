@@ -22,18 +22,20 @@ pub struct Exti {
     ports: [u32; 4],
     /// Falling edges that came while the line was still pending from the one before.
     pub missed: u64,
+    /// Lines, as bits, whose wire is broken: no edge comes any more.
+    pub broken: u32,
 }
 
 impl Default for Exti {
     fn default() -> Self {
-        Self { mask: MASK, edges: [0; 2], pending: 0, ports: [0; 4], missed: 0 }
+        Self { mask: MASK, edges: [0; 2], pending: 0, ports: [0; 4], missed: 0, broken: 0 }
     }
 }
 
 impl Exti {
-    /// A reset; the count of edges that were missed goes on.
+    /// A reset; the count of edges that were missed goes on, and broken wires stay.
     pub fn reset(&mut self) {
-        *self = Self { missed: self.missed, ..Self::default() };
+        *self = Self { missed: self.missed, broken: self.broken, ..Self::default() };
     }
 
     /// Reads a register of the interrupt controller; those of lines 32 and up are at their reset values.
@@ -86,7 +88,7 @@ impl Exti {
 
     /// An edge of a pin.
     pub fn edge(&mut self, port: usize, pin: u32, rises: bool) {
-        let bit = 1 << pin;
+        let bit = !self.broken & 1 << pin;
         if self.port(pin) == port && self.edges[usize::from(!rises)] & bit != 0 {
             self.missed += u64::from(self.pending & self.mask & bit != 0);
             self.pending |= bit;

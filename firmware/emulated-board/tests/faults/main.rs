@@ -16,6 +16,7 @@ mod kept;
 mod power;
 mod readme;
 mod saving;
+mod silent;
 mod stopped;
 mod store;
 mod supply;
