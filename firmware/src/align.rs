@@ -10,7 +10,7 @@ use orientation::navigation::{Aligner, Order};
 use orientation::signal::Timed;
 
 use crate::ports::{Aiding, Recorder};
-use crate::shared::{Channels, QUEUE, Shared};
+use crate::shared::{Channels, Shared, WAITING};
 
 /// Longest rest once the queue is empty. Samples are then taken several at a time, because waking for each would cost
 /// more than processing it.
@@ -86,9 +86,9 @@ async fn next<S>(channels: &Channels<'_, S>, may_rest: bool) -> Either<Order, S>
     shared.catch_up();
     let period = shared.period.get();
     if may_rest && period < REST {
-        Timer::after(REST.min(period * (QUEUE as u32 / 3))).await;
+        Timer::after(REST.min(period * WAITING as u32)).await;
     }
-    select(shared.orders.wait(), samples.receive()).await
+    select(shared.orders.take(), samples.receive()).await
 }
 
 /// Gives the aligner an input beside its samples.

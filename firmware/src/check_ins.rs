@@ -1,5 +1,7 @@
 //! Which parts of the instrument go on: each checks in whenever it has been polled, and the watchdog is fed only while
-//! all have. A task that waits for ever, or never returns, is thus found, and its part has a name.
+//! all have. An executor that is kept from its tasks, and a part that never returns, are thus found, and the part has a
+//! name. A part that waits is polled with the others of its task: that what it waits for comes is each part's own to
+//! watch, by a time limit.
 //!
 //! A part belongs to those that are expected from its first poll on, until it ends. The parts of a task must be polled
 //! at least once in the time of the watchdog: where nothing else wakes them, a timer does.

@@ -57,6 +57,8 @@ pub enum Event {
     Revolving(Device, f64),
     /// An axis is blocked; the movement is tried again.
     Blocked(Device),
+    /// An axis neither answers nor comes to rest, so the current of the motors is taken away.
+    CurrentOff(Device),
     /// The gyro's sensitive axis has been set vertical to hold the azimuth: angles of the outer and
     /// the inner frame, °.
     Stored(f64, f64),
@@ -90,6 +92,7 @@ impl Event {
             | Self::Late(_)
             | Self::Overflowed(_)
             | Self::Blocked(_)
+            | Self::CurrentOff(_)
             | Self::LinkSilent => Some(Weight::Symptom),
             Self::Navigation(
                 Navigated::Keeping(_) | Navigated::DownGyro(_) | Navigated::Realigning,
@@ -135,6 +138,7 @@ words! { Event:
     Self::Revolving(axis, 0.0) => "{}: comes to rest", axis;
     Self::Revolving(axis, rate) => "{}: turns at {} °/s", axis, Rounded::<2>(rate);
     Self::Blocked(axis) => "{}: blocked, trying again", axis;
+    Self::CurrentOff(axis) => "{}: not brought to rest: the motors' current is taken away", axis;
     Self::Stored(outer, inner) =>
         "gyro vertical to store the azimuth: outer frame at {}°, inner frame at {}°",
         Rounded::<3>(outer), Rounded::<3>(inner);

@@ -104,14 +104,22 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
         }
     }
 
+    async fn halt(&mut self) {
+        join(self.outer.motor.halt(), self.inner.motor.halt()).await;
+    }
+
     /// After an azimuth was found, sets the gyro's sensitive axis vertical, where it can hold the
     /// azimuth; a keeper has requested that already.
     async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
         let is_found = matches!(self.shared.status.get(), Status::Concluded { .. });
-        if is_found && !self.shared.is_kept.get() {
+        let is_to_store = is_found && !self.shared.is_kept.get();
+        let parking = async {
             // If this fails, the log has the reason; the azimuth is valid nevertheless.
-            select(self.store(), meanwhile).await;
-        }
+            if !is_to_store || self.store().await.is_err() {
+                self.halt().await;
+            }
+        };
+        select(parking, meanwhile).await;
     }
 }
 

@@ -19,7 +19,7 @@ use core::future::pending;
 
 use drivers::fault::Fault;
 use embassy_futures::select::select;
-use embassy_time::{Duration, Instant, Timer};
+use embassy_time::{Duration, Instant, Timer, with_timeout};
 use orientation::attitude::Keeper;
 use orientation::attitude::restart::Remembered;
 use orientation::navigation::{Input, Motion, Navigator, Output, Policy};
@@ -27,11 +27,14 @@ use orientation::units;
 
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
-use crate::shared::{QUEUE, Saving, Shared};
+use crate::shared::{Saving, Shared, WAITING};
 use crate::storage::HEADING;
 
 /// Longest time for which inertial samples wait in the queue, where the aligner does not say that it has had theirs.
 const REST: Duration = Duration::from_millis(50);
+/// Time after which a heading is forgotten again where that has failed: one from before the drive must not be recalled
+/// after it.
+const FORGOTTEN_AGAIN: Duration = Duration::from_secs(10);
 /// Time without an inertial sample after which the navigator goes by the clock, µs.
 const SILENCE: u64 = 100_000;
 
@@ -103,9 +106,9 @@ async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_
     }
 }
 
-/// Time for which inertial samples of this period wait in the queue: at most half of its capacity.
+/// Time for which inertial samples of this period wait in the queue.
 fn rest(period: Duration) -> Duration {
-    REST.min(period * (QUEUE as u32 / 2))
+    REST.min(period * WAITING as u32)
 }
 
 /// The navigator with what it is given.
@@ -167,13 +170,21 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
     let loaded = load(store).await;
     shared.remembered.signal(loaded.unwrap_or_default());
     let mut outcome = loaded.map(|_| ());
+    let mut is_to_forget = false;
     loop {
         if let Err(fault) = outcome
             && !core::mem::replace(&mut has_failed, true)
         {
             shared.report(Event::HeadingNotKept(fault));
         }
-        outcome = match shared.saving.wait().await {
+        let saving = if is_to_forget && outcome.is_err() {
+            let waited = with_timeout(FORGOTTEN_AGAIN, shared.saving.wait()).await;
+            waited.unwrap_or(Saving::Nothing)
+        } else {
+            shared.saving.wait().await
+        };
+        is_to_forget = saving == Saving::Nothing;
+        outcome = match saving {
             Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
             Saving::Nothing => store.forget(HEADING).await,
         };

@@ -3,6 +3,7 @@
 use core::convert::Infallible;
 use core::future::pending;
 
+use embassy_futures::select::select;
 use orientation::alignment::refusal::Refusal;
 
 use crate::shared::Shared;
@@ -16,9 +17,15 @@ pub trait Mechanism {
     /// The reason for which the mechanism or its encoder is given up.
     async fn serve(&mut self) -> Result<Infallible, Refusal>;
 
+    /// Brings the mechanism to rest, within 10 s, once it was given up or the run is over. Where a motor does not
+    /// obey, its current is taken away ([`Shared::current_off`]).
+    async fn halt(&mut self) {}
+
     /// Brings the mechanism to where it is to stand after the run, while `meanwhile`, which never
     /// ends, takes the samples. If that fails, the log has the reason.
-    async fn park(&mut self, _meanwhile: impl Future<Output = ()>) {}
+    async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
+        select(self.halt(), meanwhile).await;
+    }
 }
 
 /// Sensors fixed to the body (strapdown): there is nothing to turn.

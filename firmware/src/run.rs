@@ -62,6 +62,7 @@ pub async fn operate<M: Mechanism, K: Keep>(
         let turning = pin!(async {
             let Err(reason) = mechanism.serve().await;
             shared.fail(reason);
+            mechanism.halt().await;
             pending::<()>().await;
         });
         let kept = pin!(keeping.keep(aiding, shared));

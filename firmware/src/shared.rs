@@ -26,6 +26,9 @@ use crate::status::Status;
 
 /// Capacity of the queues: 16 ms at 2 kHz, 2 ms at 14.4 kHz.
 pub const QUEUE: usize = 32;
+/// How many of a queue may wait while its receiver rests: with as many that come until it looks again, and some
+/// more where it is late, none is lost.
+pub(crate) const WAITING: usize = QUEUE / 3;
 
 /// The queue of samples from acquisition to the aligner.
 pub type Queue<S> = Channel<Lock, S, QUEUE>;
@@ -76,13 +79,49 @@ pub enum Saving {
     Nothing,
 }
 
+/// The order that waits for the aligner, which parts of any priority may give.
+#[derive(Default)]
+pub(crate) struct Orders {
+    waiting: Common<Option<Order>>,
+    given: Signal<Lock, ()>,
+}
+
+impl Orders {
+    /// Gives an order, unless one goes first that waits already.
+    fn give(&self, order: Order) {
+        let is_failure = |order: &Order| matches!(order, Order::Fail(_));
+        self.waiting.change(|waiting| {
+            let first = waiting.filter(|first| is_failure(first) || !is_failure(&order));
+            *waiting = Some(first.unwrap_or(order));
+        });
+        self.given.signal(());
+    }
+
+    /// The order that waits, which is taken.
+    pub(crate) fn try_take(&self) -> Option<Order> {
+        let mut taken = None;
+        self.waiting.change(|waiting| taken = waiting.take());
+        taken
+    }
+
+    /// Waits for an order, and takes it.
+    pub(crate) async fn take(&self) -> Order {
+        loop {
+            if let Some(order) = self.try_take() {
+                return order;
+            }
+            self.given.wait().await;
+        }
+    }
+}
+
 /// Signals and values between the parts, which may run at different priorities.
 pub struct Shared<'a> {
     /// From the aligner and the navigator to the mechanism: the request to obey. A new request
     /// replaces the one before.
     pub wanted: Signal<Lock, Request>,
     /// From any part to the aligner: what it is to do with its alignment.
-    pub orders: Signal<Lock, Order>,
+    pub(crate) orders: Orders,
     /// From acquisition to the mechanism: the sensors give data.
     pub sensing: Signal<Lock, ()>,
     /// From the mechanism to the aligner: the angles are valid. Without a mechanism they are valid
@@ -108,6 +147,8 @@ pub struct Shared<'a> {
     pub saving: Signal<Lock, Saving>,
     /// From the link to the mechanism: nothing more will happen.
     pub over: Signal<Lock, ()>,
+    /// From the mechanism to the board: a motor cannot be brought to rest, and its current is to be taken away.
+    pub current_off: Signal<Lock, ()>,
     /// From the aligner to the link: an alignment is over.
     pub concluded: Signal<Lock, ()>,
     /// How far the alignments are.
@@ -143,7 +184,7 @@ impl<'a> Shared<'a> {
         let unread = || Common::new((Angle(0), Instant::MIN));
         Self {
             wanted: Signal::new(),
-            orders: Signal::new(),
+            orders: Orders::default(),
             sensing: Signal::new(),
             homed: Signal::new(),
             motions: Channel::new(),
@@ -155,6 +196,7 @@ impl<'a> Shared<'a> {
             remembered: Signal::new(),
             saving: Signal::new(),
             over: Signal::new(),
+            current_off: Signal::new(),
             concluded: Signal::new(),
             alignments: Common::new(Alignments::First),
             is_kept: Common::new(false),
@@ -179,10 +221,7 @@ impl<'a> Shared<'a> {
     /// Gives the aligner an order. One that it has not obeyed yet goes first, unless it is replaced
     /// by a failure.
     pub fn order(&self, order: Order) {
-        let is_failure = |order: &Order| matches!(order, Order::Fail(_));
-        let before = self.orders.try_take();
-        let before = before.filter(|before| is_failure(before) || !is_failure(&order));
-        self.orders.signal(before.unwrap_or(order));
+        self.orders.give(order);
     }
 
     /// Ends the alignment with a reason.
@@ -237,7 +276,7 @@ impl<'a> Shared<'a> {
     /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs none, or is
     /// so far behind that motions would be lost. An azimuth of a sample before is none any more, then, for the navigator.
     pub(crate) fn may_move(&self) -> bool {
-        let is_filling = self.motions.len() > QUEUE / 2;
+        let is_filling = self.motions.len() >= WAITING;
         !self.is_behind.get() || self.is_computing.get() || is_filling
     }
 
@@ -274,7 +313,7 @@ impl<'a> Shared<'a> {
 
     /// Reports an alignment's progress, and updates the status that the link sends.
     pub fn progress(&self, progress: Progress) {
-        self.status.set(self.status.get().after(&progress));
+        self.status.change(|status| *status = status.after(&progress));
         if !matches!(progress, Progress::Roll(roll::Progress::Tracked(..))) {
             self.report(Event::Alignment(progress));
         }

@@ -197,4 +197,8 @@ impl<M: Actuator> Mechanism for Stage<'_, M> {
             }
         }
     }
+
+    async fn halt(&mut self) {
+        self.motor.halt().await;
+    }
 }

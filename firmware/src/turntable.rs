@@ -11,7 +11,7 @@
 use core::convert::Infallible;
 
 use embassy_futures::select::{Either, select};
-use embassy_time::{Duration, Instant, Timer};
+use embassy_time::{Instant, Timer};
 use orientation::alignment::Request;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Trouble;
@@ -20,15 +20,12 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
 use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
-use crate::motor::{Axis, Break, Motor, POLL, STALL_REST};
+use crate::motor::{Axis, Break, LONGEST_STOP, Motor, POLL, STALL_REST};
 use crate::ports::{Actuator, Command};
 use crate::shared::Shared;
 
 /// Number of stalls in a session after which the platform may turn on.
 const BLOCKS: u32 = 1;
-/// Time limit for coming to rest: from 90°/s at the motor driver's deceleration of 33°/s² it takes
-/// three seconds.
-const LONGEST_STOP: Duration = Duration::from_secs(10);
 
 /// Sectors of a turn in which motor and encoder are compared. Within one sector, a gear with an
 /// error of 0.5 % turns by 0.06° more or less than its motor.
@@ -67,27 +64,6 @@ impl<'a, M: Actuator> Turntable<'a, M> {
             rate: 0.0,
             blocks: 0,
         }
-    }
-
-    /// Brings the platform to rest, again after each break that permits it.
-    async fn rest(&mut self) {
-        for _ in 0..=BLOCKS {
-            // A driver that was started again has stopped its motor, and so has a stall.
-            if let Err(Break::Refused(_)) = self.stop().await {
-                return;
-            }
-        }
-    }
-
-    /// Brings the platform to rest by the motor's ramp, within 10 s.
-    async fn stop(&mut self) -> Result<(), Break> {
-        self.motor.look().await?;
-        if self.motor.motion.is_standing {
-            return Ok(());
-        }
-        self.motor.report(|axis| Event::Revolving(axis, 0.0));
-        self.motor.ask(Command::Seek(0.0)).await?;
-        self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
     }
 
     /// Decides whether the platform may turn on after a break: after a restart of the driver, whose
@@ -144,12 +120,12 @@ impl<'a, M: Actuator> Turntable<'a, M> {
     /// reversals of the rotation.
     async fn turn_at(&mut self, rate: f64) -> Result<(), Break> {
         // A stall must be detected here, where it can be named: the driver refuses to turn after
-        // it.
+        // it. What breaks it off goes on at the new rate.
+        let before = core::mem::replace(&mut self.rate, rate);
         self.watch().await?;
-        if rate == 0.0 || rate * self.rate <= 0.0 {
+        if rate == 0.0 || rate * before <= 0.0 {
             self.motor.report(|axis| Event::Revolving(axis, rate * DEGREES));
         }
-        self.rate = rate;
         self.motor.ask(Command::Seek(rate)).await
     }
 
@@ -188,9 +164,11 @@ impl<M: Actuator> Mechanism for Turntable<'_, M> {
         }
     }
 
-    /// Brings the platform to rest.
-    async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
-        select(self.rest(), meanwhile).await;
+    async fn halt(&mut self) {
+        if core::mem::take(&mut self.rate) != 0.0 {
+            self.motor.report(|axis| Event::Revolving(axis, 0.0));
+        }
+        self.motor.halt().await;
     }
 }
 

@@ -22,7 +22,7 @@ use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, FLASH_SIZE, Flash, MAX_ERASE_SIZE, WRITE_SIZE};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::FLASH;
-use embassy_time::Timer;
+use embassy_time::{Duration, Instant, Timer};
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
@@ -213,10 +213,25 @@ pub(crate) fn unlock() {
 /// Erases the page at this offset.
 async fn erase_page(offset: u32) -> Result<(), Trouble> {
     until(is_free).await?;
-    let _without_cache = WithoutCache::new();
+    let erasure = Erasure { _without_cache: WithoutCache::new() };
     begin_erasure(offset);
     let ended = until(|| !is_busy()).await;
-    end_erasure().and(ended)
+    drop(erasure);
+    is_accepted().and(ended)
+}
+
+/// An erasure that is under way. Who no longer waits for it drops it: it is then waited for here, and only after it is
+/// the cache on again.
+struct Erasure {
+    _without_cache: WithoutCache,
+}
+
+impl Drop for Erasure {
+    fn drop(&mut self) {
+        let deadline = Instant::now() + Duration::from_millis(LONGEST_MILLISECONDS.into());
+        while is_busy() && Instant::now() < deadline {}
+        end_erasure();
+    }
 }
 
 /// Begins to erase the page at this offset.
@@ -235,9 +250,13 @@ fn begin_erasure(offset: u32) {
 
 /// Leaves an erasure that is over, or counts as failed.
 #[inline(never)]
-fn end_erasure() -> Result<(), Trouble> {
+fn end_erasure() {
     pac::FLASH.cr().modify(|control| control.set_per(false));
     pac::FLASH.cr().modify(|control| control.set_lock(true));
+}
+
+/// Whether an erasure that has ended was one.
+fn is_accepted() -> Result<(), Trouble> {
     let status = pac::FLASH.sr().read();
     let is_refused = status.operr() || status.wrperr() || status.pgserr();
     if is_refused { Err(Trouble::Refused) } else { Ok(()) }
@@ -267,7 +286,7 @@ impl Pages for UpperBank {
         let is_over = !is_busy();
         if is_over {
             // A refusal shows in the rows.
-            let _ = end_erasure();
+            end_erasure();
             switch_cache_on();
         }
         is_over

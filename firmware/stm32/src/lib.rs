@@ -39,7 +39,9 @@ use core::future::pending;
 use core::pin::pin;
 
 use embassy_executor::SendSpawner;
+use embassy_futures::join::join;
 use embassy_futures::select::select;
+use embassy_stm32::gpio::Output;
 use embassy_time::{Duration, Timer};
 use firmware::acquire::{acquire, on_stage};
 use firmware::check_ins::{Checked, Part};
@@ -122,6 +124,22 @@ async fn control(mechanism: &mut impl Mechanism, keeping: impl Keep, shared: &Sh
     let until = (wait(shared), pending());
     operate(mechanism, keeping, &(), shared, until).await;
     pending::<()>().await;
+}
+
+/// Serves a mechanism with motors and keeps the attitude, for ever; takes the motors their current where one cannot be
+/// brought to rest.
+async fn control_motors(
+    mechanism: &mut impl Mechanism,
+    mut motor_enable: Output<'static>,
+    keeping: impl Keep,
+    shared: &Shared<'static>,
+) {
+    let switching_off = async {
+        shared.current_off.wait().await;
+        // Active low.
+        motor_enable.set_high();
+    };
+    join(control(mechanism, keeping, shared), switching_off).await;
 }
 
 /// Waits for the end of all. Once a second the parts beside it are woken, to check in.

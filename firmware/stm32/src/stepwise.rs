@@ -19,8 +19,8 @@ use static_cell::StaticCell;
 use crate::ports::{AxisMotor, MountInputs};
 use crate::wiring::{AxisPlatformWires, FramesWires, Link, Outlets};
 use crate::{
-    Begun, Channels, Executors, OnBase, channels, configuration, control, go_on, keeping, on_base,
-    ports, settings, stage_acquisition,
+    Begun, Channels, Executors, OnBase, channels, configuration, control_motors, go_on, keeping,
+    on_base, ports, settings, stage_acquisition,
 };
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
@@ -68,8 +68,7 @@ async fn stage(
 ) {
     let shared = &channels.shared;
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, shared);
-    control(&mut stage, keeping, shared).await;
-    drop(motor_enable);
+    control_motors(&mut stage, motor_enable, keeping, shared).await;
 }
 
 /// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
@@ -130,8 +129,8 @@ async fn mount(
     channels: &'static Channels,
 ) {
     let shared = &channels.shared;
-    control(&mut Gimbal::new(&mut motors, frames, shared), keeping, shared).await;
-    drop(motor_enable);
+    let mut mount = Gimbal::new(&mut motors, frames, shared);
+    control_motors(&mut mount, motor_enable, keeping, shared).await;
 }
 
 /// Creates the session at its final place in memory.

@@ -18,8 +18,8 @@ use crate::flash::Store;
 use crate::ports::AxisMotor;
 use crate::wiring::{AxisPlatformWires, Link, Outlets};
 use crate::{
-    Channels, Executors, channels, configuration, control, find_and_report, keeping, on_base,
-    ports, refuse, settings, stage_acquisition,
+    Channels, Executors, channels, configuration, control_motors, find_and_report, keeping,
+    on_base, ports, refuse, settings, stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -71,8 +71,7 @@ async fn platform(
 ) {
     let shared = &channels.shared;
     let mut platform = Turntable::new(&mut motor, &configuration::platform(), shared);
-    control(&mut platform, keeping, shared).await;
-    drop(motor_enable);
+    control_motors(&mut platform, motor_enable, keeping, shared).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.

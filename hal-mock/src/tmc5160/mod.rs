@@ -131,6 +131,10 @@ pub struct Tmc5160 {
     events: u32,
     /// What the chip suffers from.
     chip_fault: ChipFault,
+    /// Where the rotor was left when the bridges went off, in microsteps of the field.
+    left: Option<i64>,
+    /// Whole electrical periods by which the rotor stands beside the field since then, in microsteps.
+    slipped: i64,
     /// Levels of REFL and REFR.
     pins: [bool; 2],
     /// The active switches at the last look, left and right.
@@ -170,6 +174,8 @@ impl Tmc5160 {
             ramp: Ramp::at(0),
             events: 0,
             chip_fault: ChipFault::None,
+            left: None,
+            slipped: 0,
             pins: [false; 2],
             stops_seen: 0,
             was_reached: false,
@@ -194,6 +200,16 @@ impl Tmc5160 {
     /// cleared. A loss of supply does not end it.
     pub fn inject(&mut self, chip_fault: ChipFault) {
         self.chip_fault = chip_fault;
+        match (chip_fault == ChipFault::Disabled, self.left) {
+            (true, None) => self.left = Some(self.field()),
+            (false, Some(left)) => {
+                // The rotor is drawn to the nearest place of the same phase.
+                let beside = left - self.ramp.motion.field;
+                self.slipped = (beside + PERIOD / 2).div_euclid(PERIOD) * PERIOD;
+                self.left = None;
+            }
+            _ => {}
+        }
         self.catch_errors();
     }
 
@@ -203,10 +219,10 @@ impl Tmc5160 {
         self.value(address & 0x7F)
     }
 
-    /// Where the motor's field stands, microsteps, 0 where the chip began.
+    /// Where the motor's field stands as the rotor follows it, microsteps, 0 where the chip began.
     #[must_use]
     pub fn field(&self) -> i64 {
-        self.ramp.motion.field
+        self.ramp.motion.field + self.slipped
     }
 
     /// Clocks until `now`, whole ones.
@@ -244,10 +260,13 @@ impl Tmc5160 {
         self.note();
     }
 
-    /// Turns the field.
+    /// Turns the rotor with the field; with the bridges off it stays where it was left.
     fn drive(&self, environment: &mut impl Mechanics) {
-        let Motion { field, fraction, velocity } = self.ramp.motion;
-        let fine = field << FIELD_BITS | fraction >> (FRACTION_BITS - FIELD_BITS);
+        if let Some(left) = self.left {
+            return environment.drive(self.at, left as f64, 0.0);
+        }
+        let Motion { fraction, velocity, .. } = self.ramp.motion;
+        let fine = self.field() << FIELD_BITS | fraction >> (FRACTION_BITS - FIELD_BITS);
         let per_second = velocity as f64 * self.per_second;
         environment.drive(self.at, fine as f64 * (1.0 / f64::from(1 << FIELD_BITS)), per_second);
     }
@@ -369,9 +388,10 @@ impl<E: Mechanics> SpiChip<E> for Tmc5160 {
     }
 
     fn power_cycle(&mut self, now: Instant) {
-        let field = self.field();
+        let field = self.left.unwrap_or_else(|| self.field());
         let violations = core::mem::take(&mut self.violations);
-        *self = Self { chip_fault: self.chip_fault, ..Self::new(self.oscillator, now) };
+        let Self { chip_fault, left, .. } = *self;
+        *self = Self { chip_fault, left, ..Self::new(self.oscillator, now) };
         // The rotor is drawn to the nearest beginning of an electrical period.
         self.ramp = Ramp::at((field + PERIOD / 2).div_euclid(PERIOD) * PERIOD);
         self.ramp.ask(Demand::of(&self.registers));

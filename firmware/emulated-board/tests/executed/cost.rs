@@ -1,6 +1,7 @@
 //! What the images need of the controller's time and memory.
 
 use execution::report::Report;
+use firmware::budget;
 use firmware::platform::Platform;
 
 use super::support::executed::{executed, sampled_fast};
@@ -15,30 +16,33 @@ fn all_in(report: &Report) -> f64 {
 /// The goal is that of 2 000 samples a second, which the converter does not have: what each sample takes, and what each
 /// second takes whatever their number, such as reading the IMU on the base, are told apart by 400 and 2 400 samples.
 #[test]
-fn a_sample_on_a_stage_takes_4000_instructions_at_most() {
+fn a_sample_on_a_stage_takes_no_more_than_its_budget() {
     let executions = [executed(Platform::Stage, 1), sampled_fast(Platform::Stage)];
     let [slow, fast] = executions.map(|shown| all_in(&shown.report));
     let sample = (2400.0 * fast - 400.0 * slow) / (2400.0 - 400.0);
     let second = 400.0 * (slow - sample);
     let words = "instructions a sample takes at 2 000 a second, the base's IMU included";
-    within(sample + second / 2000.0, 0.0..=4000.0, words);
-    within(fast, 0.0..=4000.0, "instructions a sample takes at 2 400 a second");
+    let most = budget::BOARD_STAGE_SAMPLE_INSTRUCTIONS as f64;
+    within(sample + second / 2000.0, 0.0..=most, words);
+    within(fast, 0.0..=most, "instructions a sample takes at 2 400 a second");
 }
 
 /// At 2 400 samples a second, as the budget of the emulator's image has it.
 #[test]
-fn a_sample_on_a_turntable_takes_4000_instructions_at_most() {
+fn a_sample_on_a_turntable_takes_no_more_than_its_budget() {
     let shown = sampled_fast(Platform::Turntable);
     let words = "instructions a sample on a turntable takes all in, the base's IMU included";
-    within(all_in(&shown.report), 0.0..=4000.0, words);
+    let most = budget::BOARD_TURNTABLE_SAMPLE_INSTRUCTIONS as f64;
+    within(all_in(&shown.report), 0.0..=most, words);
 }
 
 /// At 2 400 samples a second, as the budget of the emulator's image has it.
 #[test]
-fn a_sample_on_two_frames_takes_5400_instructions_at_most() {
+fn a_sample_on_two_frames_takes_no_more_than_its_budget() {
     let shown = sampled_fast(Platform::TwoFrame);
     let words = "instructions a sample on two frames takes all in, the base's IMU included";
-    within(all_in(&shown.report), 0.0..=5400.0, words);
+    let most = budget::BOARD_TWO_FRAME_SAMPLE_INSTRUCTIONS as f64;
+    within(all_in(&shown.report), 0.0..=most, words);
 }
 
 /// The image of 2 400 samples a second is as sound as the usual one.
@@ -58,9 +62,18 @@ fn nothing_is_lost_at_2400_samples_a_second() {
 
 /// At 400 samples of three gyros and an accelerometer a second.
 #[test]
-fn a_sample_of_three_gyros_takes_8000_instructions_at_most() {
+fn a_sample_of_three_gyros_takes_no_more_than_its_budget() {
     let words = "instructions a sample of three gyros in a vehicle takes all in";
-    within(all_in(&executed(Platform::Vehicle, 1).report), 0.0..=8000.0, words);
+    let most = budget::BOARD_VEHICLE_SAMPLE_INSTRUCTIONS as f64;
+    within(all_in(&executed(Platform::Vehicle, 1).report), 0.0..=most, words);
+}
+
+/// At 14 400 samples of five converters a second.
+#[test]
+fn a_sample_of_a_spinning_body_takes_no_more_than_its_budget() {
+    let words = "instructions a sample of a spinning body takes all in";
+    let most = budget::BOARD_SPIN_SAMPLE_INSTRUCTIONS as f64;
+    within(all_in(&executed(Platform::Spin, 1).report), 0.0..=most, words);
 }
 
 /// Bytes of stack at the deepest, and half of what the statics leave.

@@ -3,6 +3,7 @@
 use emulated_board::run::Order;
 use execution::built::root;
 use execution::report::{FlashUse, Report};
+use firmware::budget;
 use firmware::platform::Platform;
 
 use super::support::executed::{Executed, execute_anew, executed, executed_by};
@@ -19,18 +20,6 @@ pub(super) fn distance(a: f64, b: f64) -> f64 {
 pub(super) fn azimuth(report: &Report) -> (f64, f64) {
     let [azimuth, sigma, _] = report.azimuth_deg.unwrap_or_else(|| panic!("{}", report.outcome));
     (azimuth, sigma)
-}
-
-/// A figure of the budget.
-fn budget(name: &str) -> f64 {
-    let text = std::fs::read_to_string(root().join("firmware/budget.toml"))
-        .expect("the budget can be read");
-    let line = text
-        .lines()
-        .find(|line| line.starts_with(name))
-        .unwrap_or_else(|| panic!("no {name} in the budget"));
-    let figure = line.split(['=', '#']).nth(1).expect("a line of the budget has a figure");
-    figure.trim().replace('_', "").parse().expect("a figure of the budget is a number")
 }
 
 #[test]
@@ -108,11 +97,11 @@ fn flash_and_static_ram_of_every_image_are_within_the_budget() {
     for carrier in Platform::ALL {
         let Report { flash_bytes, static_bytes, .. } = executed(carrier, 1).report;
         assert!(
-            f64::from(flash_bytes) <= budget("board_flash_bytes"),
+            u64::from(flash_bytes) <= budget::BOARD_FLASH_BYTES,
             "{carrier}: {flash_bytes} bytes of flash"
         );
         assert!(
-            f64::from(static_bytes) <= budget("board_static_ram_bytes"),
+            u64::from(static_bytes) <= budget::BOARD_STATIC_RAM_BYTES,
             "{carrier}: {static_bytes} bytes of RAM"
         );
     }

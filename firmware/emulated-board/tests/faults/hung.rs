@@ -71,6 +71,29 @@ fn a_platform_comes_to_rest_where_a_transfer_of_the_sensors_hangs() {
     within(turning(&board).abs(), 0.0..=1.0, words);
 }
 
+/// Where each transfer hangs that goes to a motor's driver, its current is taken away.
+#[test]
+fn a_platform_comes_to_rest_where_each_transfer_of_the_motors_hangs() {
+    let TurningBoard { mut board, turning } = TurningBoard::new();
+    board.controller(|controller| controller.spi[1].is_stuck = true);
+    board.until("not brought to rest: the motors' current is taken away", 12.0);
+    board.run(3.0);
+    let words = "°/s a platform turns three seconds after the motors' current is taken away";
+    within(turning(&board).abs(), 0.0..=1.0, words);
+}
+
+/// What was given up is brought to rest even if its bus works again.
+#[test]
+fn a_platform_comes_to_rest_where_transfers_of_the_motors_hang_for_three_seconds() {
+    let TurningBoard { mut board, turning } = TurningBoard::new();
+    board.controller(|controller| controller.spi[1].is_stuck = true);
+    board.run(3.0);
+    board.controller(|controller| controller.spi[1].is_stuck = false);
+    board.run(12.0);
+    let words = "°/s a platform turns twelve seconds after its bus works again";
+    within(turning(&board).abs(), 0.0..=1.0, words);
+}
+
 /// A transfer that hangs once costs a reading.
 #[test]
 fn a_platform_turns_on_and_is_measured_where_one_transfer_of_the_sensors_hangs() {

@@ -217,7 +217,8 @@ impl Interrupted {
                         return last.cut(start, loss, lost);
                     }
                     let (after, starts) = restarted(lost);
-                    if starts && place != 0 { after } else { items.saved(start, place) }
+                    assert!(starts, "a board starts from what a loss of supply leaves");
+                    if place != 0 { after } else { items.saved(start, place) }
                 }
             }
         }

@@ -16,7 +16,7 @@ const ONE: i64 = 1 << 62;
 const UPPER: f32 = 1.0 / (1u32 << 30) as f32;
 /// Bits of the steps, of which 2ᴮ are a radian, in which half a rotation is taken.
 const FINE: u32 = 35;
-/// Largest rotation applied at once, rad: up to it the series are accurate to 1e-11, and half of it is less than 2³¹ steps.
+/// Largest rotation applied at once, rad: up to it the series are accurate to 3e-11, and half of it is less than 2³¹ steps.
 const LARGEST: f32 = 0.1;
 /// Bits of the steps of a small rotation: of the Earth's rotation in 20 ms, a step is 6e-7.
 const FINER: u32 = 41;

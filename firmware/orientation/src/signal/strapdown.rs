@@ -3,15 +3,14 @@
 //! Strapdown Inertial Navigation Integration Algorithm Design, Part 1, 1998).
 //!
 //! ```text
-//!  angle increments ─▶ sum, coning (integer, f32) ─50 Hz─▶ quaternion (f64) ─▶ frozen start frame
+//!  angle increments ─▶ sum, coning (integer, f32) ─50 Hz─▶ quaternion (i64) ─▶ frozen start frame
 //!  forces ────────────▶ mean ────────────────────────────▶ turned there      ─▶ sums
 //! ```
 //!
 //! The reference frame is that of the body at the first sample, frozen in inertial space, so no
 //! azimuth is needed to carry the attitude. The sensitivity of the attitude to gyro errors is
 //! carried beside it: ∂/∂bias and ∂/∂scale, 3×3 each, so a drive of any length takes the same
-//! memory. Two rates are used because single-precision quaternion updates at 2 kHz lose about
-//! 0.005° in an hour.
+//! memory. Two rates are used because an update of the quaternion takes three times what a sum does.
 
 use super::InertialSample;
 use super::increment::{Increment, STEADY, STEP};

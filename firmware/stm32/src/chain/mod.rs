@@ -194,6 +194,8 @@ impl Chain {
             clear();
             BUS.reset();
             self.wires().iter().for_each(Wires::release);
+            // Edges of before, which were not watched, are no edges of now.
+            EXTI.pr(0).write_value(Lines(self.lines()));
             EXTI.imr(0).modify(|lines| lines.0 |= self.lines());
         });
     }

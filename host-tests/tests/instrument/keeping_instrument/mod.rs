@@ -5,6 +5,7 @@ mod faults;
 mod handing;
 mod healthy;
 mod realigning;
+mod remembering;
 mod restart;
 
 use embassy_time::Instant;

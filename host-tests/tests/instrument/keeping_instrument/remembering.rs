@@ -1,0 +1,63 @@
+//! A store that fails while the keeper's heading is to be kept or forgotten.
+
+use std::cell::{Cell, RefCell};
+
+use drivers::fault::Fault;
+use embassy_time::{Duration, Instant, Timer};
+use firmware::event::Event;
+use firmware::keep::remember;
+use firmware::ports::{Observer, Store};
+use firmware::shared::{Saving, Shared};
+use host::virtual_time;
+
+/// How often it was reported that the heading cannot be kept.
+#[derive(Default)]
+struct Reported(Cell<u32>);
+
+impl Observer for Reported {
+    fn event(&self, _: Instant, event: &Event) {
+        let counted = u32::from(matches!(event, Event::HeadingNotKept(_)));
+        self.0.set(self.0.get() + counted);
+    }
+}
+
+/// A store that fails to forget so many times, and when it was asked to, s.
+struct Failing<'a> {
+    failures: usize,
+    asked: &'a RefCell<Vec<u64>>,
+}
+
+impl Store for Failing<'_> {
+    async fn load<const N: usize>(&mut self, _: u8) -> Result<Option<[u8; N]>, Fault> {
+        Ok(None)
+    }
+
+    async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    async fn forget(&mut self, _: u8) -> Result<(), Fault> {
+        self.asked.borrow_mut().push(Instant::now().as_secs());
+        let is_failing = self.asked.borrow().len() <= self.failures;
+        if is_failing { Err(Fault::NotReady) } else { Ok(()) }
+    }
+}
+
+/// A heading from before the drive must not be recalled after it.
+#[test]
+fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
+    let (reported, asked) = (Reported::default(), RefCell::default());
+    let shared = Shared::new(&reported);
+    let mut store = Failing { failures: 3, asked: &asked };
+    let driving = async {
+        shared.saving.signal(Saving::Nothing);
+        Timer::after(Duration::from_secs(120)).await;
+    };
+    let remembering = async {
+        remember(&mut store, &shared).await;
+    };
+    virtual_time::run_beside(remembering, driving).expect("time wakes both");
+    let waits: Vec<_> = asked.borrow().windows(2).map(|times| times[1] - times[0]).collect();
+    assert_eq!(waits, [10, 10, 10], "asked at {:?} s", asked.borrow());
+    assert_eq!(reported.0.get(), 1, "it is told once");
+}
