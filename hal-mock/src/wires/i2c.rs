@@ -53,6 +53,8 @@ enum State {
     Reading,
     /// Something was not acknowledged.
     Over,
+    /// The clock stopped amid a byte that the chip sends: its bits from the one on the wire on, ones behind them.
+    Stopped(u8),
 }
 
 /// The wires of an I²C bus with one chip. What breaks a rule of the bus is recorded and does not reach the
@@ -95,8 +97,10 @@ impl I2cWires {
         at: u64,
     ) -> bool {
         match self.state {
-            State::Free => (self.since, self.end) = (at, at),
-            State::Reading => return self.breaks(I2cRule::StillDriven, at),
+            State::Free | State::Stopped(_) if !self.is_data_low() => {
+                (self.since, self.end) = (at, at);
+            }
+            State::Reading | State::Stopped(_) => return self.breaks(I2cRule::StillDriven, at),
             _ => {}
         }
         self.hertz = hertz;
@@ -115,7 +119,7 @@ impl I2cWires {
     pub fn write<C: I2cChip<E>, E>(&mut self, rig: &mut Single<C, E>, byte: u8, at: u64) -> bool {
         match self.state {
             State::Writing => {}
-            State::Free => return self.breaks(I2cRule::NotStarted, at),
+            State::Free | State::Stopped(_) => return self.breaks(I2cRule::NotStarted, at),
             State::Over => return self.breaks(I2cRule::AfterNoAcknowledge, at),
             State::Turned | State::Reading => return self.breaks(I2cRule::WrongDirection, at),
         }
@@ -136,7 +140,7 @@ impl I2cWires {
     ) -> u8 {
         let broken = match self.state {
             State::Turned | State::Reading => None,
-            State::Free => Some(I2cRule::NotStarted),
+            State::Free | State::Stopped(_) => Some(I2cRule::NotStarted),
             State::Over => Some(I2cRule::AfterNoAcknowledge),
             State::Writing => Some(I2cRule::WrongDirection),
         };
@@ -149,6 +153,29 @@ impl I2cWires {
         rig.chip.read(&mut rig.environment, instant_after(at))
     }
 
+    /// The clock stops, while it is high, amid a byte that is read from `at` ns on; the bit of this number is on the wire,
+    /// from 0, 8 being the acknowledge. The chip drives the line until the clock goes on, or until a start or a stop, which
+    /// it can see while its bit is a one (UM10204, 3.1.16).
+    pub fn stop_clock<C: I2cChip<E>, E>(&mut self, rig: &mut Single<C, E>, bit: u32, at: u64) {
+        rig.pass(instant(at));
+        self.state = State::Stopped(rig.chip.read(&mut rig.environment, instant_after(at)));
+        (0..bit).for_each(|_| self.clock_falls());
+    }
+
+    /// Whether a chip holds the data line low, in the midst of a byte.
+    #[must_use]
+    pub const fn is_data_low(&self) -> bool {
+        matches!(self.state, State::Stopped(bits) if bits < 0x80)
+    }
+
+    /// The clock, which had stopped, falls: the chip puts its next bit on the wire, none behind the last. The acknowledge
+    /// is not modelled: what stopped the clock wants no further byte.
+    pub const fn clock_falls(&mut self) {
+        if let State::Stopped(bits) = &mut self.state {
+            *bits = *bits << 1 | 1;
+        }
+    }
+
     /// A stop condition at `at` ns.
     pub fn stop<C: I2cChip<E>, E>(&mut self, rig: &mut Single<C, E>, at: u64) {
         match self.state {
@@ -159,18 +186,26 @@ impl I2cWires {
             State::Reading => {
                 self.breaks(I2cRule::StillDriven, at);
             }
+            // The data line does not rise: the chip sees no stop.
+            State::Stopped(_) if self.is_data_low() => return,
             _ => {}
         }
-        self.take(rig, 0, at);
+        self.pause(rig, at);
         self.state = State::Free;
         rig.chip.stop(&mut rig.environment, instant(self.since));
     }
 
-    /// Something of so many bits begins: the chip does what is due, and a pause is noted.
+    /// Something of so many bits begins, perhaps after a pause.
     fn take<C: I2cChip<E>, E>(&mut self, rig: &mut Single<C, E>, bits: u64, at: u64) {
+        self.pause(rig, at);
+        self.end += half_bits(2 * bits, self.hertz);
+    }
+
+    /// The chip does what is due, and a pause until now is noted.
+    fn pause<C: I2cChip<E>, E>(&mut self, rig: &mut Single<C, E>, at: u64) {
         rig.pass(instant(at));
         self.since += at.saturating_sub(self.end);
-        self.end = at + half_bits(2 * bits, self.hertz);
+        self.end = at;
     }
 
     /// Records a broken rule, of which nothing comes: no acknowledge.

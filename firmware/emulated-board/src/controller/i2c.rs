@@ -1,9 +1,9 @@
 //! An I²C interface that masters its bus (RM0351, chapter 39): 7-bit addresses, transfers of up to 255 bytes and
 //! longer ones by reloading, automatic stop, direct memory access.
 
-use super::Refused;
+use super::{Refused, pins};
 use crate::time::Time;
-use crate::wiring::I2cBus;
+use crate::wiring::{I2cBus, Wiring};
 
 /// Flags of `I2C_ISR`.
 const TXE: u32 = 1;
@@ -106,14 +106,26 @@ impl I2c {
     }
 
     /// Does what is due: ends what is on the wires until now, and begins what follows.
-    pub fn advance(&mut self, now: Time, clock: u64, bus: &mut dyn I2cBus) {
+    pub fn advance(&mut self, now: Time, clock: u64, bus: &mut dyn Wiring) {
         if self.hangs {
             return;
         }
         if let Some((wire, [begin, _])) = self.wire.take_if(|(_, [_, end])| *end <= now) {
             self.end(wire, [begin, now], clock, bus);
         }
-        self.begin(now, clock);
+        if self.has_work() && (self.is_owner || !is_data_low(bus, now)) {
+            self.begin(now, clock);
+        }
+    }
+
+    /// The interface lets both wires go, whatever is on them: a device that sends a byte waits for the rest of its clocks.
+    pub fn let_go(&mut self, now: Time, clock: u64, bus: &mut dyn I2cBus) {
+        let reads = self.is_owner && self.control[1] & (READS | START) == READS && self.left > 0;
+        if reads && !self.hangs {
+            let began = self.wire.map_or(now, |(_, [begin, _])| begin);
+            let bit = (now - began).count(self.hertz(clock).into());
+            bus.stop_clock(bit as u32, began);
+        }
     }
 
     /// What is on the wires has ended.
@@ -151,20 +163,20 @@ impl I2c {
         }
     }
 
+    /// Whether something may begin.
+    const fn has_work(&self) -> bool {
+        let is_asked = self.is_owner || self.control[1] & START != 0;
+        self.control[0] & 1 != 0 && self.wire.is_none() && is_asked
+    }
+
     /// Begins what can begin.
     fn begin(&mut self, now: Time, clock: u64) {
-        if self.control[0] & 1 == 0 || self.wire.is_some() {
-            return;
-        }
         let control = self.control[1];
         if control & START != 0 {
             self.is_owner = true;
             self.left = control >> 16 & 0xFF;
             self.flags &= !(TC | TCR);
             return self.put(Wire::Address, 10, now, clock);
-        }
-        if !self.is_owner {
-            return;
         }
         if control & STOP != 0 {
             return self.put(Wire::Stop, 1, now, clock);
@@ -207,33 +219,33 @@ impl I2c {
         self.control[0] & 1 << 15 != 0 && self.received.is_some()
     }
 
-    /// The status (39.7.7).
-    fn status(&self) -> u32 {
+    /// The status (39.7.7). The bus is busy while a device holds the data line low.
+    pub fn status(&self, is_data_low: bool) -> u32 {
         let mut status = self.flags;
         status |= if self.waiting.is_none() { TXE } else { 0 };
         status |= if self.is_empty() { TXIS } else { 0 };
         status |= if self.received.is_some() { RXNE } else { 0 };
-        status |= if self.is_owner { BUSY } else { 0 };
+        let is_busy = self.is_owner || is_data_low && self.control[0] & 1 != 0;
+        status |= if is_busy { BUSY } else { 0 };
         status
     }
 
     /// Whether it interrupts by an event, and by an error.
     pub fn interrupts(&self) -> [bool; 2] {
-        let (status, control) = (self.status(), self.control[0]);
+        let (status, control) = (self.status(false), self.control[0]);
         let by = |bit: u32, flags: u32| control & bit != 0 && status & flags != 0;
         let event =
             by(2, TXIS) || by(4, RXNE) || by(16, NACKF) || by(32, STOPF) || by(64, TC | TCR);
         [event, by(128, 0x3F00)]
     }
 
-    /// Reads a register.
+    /// Reads a register other than the status.
     pub fn read(&mut self, offset: u32) -> Result<u32, Refused> {
         Ok(match offset {
             0x00 | 0x04 => self.control[(offset / 4) as usize],
             0x10 => self.timing,
             // It has no address of its own, and no time-outs.
             0x08 | 0x0C | 0x14 => 0,
-            0x18 => self.status(),
             0x24 => self.received.take().unwrap_or(0).into(),
             0x28 => self.waiting.unwrap_or(0).into(),
             _ => return Err(Refused::Unknown),
@@ -274,6 +286,11 @@ impl I2c {
         }
         Ok(())
     }
+}
+
+/// Whether a device holds the data line low.
+pub fn is_data_low(wiring: &mut dyn Wiring, now: Time) -> bool {
+    !wiring.level(pins::I2C[1].pin, now)
 }
 
 /// What a write of a register asks for that is not modelled.

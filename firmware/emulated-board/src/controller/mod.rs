@@ -172,7 +172,8 @@ impl Controller {
         self.system = System::new();
         self.usart.reset();
         self.exti.reset();
-        (self.dma, self.i2c) = (Default::default(), I2c::new());
+        self.dma = Default::default();
+        self.reset_i2c(now);
         self.timer = Timer::new(self.hertz);
         self.spi.iter_mut().for_each(Spi::reset);
         self.watchdog = Watchdog::default();
@@ -185,6 +186,12 @@ impl Controller {
             self.drive(index, now);
         }
         self.reclock(now);
+    }
+
+    /// Puts the interface of the base's bus into reset.
+    fn reset_i2c(&mut self, now: Time) {
+        self.i2c.let_go(now, self.hertz, &mut *self.wiring);
+        self.i2c = I2c::new();
     }
 
     /// Clock of the core, Hz.

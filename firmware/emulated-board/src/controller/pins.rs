@@ -13,7 +13,7 @@ pub struct Signal {
     /// Its name in the data sheet.
     name: &'static str,
     /// The pin.
-    pin: Pin,
+    pub pin: Pin,
     /// The number of the alternate function that connects them.
     function: u32,
     /// Whether the pin must only ever pull its wire down, since others do so, too.

@@ -2,7 +2,7 @@
 
 use super::dma::Dma;
 use super::gpio::Port;
-use super::i2c::I2c;
+use super::i2c::is_data_low;
 use super::map::{Peripheral, peripheral};
 use super::power::Power;
 
@@ -26,6 +26,9 @@ impl Controller {
         let offset = address & 0x3FC;
         let word = match self.clocked(address)? {
             Peripheral::Spi(bus) => self.spi[bus].read(offset, size),
+            Peripheral::I2c if offset == 0x18 => {
+                Ok(self.i2c.status(is_data_low(&mut *self.wiring, now)))
+            }
             Peripheral::I2c => self.i2c.read(offset),
             Peripheral::Power => self.power.read(offset),
             Peripheral::Watchdog => self.watchdog.read(offset),
@@ -97,7 +100,12 @@ impl Controller {
         let offset = address & 0x3FF;
         match peripheral {
             Peripheral::Spi(bus) => self.spi[bus].write(offset, value, size),
-            Peripheral::I2c => self.i2c.write(offset, value),
+            Peripheral::I2c => {
+                if offset == 0 && value & 1 == 0 {
+                    self.i2c.let_go(now, self.hertz, &mut *self.wiring);
+                }
+                self.i2c.write(offset, value)
+            }
             Peripheral::Power => self.power.write(offset, value),
             Peripheral::Watchdog => self.watchdog.write(offset, value, now),
             Peripheral::System => {
@@ -146,7 +154,7 @@ impl Controller {
                     self.drive(bit as usize, now);
                 }
                 (0x38, 14) => self.spi[1].reset(),
-                (0x38, 22) => self.i2c = I2c::new(),
+                (0x38, 22) => self.reset_i2c(now),
                 (0x38, 28) => self.power = Power::default(),
                 (0x40, 0) => self.exti.reset_ports(),
                 (0x40, 12) => self.spi[0].reset(),

@@ -59,6 +59,8 @@ pub const SPIN: Selects = &[
 ];
 /// The pin that enables the motor drivers, active low.
 const MOTORS: Pin = Pin::named(b"PD2");
+/// Clock and data of the bus of the base.
+const TWO_WIRES: [Pin; 2] = [Pin::named(b"PB10"), Pin::named(b"PB11")];
 /// The pin to which the virtual COM port sends, which drives its wire at all times.
 const LINK: Pin = Pin::named(b"PB7");
 /// Rate of the virtual COM port at the other side of the link, baud, as the README states it.
@@ -180,6 +182,8 @@ pub struct Board {
     lines: Vec<Line>,
     /// The IMU on the base, and the bus to it.
     base: (Option<BaseImu>, I2cWires),
+    /// Whether the pins of its clock and data, as outputs, hold these wires low.
+    pulled: [bool; 2],
     /// Whether the motor drivers are enabled.
     motors: bool,
     /// When the latest byte on a serial bus began.
@@ -213,6 +217,7 @@ impl Board {
             selects,
             lines,
             base,
+            pulled: [false; 2],
             motors: true,
             begun: Time::ZERO,
             other_rate: None,
@@ -224,6 +229,17 @@ impl Board {
     fn look(&mut self, now: Time) {
         for line in &mut self.lines {
             line.next = self.carrier.borrow_mut().ready_line(line.select, now.instant()).next;
+        }
+    }
+
+    /// A pin holds a wire of the base's bus low, 0 its clock and 1 its data, or no longer: what the device sees of it. A
+    /// start by the pins is not modelled.
+    fn pull(&mut self, wire: usize, is_low: bool, now: Time) {
+        let was_low = std::mem::replace(&mut self.pulled[wire], is_low);
+        match (wire, was_low, is_low) {
+            (0, false, true) => self.base.1.clock_falls(),
+            (1, true, false) if !self.pulled[0] => self.stop(now),
+            _ => {}
         }
     }
 
@@ -268,6 +284,12 @@ impl I2cBus for Board {
             wires.stop(base, now.as_nanoseconds());
         }
     }
+
+    fn stop_clock(&mut self, bit: u32, began: Time) {
+        if let (Some(base), wires) = &mut self.base {
+            wires.stop_clock(base, bit, began.as_nanoseconds());
+        }
+    }
 }
 
 impl Wiring for Board {
@@ -293,8 +315,11 @@ impl Wiring for Board {
                 self.carrier.borrow_mut().enable_motors(is_enabled);
             }
         }
-        // Resistors pull select lines up where nothing drives them.
+        // Resistors pull select lines, and the two wires, up where nothing drives them.
         let is_low = level == Some(false);
+        if let Some(wire) = TWO_WIRES.iter().position(|own| *own == pin) {
+            self.pull(wire, is_low, now);
+        }
         for (_, bus, select) in self.selects.iter().filter(|(own, ..)| *own == pin) {
             self.buses[*bus].set_select(
                 &mut *self.carrier.borrow_mut(),
@@ -309,6 +334,9 @@ impl Wiring for Board {
     }
 
     fn level(&mut self, pin: Pin, now: Time) -> bool {
+        if pin == TWO_WIRES[1] {
+            return !self.base.1.is_data_low();
+        }
         let line = self.lines.iter().find(|line| line.pin == pin);
         // What nothing drives is pulled up.
         line.is_none_or(|line| {

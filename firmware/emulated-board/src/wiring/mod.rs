@@ -50,6 +50,10 @@ pub trait I2cBus {
 
     /// A stop.
     fn stop(&mut self, now: Time);
+
+    /// The clock stops, while it is high, amid a byte from the device that began then; the bit of this number is on the
+    /// wire, from 0, 8 being the acknowledge. The device goes on driving it.
+    fn stop_clock(&mut self, bit: u32, began: Time);
 }
 
 /// What is connected to the pins. Times never fall.

@@ -1,8 +1,9 @@
 //! Serial buses with direct memory access, and the two-wire bus.
 
 use embedded_hal::spi::{MODE_1, MODE_3};
-use emulated_board::controller::Refused;
+use emulated_board::controller::{Refused, ResetReason};
 use emulated_board::time::Time;
+use emulated_board::wiring::Pin;
 
 use super::{Bench, MEMORY};
 
@@ -309,4 +310,56 @@ fn an_address_that_nobody_has_is_told() {
     bench.write(I2C + 4, 0x20 | 1 << 16 | 1 << 13 | 1 << 25);
     bench.pass(Time::microseconds(200));
     assert_eq!(bench.read(I2C + 0x18) & 0x30, 0x30, "no acknowledge, and a stop");
+}
+
+#[test]
+fn the_two_wire_bus_is_busy_while_its_data_line_is_low_and_a_start_waits_for_it() {
+    let mut bench = Bench::new();
+    bench.wires.0.borrow_mut().low.push(Pin::named(b"PB11"));
+    bench.write(I2C + 0x10, 0x0010_0408);
+    let is_busy = |bench: &mut Bench| bench.read(I2C + 0x18) >> 15 & 1 != 0;
+    assert!(!is_busy(&mut bench), "the interface is off (39.7.7)");
+    bench.write(I2C, 1);
+    assert!(is_busy(&mut bench));
+    bench.write(I2C + 4, 0xD4 | 1 << 16 | 1 << 13);
+    bench.pass(Time::microseconds(1000));
+    assert!(is_busy(&mut bench) && bench.wires.0.borrow().conditions.is_empty());
+    bench.wires.0.borrow_mut().low.clear();
+    bench.read(I2C);
+    bench.pass(Time::microseconds(100));
+    assert_eq!(bench.wires.0.borrow().conditions, ["start 0x6a writes"]);
+}
+
+/// Ends what the two-wire bus does: a name for it, and how.
+type End = (&'static str, fn(&mut Bench));
+
+#[test]
+fn whatever_ends_a_byte_that_a_device_sends_leaves_the_device_amid_it() {
+    let ends: [End; 3] = [
+        ("switched off", |bench| bench.write(I2C, 0)),
+        ("reset alone", |bench| bench.write(super::RCC + 0x38, 1 << 22)),
+        ("reset with the controller", |bench| {
+            bench.controller.restart(ResetReason::Watchdog, bench.now);
+        }),
+    ];
+    // 4 MHz / 18: an address takes 45 µs, a byte 40.5 µs.
+    let at = [(20, None), (50, Some(1)), (60, Some(3)), (85, Some(8)), (90, Some(0)), (150, None)];
+    for (how, end) in ends {
+        for (microseconds, bit) in at {
+            let mut bench = Bench::new();
+            bench.write(I2C + 0x10, 0x0010_0408);
+            bench.write(I2C, 1);
+            bench.write(I2C + 4, 0xD4 | 2 << 16 | 1 << 10 | 1 << 13 | 1 << 25);
+            bench.pass(Time::microseconds(microseconds));
+            if microseconds > 130 {
+                bench.read(I2C + 0x24);
+                bench.pass(Time::microseconds(100));
+            }
+            end(&mut bench);
+            let stopped = bit.map(|bit| format!("no clock from bit {bit} on"));
+            let conditions = &bench.wires.0.borrow().conditions;
+            let found = conditions.iter().find(|line| line.starts_with("no clock"));
+            assert_eq!(found, stopped.as_ref(), "{how} after {microseconds} µs: {conditions:?}");
+        }
+    }
 }

@@ -106,6 +106,10 @@ impl I2cBus for Shared {
     fn stop(&mut self, _: Time) {
         self.0.borrow_mut().conditions.push("stop".to_owned());
     }
+
+    fn stop_clock(&mut self, bit: u32, _: Time) {
+        self.0.borrow_mut().conditions.push(format!("no clock from bit {bit} on"));
+    }
 }
 
 impl Wiring for Shared {

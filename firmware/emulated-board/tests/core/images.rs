@@ -97,6 +97,8 @@ impl I2cBus for Nothing {
     }
 
     fn stop(&mut self, _: Time) {}
+
+    fn stop_clock(&mut self, _: u32, _: Time) {}
 }
 
 impl Wiring for Nothing {

@@ -227,6 +227,54 @@ fn a_stop_after_a_byte_that_was_acknowledged_finds_the_line_driven() {
     assert_eq!(rules, [I2cRule::StillDriven]);
 }
 
+/// Wires whose clock has stopped at a bit of the identity, 0x6A, which the chip sends.
+fn stopped(bit: u32) -> (I2cWires, Imu) {
+    let (mut wires, mut imu) = (I2cWires::new(), imu());
+    assert!(wires.start(&mut imu, ADDRESS, false, HERTZ, BOOTED));
+    assert!(wires.write(&mut imu, 0x0F, BOOTED + 10 * BIT));
+    assert!(wires.start(&mut imu, ADDRESS, true, HERTZ, BOOTED + 19 * BIT));
+    wires.stop_clock(&mut imu, bit, BOOTED + 29 * BIT);
+    (wires, imu)
+}
+
+#[test]
+fn a_chip_whose_clock_stops_amid_a_byte_holds_the_line_at_its_bit_until_the_clock_goes_on() {
+    for bit in 0..=8 {
+        let (mut wires, _) = stopped(bit);
+        // The acknowledge is the controller's.
+        let mut expected = [0, 1, 1, 0, 1, 0, 1, 0, 1, 1][bit as usize..].to_vec();
+        expected.resize(10, 1);
+        let found = expected.iter().map(|_| {
+            let is_high = !wires.is_data_low();
+            wires.clock_falls();
+            i32::from(is_high)
+        });
+        assert_eq!(found.collect::<Vec<_>>(), expected, "bit {bit}");
+    }
+}
+
+#[test]
+fn a_chip_that_holds_the_line_sees_no_condition_and_one_that_does_not_sees_each() {
+    let later = BOOTED + 1_000_000;
+    let (mut wires, mut imu) = stopped(0);
+    wires.stop(&mut imu, later);
+    assert!(!wires.start(&mut imu, ADDRESS, false, HERTZ, later));
+    let rules = wires.faults().first.iter().map(|fault| fault.rule);
+    assert_eq!(rules.collect::<Vec<_>>(), [I2cRule::StillDriven]);
+    for stops in [false, true] {
+        let (mut wires, mut imu) = stopped(0);
+        wires.clock_falls();
+        if stops {
+            wires.stop(&mut imu, later);
+        }
+        let step = Step { pause_us: 0, address: ADDRESS, sent: vec![0x0F], wanted: 1 };
+        let (is_acknowledged, reply) = over_wires(&mut wires, &mut imu, &step, later, false);
+        assert_eq!((is_acknowledged, reply), (true, vec![0x6A]));
+        assert_eq!(wires.faults().count, 0);
+        assert_eq!(I2cChip::<Bench>::violations(&imu.chip).count, 0);
+    }
+}
+
 /// The code is interrupted for 200 ms before it writes the value: the outputs count from the value's time.
 #[test]
 fn a_pause_within_a_transfer_delays_what_it_writes() {
