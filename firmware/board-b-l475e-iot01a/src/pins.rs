@@ -1,15 +1,12 @@
 //! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
 
-use drivers::lsm6dsl;
 use embassy_stm32::gpio::{Level, Output, Speed};
-use embassy_stm32::i2c::{self, I2c};
 use embassy_stm32::interrupt::{Interrupt, InterruptExt};
 use embassy_stm32::peripherals::{
     DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1, PB2, PB4,
     PB10, PB11, PC3, PC4, PD0, PD2, PD5,
 };
 use embassy_stm32::spi::Spi;
-use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, ConfigError, UartTx};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use firmware::platform::Platform;
@@ -219,8 +216,6 @@ impl BasePins {
     /// Connects the IMU.
     fn connect(self) -> BaseBus {
         let Self { bus, pins: (clock, data), receiver } = self;
-        let mut settings = i2c::Config::default();
-        settings.frequency = Hertz(lsm6dsl::BUS_HERTZ);
-        BaseBus::taken(I2c::new_blocking(bus, clock, data, settings), receiver)
+        BaseBus::connected(bus, clock, data, receiver)
     }
 }

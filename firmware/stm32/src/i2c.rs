@@ -6,21 +6,27 @@
 //!
 //! **Each transaction ends.** One that has not ended within its time limit is given up. After any that has failed the
 //! interface is started anew, which releases the bus, so that the next one finds it as new.
+//!
+//! **A device may hold the data line.** Where the clock stops amid a byte that is read, as by a reset of the controller,
+//! the device drives its bit until the clock goes on. So before the interface starts, the clock is given by hand until the
+//! line is free.
 
 use core::mem::forget;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
+use drivers::lsm6dsl;
 use embassy_stm32::Peri;
-use embassy_stm32::i2c::{I2c, Master};
-use embassy_stm32::mode::Blocking;
+use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
+use embassy_stm32::i2c::{Config, I2c, SclPin, SdaPin};
 use embassy_stm32::pac::i2c::I2c as Registers;
 use embassy_stm32::pac::i2c::regs::Cr2;
 use embassy_stm32::pac::i2c::vals::{Autoend, Dir};
 use embassy_stm32::pac::{DMA1, I2C2};
-use embassy_stm32::peripherals::DMA1_CH5;
+use embassy_stm32::peripherals::{self, DMA1_CH5};
+use embassy_stm32::time::Hertz;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
-use embassy_time::{Duration, with_timeout};
+use embassy_time::{Duration, block_for, with_timeout};
 use embedded_hal_async::i2c::{self, Error, ErrorKind, ErrorType, Operation};
 
 /// The interface.
@@ -36,6 +42,12 @@ const LONGEST: Duration = Duration::from_millis(5);
 const MOST_SENT: usize = size_of::<u32>();
 /// Most bytes that a transaction receives.
 const MOST_RECEIVED: usize = 16;
+
+/// Most pulses that free the data line: those of a byte and its acknowledge (UM10204, 3.1.16).
+const PULSES: usize = 9;
+/// Half a period of these, and the pause behind a stop: 5 µs at least, those of the standard mode (UM10204, table 10: 4.7 µs),
+/// and the microsecond in the midst of which a wait begins. Nine pulses take 0.16 ms.
+const HALF: Duration = Duration::from_micros(6);
 
 /// Bytes that are still to be sent, the next one lowest.
 static TO_SEND: AtomicU32 = AtomicU32::new(0);
@@ -78,34 +90,89 @@ impl Error for Failed {
     }
 }
 
-/// The bus of the IMU on the base.
-pub struct BaseBus(());
+/// A wire of the bus: its pin, and the number of its function as one of the interface.
+struct Wire(Flex<'static>, u8);
 
-impl BaseBus {
-    /// Takes the bus as embassy has set it up, with its pins and its clock, and the channel for what it receives.
-    #[must_use]
-    pub fn taken(set_up: I2c<'static, Blocking, Master>, _: Peri<'static, DMA1_CH5>) -> Self {
-        // To drop it would take pins and clock away.
-        forget(set_up);
-        DMA1.cselr().modify(|requests| requests.set_cs(CHANNEL, REQUEST));
-        start();
-        Self(())
+impl Wire {
+    /// Takes the wire from the interface, and lets it go.
+    fn take(&mut self) {
+        self.0.set_high();
+        self.0.set_as_input_output(Speed::Medium);
+    }
+
+    /// Gives it back to the interface.
+    fn give_back(&mut self) {
+        let function = AfType::output(OutputType::OpenDrain, Speed::Medium);
+        self.0.set_as_af_unchecked(self.1, function);
     }
 }
 
-/// Starts the interface anew, which releases the bus (RM0351, 39.4.6).
-fn start() {
-    BUS.cr1().modify(|control| control.set_pe(false));
-    // It takes three clocks until it is off.
-    while BUS.cr1().read().pe() {}
-    BUS.cr1().modify(|control| {
-        control.set_pe(true);
-        control.set_txie(true);
-        control.set_tcie(true);
-        control.set_stopie(true);
-        control.set_errie(true);
-        control.set_rxdmaen(true);
-    });
+/// The bus of the IMU on the base.
+pub struct BaseBus {
+    clock: Wire,
+    data: Wire,
+}
+
+impl BaseBus {
+    /// Connects the bus with its pins for clock and data, and the channel for what it receives.
+    #[must_use]
+    pub fn connected(
+        interface: Peri<'static, peripherals::I2C2>,
+        mut clock: Peri<'static, impl SclPin<peripherals::I2C2>>,
+        mut data: Peri<'static, impl SdaPin<peripherals::I2C2>>,
+        _: Peri<'static, DMA1_CH5>,
+    ) -> Self {
+        let mut settings = Config::default();
+        settings.frequency = Hertz(lsm6dsl::BUS_HERTZ);
+        let set_up = I2c::new_blocking(interface, clock.reborrow(), data.reborrow(), settings);
+        // To drop it would take pins and clock away.
+        forget(set_up);
+        DMA1.cselr().modify(|requests| requests.set_cs(CHANNEL, REQUEST));
+        let functions = [clock.af_num(), data.af_num()];
+        let clock = Wire(Flex::new(clock), functions[0]);
+        let mut bus = Self { clock, data: Wire(Flex::new(data), functions[1]) };
+        bus.start();
+        bus
+    }
+
+    /// Starts the interface anew, which releases the bus (RM0351, 39.4.6). It must be off for three clocks, which the reads
+    /// of registers until it is on again take.
+    fn start(&mut self) {
+        BUS.cr1().modify(|control| control.set_pe(false));
+        if self.data.0.is_low() {
+            self.free();
+        }
+        BUS.cr1().modify(|control| {
+            control.set_pe(true);
+            control.set_txie(true);
+            control.set_tcie(true);
+            control.set_stopie(true);
+            control.set_errie(true);
+            control.set_rxdmaen(true);
+        });
+    }
+
+    /// Has a device that holds the data line let it go, by pulses of the clock (UM10204, 3.1.16). The data line rises after
+    /// the clock in each, so that the one in which the device lets it rise ends with a stop.
+    fn free(&mut self) {
+        self.clock.take();
+        self.data.take();
+        let freed = (1..=PULSES).find(|_| {
+            self.clock.0.set_low();
+            self.data.0.set_low();
+            block_for(HALF);
+            self.clock.0.set_high();
+            block_for(HALF);
+            self.data.0.set_high();
+            block_for(HALF);
+            self.data.0.is_high()
+        });
+        self.clock.give_back();
+        self.data.give_back();
+        if let Some(pulses) = freed {
+            defmt::warn!("base: its data line was held, and let go after {} pulse(s)", pulses);
+        }
+    }
 }
 
 /// Has the next bytes that are received put into their place.
@@ -168,14 +235,14 @@ impl i2c::I2c for BaseBus {
         if sent.is_empty() || sent.len() > MOST_SENT || received.len() > MOST_RECEIVED {
             return Err(Failed);
         }
-        // One that was given up when its task ended is still under way.
+        // One that was given up when its task ended is still under way, or a device holds the data line.
         if BUS.isr().read().busy() {
-            start();
+            self.start();
         }
         if transact(address, sent, received).await {
             return Ok(());
         }
-        start();
+        self.start();
         Err(Failed)
     }
 }

@@ -9,6 +9,7 @@
 mod board;
 #[path = "../support/figure.rs"]
 mod figure;
+mod held;
 mod hung;
 #[path = "../support/images.rs"]
 mod images;
