@@ -65,12 +65,15 @@ pub trait Pointing {
     fn renew(&mut self);
 
     /// Readings of the encoders, taken once in every `angle_divider` samples and repeated between;
-    /// [`None`] if a reading was lost. The angle is put back by `late`, the time for which other tasks
-    /// kept the conversion waiting to which the reading belongs.
+    /// [`None`] if a reading was lost, whose symptoms [`Self::mend`] handles. The angle is put back by
+    /// `late`, the time for which other tasks kept the conversion waiting to which the reading belongs.
+    async fn read(&mut self, late: Duration) -> Option<Self::Shown>;
+
+    /// Handles the symptoms of the latest readings, where there are any.
     ///
     /// # Errors
     /// An encoder is given up.
-    async fn read(&mut self, late: Duration) -> Result<Option<Self::Shown>, Refusal>;
+    async fn mend(&mut self) -> Result<(), Refusal>;
 
     /// The direction of the sensitive axis that belongs to readings of the encoders.
     fn aim(&mut self, shown: Self::Shown) -> Aim;
@@ -153,6 +156,8 @@ pub struct Shaft<'a, E> {
     angle: Option<Angle>,
     /// The cell for the latest valid angle, read by the motor's control.
     latest: &'a LatestAngle,
+    /// Symptom with which the latest reading was lost, until it is handled.
+    symptom: Option<Symptom>,
     /// Whether the latest reading was discarded as a jump.
     has_jumped: bool,
     shared: &'a Shared<'a>,
@@ -175,6 +180,7 @@ impl<'a, E: Encoder> Shaft<'a, E> {
             due: Decimator::new(configuration.angle_divider),
             angle: None,
             latest,
+            symptom: None,
             has_jumped: false,
             shared,
         }
@@ -210,21 +216,25 @@ impl<E: Encoder> Pointing for Shaft<'_, E> {
         self.encoder.renew();
     }
 
-    async fn read(&mut self, late: Duration) -> Result<Option<Angle>, Refusal> {
+    async fn read(&mut self, late: Duration) -> Option<Angle> {
         if self.due.is_due() || self.angle.is_none() {
             let outcome = self.encoder.device.read().await;
             let now = Instant::now();
-            self.angle = match self.encoder.checked(outcome) {
-                Ok(shown) => Some(self.calibration.correct(shown)),
-                Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|_| None)?,
-            };
+            let outcome = self.encoder.checked(outcome);
+            self.symptom = outcome.err();
+            self.angle = outcome.ok().map(|shown| self.calibration.correct(shown));
             let before = self.latest.get();
             self.angle = self.angle.filter(|angle| self.is_in_line(*angle, now));
             if late > self.shared.period.get() / LATE {
                 self.angle = self.angle.map(|angle| put_back((angle, now), before, late));
             }
         }
-        Ok(self.angle)
+        self.angle
+    }
+
+    async fn mend(&mut self) -> Result<(), Refusal> {
+        let Some(symptom) = self.symptom.take() else { return Ok(()) };
+        self.encoder.mend(symptom, self.shared).await.map(|_| ())
     }
 
     fn aim(&mut self, heading: Angle) -> Aim {
@@ -328,10 +338,15 @@ impl<E: Encoder> Pointing for FrameShafts<'_, E> {
         self.shafts.inner.renew();
     }
 
-    async fn read(&mut self, late: Duration) -> Result<Option<Frames<Angle>>, Refusal> {
-        let outer = self.shafts.outer.read(late).await?;
-        let inner = self.shafts.inner.read(late).await?;
-        Ok(outer.zip(inner).map(|(outer, inner)| Frames { outer, inner }))
+    async fn read(&mut self, late: Duration) -> Option<Frames<Angle>> {
+        let outer = self.shafts.outer.read(late).await;
+        let inner = self.shafts.inner.read(late).await;
+        outer.zip(inner).map(|(outer, inner)| Frames { outer, inner })
+    }
+
+    async fn mend(&mut self) -> Result<(), Refusal> {
+        self.shafts.outer.mend().await?;
+        self.shafts.inner.mend().await
     }
 
     fn aim(&mut self, angles: Frames<Angle>) -> Aim {

@@ -2,7 +2,11 @@
 //! the rate about the down axis taken from the precise gyro once a mount has turned it to the
 //! vertical.
 
+use core::convert::Infallible;
+
 use drivers::data_ready::Edge;
+use embassy_futures::select::{Either, select};
+use embassy_time::Ticker;
 use orientation::navigation::Motion;
 use orientation::navigation::progress::VerticalGyro;
 use orientation::signal::InertialSample;
@@ -16,6 +20,7 @@ use super::increments;
 use crate::pointing::Decimator;
 use crate::ports::BaseReading;
 use crate::shared::Shared;
+use crate::sway::Compensation;
 
 /// Quarter of a turn, in steps of an [`Angle`].
 const QUARTER_TURN: u32 = 1 << 30;
@@ -224,12 +229,6 @@ impl Coarse {
         }
     }
 
-    /// Reports that the precise gyro has failed.
-    pub(super) fn lose_precise(&mut self) {
-        self.precise.sense = 0;
-        self.precise.is_vertical = false;
-    }
-
     /// Takes a force of the better accelerometer on the base, whose biases have this 1σ.
     pub(super) fn feel(
         &mut self,
@@ -263,14 +262,50 @@ impl Coarse {
         }
     }
 
+    /// Passes a coarse reading on to attitude and heading, where there is a new one.
+    pub(super) fn pass_on(&mut self, base: Option<&Compensation>, shared: &Shared<'_>) {
+        if let Some((at, reading)) = base.and_then(Compensation::reading) {
+            self.convert(at, &reading, shared);
+        }
+    }
+
+    /// Awaits what keeps acquisition from samples, as the restart of a device, and passes coarse readings on
+    /// meanwhile. Where nothing is to be waited for, none is asked for.
+    pub(super) async fn beside<T>(
+        &mut self,
+        awaited: impl Future<Output = T>,
+        base: Option<&Compensation>,
+        shared: &Shared<'_>,
+    ) -> T {
+        match select(awaited, self.go_on_alone(base, shared)).await {
+            Either::First(outcome) => outcome,
+            Either::Second(never) => match never {},
+        }
+    }
+
+    /// Asks for coarse readings at the sampling period and passes them on, without end and without the precise
+    /// gyro, whose rotation and direction are not known.
+    async fn go_on_alone(
+        &mut self,
+        base: Option<&Compensation>,
+        shared: &Shared<'_>,
+    ) -> Infallible {
+        self.point(None);
+        let mut ticker = Ticker::every(shared.period.get());
+        loop {
+            ticker.next().await;
+            if let Some(base) = base
+                && (base.asks(false, shared) || base.asks(true, shared))
+            {
+                base.answered().await;
+            }
+            self.pass_on(base, shared);
+        }
+    }
+
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
     /// readings show in the times.
-    pub(super) fn pass_on(
-        &mut self,
-        at: embassy_time::Instant,
-        reading: &BaseReading,
-        shared: &Shared<'_>,
-    ) {
+    fn convert(&mut self, at: embassy_time::Instant, reading: &BaseReading, shared: &Shared<'_>) {
         let time = shared.clocks.instant(Instant(at.as_micros()));
         let [since, lasted] = self.timing.lasted(time);
         let mut turned = increments(reading.rate, 1000 * u64::from(lasted), &mut self.carried);

@@ -53,12 +53,15 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         self.absent = None;
     }
 
-    /// Returns a new reading where one is due, possibly saturated; none where it was lost. It must
+    /// Returns a new reading where one is due, possibly saturated; none where it was lost on the way. It must
     /// be called with every sample.
+    ///
+    /// # Errors
+    /// The symptom to repair.
     pub(super) async fn read(
         &mut self,
         shared: &Shared<'_>,
-    ) -> Result<Option<ForceReading>, Refusal> {
+    ) -> Result<Option<ForceReading>, Symptom> {
         if !self.due.is_due() || self.absent.is_some_and(|until| Instant::now() < until) {
             return Ok(None);
         }
@@ -66,21 +69,35 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         match self.judge(outcome) {
             Ok(reading) => {
                 self.absent = None;
-                return Ok(reading.is_new.then_some(reading));
+                Ok(reading.is_new.then_some(reading))
             }
             Err(symptom) if symptom != Symptom::Saturated && is_on_the_way(shared) => {
                 shared.lose(Device::Accelerometer, symptom);
                 self.absent = Some(Instant::now() + PAUSE);
+                Ok(None)
             }
-            Err(symptom) => match self.accelerometer.mend(symptom, shared).await {
-                Err(_) if shared.is_holding() => {
-                    self.renew();
-                    self.absent = Some(Instant::now() + RETRY);
-                }
-                outcome => drop(outcome?),
-            },
+            Err(symptom) => Err(symptom),
         }
-        Ok(None)
+    }
+
+    /// Handles a symptom, with which a reading was lost. While an azimuth is held, continues without an
+    /// accelerometer that is given up until it may be tried again.
+    ///
+    /// # Errors
+    /// The accelerometer is given up.
+    pub(super) async fn mend(
+        &mut self,
+        symptom: Symptom,
+        shared: &Shared<'_>,
+    ) -> Result<Option<ForceReading>, Refusal> {
+        match self.accelerometer.mend(symptom, shared).await {
+            Err(_) if shared.is_holding() => {
+                self.renew();
+                self.absent = Some(Instant::now() + RETRY);
+                Ok(None)
+            }
+            outcome => outcome.map(|_| None),
+        }
     }
 
     /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an

@@ -22,8 +22,6 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) gyro: Guarded<'a, G>,
     /// Checks of its readings.
     plausibility: Plausibility<V>,
-    /// Sample period.
-    pub(super) period: Duration,
     /// A conversion that ended while something else was awaited.
     next: Option<Result<Edge, Fault>>,
     /// Pace at which conversions are read.
@@ -43,11 +41,9 @@ pub(super) fn silence(period: u32) -> Duration {
 impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     /// Takes a gyro with this sample rate, Hz, by its name in the log.
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
-        let period = Duration::from_micros((1e6 / sample_rate + 0.5) as u64);
         Self {
             gyro: Guarded::new(gyro, name),
             plausibility: Plausibility::new(sample_rate),
-            period,
             next: None,
             pace: Pace::default(),
             has_clipped: false,

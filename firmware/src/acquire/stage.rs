@@ -2,7 +2,8 @@
 //!
 //! The conversion sets the time; encoder and accelerometer are read right after it, the
 //! accelerometer with every n-th sample: between, the stage cannot have turned far, and the force
-//! is only averaged. Without a valid rate and a valid angle there is no sample.
+//! is only averaged. Without a valid rate and a valid angle there is no sample. While one of these
+//! devices is started again, the sensors on the base are read and passed on all the same.
 
 use core::convert::Infallible;
 use core::future::poll_fn;
@@ -22,8 +23,8 @@ use super::rates::{Rates, silence};
 use crate::configuration::{Configuration, FramesConfiguration, nanoseconds, period};
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
-use crate::retry_budget::RETRY;
-use crate::shared::Channels;
+use crate::retry_budget::{RETRY, Symptom};
+use crate::shared::{Channels, Shared};
 use crate::sway::{CompensatesSway, Compensation};
 
 /// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
@@ -166,13 +167,6 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         base.filter(|base| base.asks(is_angle_read, self.outlet.shared()))
     }
 
-    /// Passes a coarse reading on to attitude and heading.
-    fn pass_on(&mut self, base: Option<&Compensation>) {
-        if let Some((at, reading)) = base.and_then(Compensation::reading) {
-            self.coarse.pass_on(at, &reading, self.outlet.shared());
-        }
-    }
-
     /// Takes the next sample; [`None`] where a reading was lost.
     ///
     /// # Errors
@@ -181,33 +175,41 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         let shared = self.outlet.shared();
         let end = match self.rates.conversion(self.silence).await {
             Ok(end) => end,
-            Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|_| None),
+            Err(symptom) => return self.mend_gyro(symptom, base).await.map(|()| None),
         };
         let ended = Instant::from_micros(end.at.0);
         let late = Instant::now() - ended;
         let rate = match self.rates.read(shared).await {
             Ok(rate) => rate,
-            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|_| None)?,
+            Err(symptom) => self.mend_gyro(symptom, base).await.map(|()| None)?,
         };
         self.coarse.turn(end, rate, shared.clocks);
         if let Some(base) = self.asked(false, base) {
             self.rates.until_next(base.answered()).await;
         }
-        self.pass_on(base);
+        self.coarse.pass_on(base, shared);
         if !base.is_none_or(Compensation::is_decided) {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         // An angle belongs to the conversion with which it is read: where that is lost, it is read with the next.
         let shown = match rate {
-            Some(_) => self.pointing.read(late).await?,
+            Some(_) => self.pointing.read(late).await,
             None => None,
         };
-        let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
+        if shown.is_none() {
+            self.coarse.beside(self.pointing.mend(), base, shared).await?;
+        }
+        let force = match self.forces.read(shared).await {
+            Ok(force) => force.filter(|reading| !reading.is_clipped),
+            Err(symptom) => {
+                self.coarse.beside(self.forces.mend(symptom, shared), base, shared).await?
+            }
+        };
         if let Some(base) = self.asked(true, base) {
             self.rates.until_next(base.answered()).await;
         }
-        self.pass_on(base);
+        self.coarse.pass_on(base, shared);
         let on_base = self.pointing.force_on_base();
         if let Some((reading, bias_sigma)) = force.zip(on_base) {
             self.coarse.feel(reading.force, bias_sigma, shared);
@@ -229,6 +231,20 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         }))
     }
 
+    /// Handles a symptom of the gyro, whose conversion is lost.
+    ///
+    /// # Errors
+    /// The gyro is given up.
+    async fn mend_gyro(
+        &mut self,
+        symptom: Symptom,
+        base: Option<&Compensation>,
+    ) -> Result<(), Refusal> {
+        let shared = self.outlet.shared();
+        let mending = self.rates.gyro.mend(symptom, shared);
+        self.coarse.beside(mending, base, shared).await.map(|_| ())
+    }
+
     /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
     /// the others may be tried again.
     async fn do_without(
@@ -240,23 +256,22 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         if !shared.is_holding() {
             return Err(reason);
         }
-        self.coarse.lose_precise();
-        let until = Instant::now() + RETRY;
-        let mut ticker = Ticker::every(self.rates.period);
-        while Instant::now() < until || !shared.is_at_rest.get() {
-            ticker.next().await;
-            if let Some(base) = base
-                && (base.asks(false, shared) || base.asks(true, shared))
-            {
-                base.answered().await;
-            }
-            self.pass_on(base);
-            shared.count(|health| health.samples = health.samples.saturating_add(1));
-            if !shared.is_idle() {
-                shared.fail(reason);
-            }
-        }
+        self.coarse.beside(pause(reason, shared), base, shared).await;
         self.renew();
         Ok(())
+    }
+}
+
+/// Waits until the body rests and sensors that were given up may be tried again; they are the reason for which an
+/// alignment that begins meanwhile ends.
+async fn pause(reason: Refusal, shared: &Shared<'_>) {
+    let until = Instant::now() + RETRY;
+    let mut ticker = Ticker::every(shared.period.get());
+    while Instant::now() < until || !shared.is_at_rest.get() {
+        ticker.next().await;
+        shared.count(|health| health.samples = health.samples.saturating_add(1));
+        if !shared.is_idle() {
+            shared.fail(reason);
+        }
     }
 }

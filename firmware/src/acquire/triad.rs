@@ -66,13 +66,17 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
     /// A sensor is given up.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
         let Some((end, rates)) = self.gyros.next().await? else { return Ok(None) };
-        let reading = self.forces.read(self.outlet.shared()).await?;
+        let shared = self.outlet.shared();
+        let reading = match self.forces.read(shared).await {
+            Ok(reading) => reading,
+            Err(symptom) => self.forces.mend(symptom, shared).await?,
+        };
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(end);
         let turned = increments(rates, self.period.into(), &mut self.carried);
         let sample = InertialSample { time: self.outlet.time(end), turned, force };
-        self.outlet.shared().move_on(Motion::Moved(sample));
+        shared.move_on(Motion::Moved(sample));
         Ok(Some(sample))
     }
 }

@@ -7,6 +7,7 @@ mod healthy;
 mod realigning;
 mod remembering;
 mod restart;
+mod restarting;
 
 use embassy_time::Instant;
 use firmware::event::Event;

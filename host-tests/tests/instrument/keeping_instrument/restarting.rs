@@ -1,0 +1,103 @@
+//! A device of the platform fails for good while an azimuth is kept by the sensors on the base, and is tried again
+//! and again: the keeper has their motion all the time.
+
+use std::cell::Cell;
+
+use super::reported;
+use embassy_time::Instant;
+use firmware::event::Event;
+use firmware::ports::{NoRecorder, Observer, Recorder};
+use hal_mock::chip::Select;
+use hal_mock::fault::{BusFault, FaultPlan, When};
+use host::instrument::kept::KeptPlan;
+use host::instrument::{Carrier, Run, Trial};
+use orientation::navigation::{Input, Motion};
+use orientation::signal::InertialSample;
+use orientation::units;
+use simulated::fault::Injection;
+use simulated::hold::Hold;
+use simulated::scenario::Scenario;
+use simulated::turntable::TurntableScenario;
+
+/// How long after the alignment a device fails, s.
+const AFTER: f64 = 60.0;
+/// Longest time between two motions, µs: the eight periods of 10 ms after which a gyro counts as silent, and two.
+const LONGEST: u64 = 100_000;
+
+/// A stage whose base drives for half a minute and stands for a minute, in alternation.
+fn stage() -> Scenario {
+    let hold = Hold { drive_s: 30.0, ..Hold::of(200.0) };
+    let usual =
+        Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz: 100.0, ..Scenario::usual(1) };
+    Scenario { hold, has_base_imu: true, ..usual }
+}
+
+fn turntable() -> TurntableScenario {
+    let usual = TurntableScenario::default();
+    TurntableScenario { base: stage(), modulated_turns: 6, turns: 4, ..usual }
+}
+
+/// What goes wrong where every transfer of a chip fails from some time after the alignment on.
+fn dead(select: Select, alignment_s: f64) -> KeptPlan {
+    let start = Instant::from_micros(((alignment_s + AFTER) * 1e6) as u64);
+    let plan = FaultPlan { fault: BusFault::Error, when: When::always(start) };
+    let chips = Injection { buses: [(select, plan)].into_iter().collect(), ..Injection::NONE };
+    KeptPlan { chips, ..KeptPlan::of(None) }
+}
+
+/// The keeper's motions, by their times.
+#[derive(Default)]
+struct Motions {
+    latest: Cell<Option<units::Instant>>,
+    /// The longest time between two of them, µs.
+    gap: Cell<u64>,
+}
+
+impl Observer for Motions {
+    fn event(&self, _: Instant, _: &Event) {}
+
+    fn navigates(&self, input: &Input) {
+        if let Input::Motion(Motion::Moved(InertialSample { time, .. })) = input {
+            let gap = self.latest.replace(Some(*time)).map_or(0, |latest| time.0 - latest.0);
+            self.gap.set(self.gap.get().max(gap));
+        }
+    }
+}
+
+/// Holds that a device is given up more than once, and that the keeper always has motion.
+fn holds_motion<C, R, T>(carrier: &C, plan: KeptPlan, name: &str)
+where
+    C: Carrier<Plan = KeptPlan, Run = Run<R, T>>,
+    NoRecorder: Recorder<C::Sample>,
+{
+    let motions = Motions::default();
+    let run = Trial::of(carrier).plan(plan).watch(&motions).run();
+    let lines = reported(&run.expect("the scenario is possible"));
+    let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
+    assert_eq!(count("handed over: it is kept"), 1, "{lines:#?}");
+    assert!(count(&format!("{name}: given up")) > 1, "{lines:#?}");
+    assert_eq!(count("no motion is measured"), 0, "{lines:#?}");
+    assert!(motions.gap.get() <= LONGEST, "{} µs: {lines:#?}", motions.gap.get());
+}
+
+/// Holds it on a stage and on a turntable.
+fn costs_no_motion(select: Select, name: &str) {
+    let (stage, turntable) = (stage(), turntable());
+    holds_motion(&stage, dead(select, stage.alignment_seconds()), name);
+    holds_motion(&turntable, dead(select, turntable.alignment_seconds()), name);
+}
+
+#[test]
+fn an_encoder_that_is_started_again_and_again_costs_the_keeper_no_motion() {
+    costs_no_motion(Select::Encoder, "encoder");
+}
+
+#[test]
+fn a_gyro_that_is_started_again_and_again_costs_the_keeper_no_motion() {
+    costs_no_motion(Select::Gyro, "gyro");
+}
+
+#[test]
+fn an_accelerometer_that_is_started_again_and_again_costs_the_keeper_no_motion() {
+    costs_no_motion(Select::Accelerometer, "accelerometer");
+}
