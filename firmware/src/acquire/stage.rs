@@ -245,7 +245,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         self.coarse.beside(mending, base, shared).await.map(|_| ())
     }
 
-    /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
+    /// While an attitude is kept, continues with the coarse sensors alone until the body rests and
     /// the others may be tried again.
     async fn do_without(
         &mut self,
@@ -253,7 +253,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         base: Option<&Compensation>,
     ) -> Result<(), Refusal> {
         let shared = self.outlet.shared();
-        if !shared.is_holding() {
+        if !shared.is_kept.get() {
             return Err(reason);
         }
         self.coarse.beside(pause(reason, shared), base, shared).await;
@@ -263,7 +263,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
 }
 
 /// Waits until the body rests and sensors that were given up may be tried again; they are the reason for which an
-/// alignment that begins meanwhile ends.
+/// alignment that runs or begins meanwhile ends.
 async fn pause(reason: Refusal, shared: &Shared<'_>) {
     let until = Instant::now() + RETRY;
     let mut ticker = Ticker::every(shared.period.get());

@@ -123,6 +123,20 @@ fn a_hung_transfer_of_the_motors_is_ended_and_told_by_its_bus() {
     within(silent, TOLD, words);
 }
 
+/// The encoder is started twenty times, given up, and tried again after ten seconds, over and over; the sensors on the
+/// base are read and passed on all the time.
+#[test]
+fn the_keeper_has_motion_all_the_time_where_each_transfer_of_the_motors_hangs() {
+    let TurningBoard { mut board, .. } = TurningBoard::new();
+    let hung = board.seconds();
+    board.controller(|controller| controller.spi[1].is_stuck = true);
+    board.run(20.0);
+    let lines = board.lines(hung, f64::INFINITY);
+    let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
+    assert_eq!(count("encoder: given up: its bus hangs"), 2, "{board}");
+    assert_eq!(count("no motion"), 0, "{board}");
+}
+
 /// A time limit of five milliseconds ends every transfer, and the log names the base. It is tried twenty times more, and
 /// given up after 0.83 s; its own readings are the only ones that are lost.
 #[test]
