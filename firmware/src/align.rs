@@ -31,7 +31,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
             Request::Compute => {
                 shared.begin_computing(aligner.taken());
                 let request = aligner.compute(&mut listener(shared));
-                shared.is_computing.set(false);
+                shared.end_computing();
                 request
             }
             Request::Locate => match aiding.displacement() {

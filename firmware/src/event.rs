@@ -34,6 +34,8 @@ pub enum Event {
     Missing(u32),
     /// A sample came at the wrong time: its deviation from the expected time, µs, late positive.
     Late(i32),
+    /// So many samples came while the aligner computed, and were not needed.
+    PassedBy(u32),
     /// The number of consecutive samples that were discarded because the queue to the session was
     /// full.
     Overflowed(u32),
@@ -122,6 +124,7 @@ words! { Event:
     Self::GivenUp(device, trouble) => "{}: given up: {}", device, trouble;
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
+    Self::PassedBy(count) => "{} sample(s) passed by: a conclusion or a plan was computed", count;
     Self::Overflowed(count) => "{} sample(s) lost: the queue was full", count;
     Self::BaseStill(angle) =>
         "base: still within {}°, nothing is subtracted", Rounded::<4>(angle);

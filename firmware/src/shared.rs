@@ -134,6 +134,8 @@ pub struct Shared<'a> {
     pub concluding: Signal<Lock, units::Instant>,
     /// Whether the aligner computes, and needs no samples.
     pub is_computing: Common<bool>,
+    /// Number of samples that had been passed by when it began to.
+    passed_by: Common<u32>,
     /// From the aligner to the navigator: an azimuth, and the time of the sample to which it
     /// belongs.
     pub found: Signal<Lock, (units::Instant, Azimuth)>,
@@ -190,6 +192,7 @@ impl<'a> Shared<'a> {
             motions: Channel::new(),
             concluding: Signal::new(),
             is_computing: Common::new(false),
+            passed_by: Common::new(0),
             found: Signal::new(),
             caught_up: Signal::new(),
             is_behind: Common::new(false),
@@ -269,8 +272,18 @@ impl<'a> Shared<'a> {
         if let Some(taken) = taken {
             self.concluding.signal(taken);
         }
+        self.passed_by.set(self.health.get().passed_by);
         self.is_computing.set(true);
         self.caught_up.signal(());
+    }
+
+    /// Notes that the aligner needs samples again, and reports how many it has passed by meanwhile.
+    pub(crate) fn end_computing(&self) {
+        self.is_computing.set(false);
+        let count = self.health.get().passed_by.wrapping_sub(self.passed_by.get());
+        if count > 0 {
+            self.report(Event::PassedBy(count));
+        }
     }
 
     /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs none, or is

@@ -32,6 +32,7 @@ fn blamed(event: &Event) -> Option<Device> {
         | Event::GivenUp(device, _)
         | Event::Corrected(device, _)
         | Event::Blocked(device)
+        | Event::CurrentOff(device)
         | Event::Alignment(
             Progress::Refused(Refusal::Device { device, .. })
             | Progress::Roll(roll::Progress::Ended(Refusal::Device { device, .. })),
