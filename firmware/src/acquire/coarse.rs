@@ -3,6 +3,7 @@
 //! vertical.
 
 use core::convert::Infallible;
+use core::pin::{Pin, pin};
 
 use drivers::data_ready::Edge;
 use embassy_futures::select::{Either, select};
@@ -273,11 +274,11 @@ impl Coarse {
     /// meanwhile. Where nothing is to be waited for, none is asked for.
     pub(super) async fn beside<T>(
         &mut self,
-        awaited: impl Future<Output = T>,
+        awaited: Pin<&mut impl Future<Output = T>>,
         base: Option<&Compensation>,
         shared: &Shared<'_>,
     ) -> T {
-        match select(awaited, self.go_on_alone(base, shared)).await {
+        match select(awaited, pin!(self.go_on_alone(base, shared))).await {
             Either::First(outcome) => outcome,
             Either::Second(never) => match never {},
         }

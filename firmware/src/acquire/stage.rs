@@ -22,7 +22,7 @@ use super::outlet::Outlet;
 use super::rates::{Rates, silence};
 use crate::configuration::{Configuration, FramesConfiguration, nanoseconds, period};
 use crate::pointing::{FrameShafts, Pointing, Shaft};
-use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
+use crate::ports::{Accelerometer, Encoder, ForceReading, Frames, Gyro, Sensors};
 use crate::retry_budget::{RETRY, Symptom};
 use crate::shared::{Channels, Shared};
 use crate::sway::{CompensatesSway, Compensation};
@@ -198,13 +198,11 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             None => None,
         };
         if shown.is_none() {
-            self.coarse.beside(self.pointing.mend(), base, shared).await?;
+            self.mend_pointing(base).await?;
         }
         let force = match self.forces.read(shared).await {
             Ok(force) => force.filter(|reading| !reading.is_clipped),
-            Err(symptom) => {
-                self.coarse.beside(self.forces.mend(symptom, shared), base, shared).await?
-            }
+            Err(symptom) => self.mend_forces(symptom, base).await?,
         };
         if let Some(base) = self.asked(true, base) {
             self.rates.until_next(base.answered()).await;
@@ -241,8 +239,30 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         base: Option<&Compensation>,
     ) -> Result<(), Refusal> {
         let shared = self.outlet.shared();
-        let mending = self.rates.gyro.mend(symptom, shared);
+        let mending = pin!(self.rates.gyro.mend(symptom, shared));
         self.coarse.beside(mending, base, shared).await.map(|_| ())
+    }
+
+    /// Handles the symptom of an encoder that was read last, if there is one.
+    ///
+    /// # Errors
+    /// The encoder is given up.
+    async fn mend_pointing(&mut self, base: Option<&Compensation>) -> Result<(), Refusal> {
+        let shared = self.outlet.shared();
+        self.coarse.beside(pin!(self.pointing.mend()), base, shared).await
+    }
+
+    /// Handles a symptom of the accelerometer.
+    ///
+    /// # Errors
+    /// The accelerometer is given up.
+    async fn mend_forces(
+        &mut self,
+        symptom: Symptom,
+        base: Option<&Compensation>,
+    ) -> Result<Option<ForceReading>, Refusal> {
+        let shared = self.outlet.shared();
+        self.coarse.beside(pin!(self.forces.mend(symptom, shared)), base, shared).await
     }
 
     /// While an attitude is kept, continues with the coarse sensors alone until the body rests and
@@ -256,7 +276,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         if !shared.is_kept.get() {
             return Err(reason);
         }
-        self.coarse.beside(pause(reason, shared), base, shared).await;
+        self.coarse.beside(pin!(pause(reason, shared)), base, shared).await;
         self.renew();
         Ok(())
     }
