@@ -196,7 +196,10 @@ impl<S: SpiDevice, D: DelayNs> Actuator for Tmc5160<S, D> {
             Command::SetAngle(angle) => self.set_position(microsteps(angle)).await?,
             Command::Release => {
                 self.stop().await?;
-                self.clear_stall().await?;
+                // To clear it holds the motor at the velocity that it has.
+                if self.status().await?.stalled {
+                    self.clear_stall().await?;
+                }
             }
             Command::Look => {
                 let status = self.status().await?;

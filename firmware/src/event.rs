@@ -124,7 +124,7 @@ words! { Event:
     Self::GivenUp(device, trouble) => "{}: given up: {}", device, trouble;
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
-    Self::PassedBy(count) => "{} sample(s) passed by: a conclusion or a plan was computed", count;
+    Self::PassedBy(count) => "{} sample(s) not needed while a conclusion or a plan was computed", count;
     Self::Overflowed(count) => "{} sample(s) lost: the queue was full", count;
     Self::BaseStill(angle) =>
         "base: still within {}°, nothing is subtracted", Rounded::<4>(angle);

@@ -177,17 +177,18 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
         {
             shared.report(Event::HeadingNotKept(fault));
         }
-        let saving = if is_to_forget && outcome.is_err() {
+        let saving = if is_to_forget {
             let waited = with_timeout(FORGOTTEN_AGAIN, shared.saving.wait()).await;
             waited.unwrap_or(Saving::Nothing)
         } else {
             shared.saving.wait().await
         };
-        is_to_forget = saving == Saving::Nothing;
+        is_to_forget |= saving == Saving::Nothing;
         outcome = match saving {
             Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
             Saving::Nothing => store.forget(HEADING).await,
         };
+        is_to_forget &= outcome.is_err();
     }
 }
 

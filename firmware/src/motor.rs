@@ -131,19 +131,20 @@ impl<'a, M: Actuator> Motor<'a, M> {
         Err(self.fail(trouble).into())
     }
 
-    /// Brings the motor to rest by its ramp, whatever has become of its driver or its encoder; where it neither comes
-    /// to rest nor answers, asks for its current to be taken away.
+    /// Brings the motor to rest by its ramp, and has it stay there, whatever has become of its encoder, after any
+    /// alarm; where it does not come to rest or does not answer, asks for its current to be taken away.
     pub(crate) async fn halt(&mut self) {
         let deadline = Instant::now() + LONGEST_STOP;
         let mut unanswered = 0;
         while Instant::now() < deadline && unanswered < UNANSWERED {
-            match self.actuator.device.execute(Command::Look).await {
-                Ok(Some(motion)) if motion.is_standing => return,
-                Ok(_) => unanswered = 0,
-                Err(_) => unanswered += 1,
+            let device = &mut self.actuator.device;
+            // A motor that stands may have been told to go on, as one that a switch stops.
+            let released = device.execute(Command::Release).await;
+            match (released, device.execute(Command::Look).await) {
+                (Ok(_), Ok(Some(motion))) if motion.is_standing => return,
+                (Ok(_), Ok(_)) => unanswered = 0,
+                _ => unanswered += 1,
             }
-            // If this fails, so does the next look.
-            let _ = self.actuator.device.execute(Command::Seek(0.0)).await;
             Timer::after(POLL).await;
         }
         self.report(Event::CurrentOff);
@@ -165,13 +166,17 @@ impl<'a, M: Actuator> Motor<'a, M> {
         near + (self.shown() - Angle::from_rad(near)).signed_rad()
     }
 
-    /// A recent angle of the encoder, rad, on the turn nearest to `near`; waits up to 5 s for it.
+    /// A recent angle of the encoder, rad, on the turn nearest to `near`; waits up to 5 s for it, and as long as
+    /// sensors that were given up rest.
     ///
     /// # Errors
     /// The encoder is given up as silent.
     pub(crate) async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
-        let deadline = Instant::now() + LONGEST_WAIT;
+        let mut deadline = Instant::now() + LONGEST_WAIT;
         while self.fresh().is_none() {
+            if self.shared.are_sensors_resting.get() {
+                deadline = Instant::now() + LONGEST_WAIT;
+            }
             if Instant::now() > deadline {
                 return Err(self.shared.give_up(self.axis.encoder, Trouble::Silent));
             }

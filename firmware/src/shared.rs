@@ -159,6 +159,8 @@ pub struct Shared<'a> {
     pub is_kept: Common<bool>,
     /// Whether the body is at rest, by the navigator's detection.
     pub is_at_rest: Common<bool>,
+    /// Whether sensors that were given up rest until they may be tried again: no angle is read meanwhile.
+    pub(crate) are_sensors_resting: Common<bool>,
     /// Sampling period; one second until acquisition has stated it.
     pub period: Common<Duration>,
     /// Time between two motions; one second until acquisition has stated it.
@@ -204,6 +206,7 @@ impl<'a> Shared<'a> {
             alignments: Common::new(Alignments::First),
             is_kept: Common::new(false),
             is_at_rest: Common::new(false),
+            are_sensors_resting: Common::default(),
             period: Common::new(Duration::from_secs(1)),
             motion_period: Common::new(Duration::from_secs(1)),
             clocks: Timebase::nominal(Clock::Converter, Clock::Crystal),
@@ -254,8 +257,8 @@ impl<'a> Shared<'a> {
         self.alignments.get() == Alignments::Idle
     }
 
-    /// Whether the first alignment is over, and its azimuth is kept. From then on, a device that is
-    /// given up does not end the operation; it is tried again after a pause.
+    /// Whether an attitude is kept, and the first alignment is over, with an azimuth or without. From then on, a sensor
+    /// that is given up is tried again after a pause.
     #[must_use]
     pub fn is_holding(&self) -> bool {
         self.is_kept.get() && self.alignments.get() != Alignments::First

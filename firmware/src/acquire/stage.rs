@@ -287,6 +287,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
 async fn pause(reason: Refusal, shared: &Shared<'_>) {
     let until = Instant::now() + RETRY;
     let mut ticker = Ticker::every(shared.period.get());
+    shared.are_sensors_resting.set(true);
     while Instant::now() < until || !shared.is_at_rest.get() {
         ticker.next().await;
         shared.count(|health| health.samples = health.samples.saturating_add(1));
@@ -294,4 +295,5 @@ async fn pause(reason: Refusal, shared: &Shared<'_>) {
             shared.fail(reason);
         }
     }
+    shared.are_sensors_resting.set(false);
 }

@@ -45,6 +45,9 @@ const MOST_RECEIVED: usize = 16;
 
 /// Most pulses that free the data line: those of a byte and its acknowledge (UM10204, 3.1.16).
 const PULSES: usize = 9;
+/// Time for a line to rise that the interface has held: 1 µs at most (UM10204, table 10), and that in the midst of which a
+/// wait begins.
+const RISING: Duration = Duration::from_micros(2);
 /// Half a period of these, and the pause behind a stop: 5 µs at least, those of the standard mode (UM10204, table 10: 4.7 µs),
 /// and the microsecond in the midst of which a wait begins. Nine pulses take 0.16 ms.
 const HALF: Duration = Duration::from_micros(6);
@@ -139,6 +142,7 @@ impl BaseBus {
     /// of registers until it is on again take.
     fn start(&mut self) {
         BUS.cr1().modify(|control| control.set_pe(false));
+        block_for(RISING);
         if self.data.0.is_low() {
             self.free();
         }

@@ -202,8 +202,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok((state & ramp_stat::LATCHED_LEFT != 0).then(|| edge.cast_signed()))
     }
 
-    /// Acknowledges a stall; the motor stays where it is. The position is lost, so the axis must be
-    /// homed again.
+    /// Acknowledges a stall, by which the motor stands; it stays where it is. One that moves would go on at its
+    /// velocity. The position is lost, so the axis must be homed again.
     pub async fn clear_stall(&mut self) -> Result<(), Fault> {
         let mut state = [0];
         let look = Pass::Read(&[registers::RAMP_STAT], &mut state);

@@ -73,7 +73,7 @@ impl Attitude {
         }
     }
 
-    /// Rotates the body about its own axes by increments, and by a vector beside them, rad. Up to [`LARGEST`] of both,
+    /// Rotates the body about its own axes by increments, and by a vector beside them, rad. Up to 0.1 rad of both,
     /// increments are taken in integers, with a relative error of 1e-9: a sum of turns is off by no scale factor.
     pub fn turn_by(&mut self, increments: &[AngleIncrement; 3], beside: &[f32; 3]) {
         const STEP: f32 = AngleIncrement::STEP as f32;

@@ -2,7 +2,13 @@
 
 use drivers::fault::Fault;
 use drivers::tmc5160::units::Velocity;
-use embassy_time::{Duration, Timer};
+use embassy_time::{Duration, Instant, Timer};
+use firmware::configuration::StageConfiguration;
+use firmware::mechanism::Mechanism as _;
+use firmware::ports::Actuator;
+use firmware::shared::Shared;
+use firmware::stage::Stage;
+use hal_mock::tmc5160::ChipFault;
 
 use super::driver::{on_a_stage, rest};
 
@@ -112,5 +118,42 @@ fn a_stop_takes_the_ramps_time() {
         // 210 000 / 420 000 s.
         let (_, seconds) = rest(driver).await;
         assert!((seconds - 0.5).abs() < 0.003, "{seconds}");
+    });
+}
+
+/// Halts the axis, as once it is given up; returns how long that took, s, and whether its current is to be taken away.
+async fn halted(driver: &mut impl Actuator) -> (f64, bool) {
+    let shared = Shared::new(&());
+    let begun = Instant::now();
+    Stage::new(driver, &StageConfiguration::default(), &shared).halt().await;
+    (begun.elapsed().as_micros() as f64 * 1e-6, shared.current_off.signaled())
+}
+
+#[test]
+fn an_axis_that_is_halted_at_a_switch_stays_there_when_the_switch_opens() {
+    on_a_stage(async |driver, rig, _| {
+        rig.borrow_mut().environment.left_at = Some(-30_000.0);
+        driver.run(Velocity(-40_000)).await.expect("it runs");
+        rest(driver).await;
+        assert!(!halted(driver).await.1);
+        let before = driver.status().await.expect("it is well").position;
+        rig.borrow_mut().environment.left_at = None;
+        Timer::after(Duration::from_secs(5)).await;
+        assert_eq!(driver.status().await.expect("it is well").position, before);
+    });
+}
+
+#[test]
+fn an_axis_whose_bridges_were_hot_for_a_moment_is_halted_by_its_ramp() {
+    on_a_stage(async |driver, rig, _| {
+        driver.run(Velocity(210_000)).await.expect("it runs");
+        Timer::after(Duration::from_secs(1)).await;
+        rig.borrow_mut().chip.inject(ChipFault::Overheated);
+        Timer::after(Duration::from_millis(20)).await;
+        let _ = driver.status().await;
+        rig.borrow_mut().chip.inject(ChipFault::None);
+        let (seconds, is_current_off) = halted(driver).await;
+        assert!(seconds < 1.0 && !is_current_off, "{seconds} s");
+        assert!(driver.status().await.expect("it is well").standing);
     });
 }

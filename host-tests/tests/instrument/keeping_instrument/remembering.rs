@@ -9,6 +9,8 @@ use firmware::keep::remember;
 use firmware::ports::{Observer, Store};
 use firmware::shared::{Saving, Shared};
 use host::virtual_time;
+use orientation::attitude::restart::Remembered;
+use orientation::units::{Radians, RadiansPerSecond, Seconds};
 
 /// How often it was reported that the heading cannot be kept.
 #[derive(Default)]
@@ -21,7 +23,7 @@ impl Observer for Reported {
     }
 }
 
-/// A store that fails to forget so many times, and when it was asked to, s.
+/// A store that keeps nothing and fails to forget so many times, and when it was asked to, s.
 struct Failing<'a> {
     failures: usize,
     asked: &'a RefCell<Vec<u64>>,
@@ -33,7 +35,7 @@ impl Store for Failing<'_> {
     }
 
     async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
-        Ok(())
+        Err(Fault::NotReady)
     }
 
     async fn forget(&mut self, _: u8) -> Result<(), Fault> {
@@ -60,4 +62,30 @@ fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
     let waits: Vec<_> = asked.borrow().windows(2).map(|times| times[1] - times[0]).collect();
     assert_eq!(waits, [10, 10, 10], "asked at {:?} s", asked.borrow());
     assert_eq!(reported.0.get(), 1, "it is told once");
+}
+
+/// Any heading.
+fn heading() -> Remembered {
+    let [azimuth, sigma, pitch, roll] = [1.0, 1e-3, 0.0, 0.0].map(Radians);
+    let (rates, rest) = ([RadiansPerSecond(0.0); 3], Seconds(15.0));
+    Remembered { azimuth, sigma, pitch, roll, rates, rest }
+}
+
+/// The heading of the next rest, which is not kept, does not make that of before the drive valid again.
+#[test]
+fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept_either() {
+    let (reported, asked) = (Reported::default(), RefCell::default());
+    let shared = Shared::new(&reported);
+    let mut store = Failing { failures: 1, asked: &asked };
+    let driving = async {
+        shared.saving.signal(Saving::Nothing);
+        Timer::after(Duration::from_secs(5)).await;
+        shared.saving.signal(Saving::Heading(heading()));
+        Timer::after(Duration::from_secs(120)).await;
+    };
+    let remembering = async {
+        remember(&mut store, &shared).await;
+    };
+    virtual_time::run_beside(remembering, driving).expect("time wakes both");
+    assert_eq!(*asked.borrow(), [0, 15], "s");
 }

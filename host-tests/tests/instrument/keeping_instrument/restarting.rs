@@ -4,7 +4,7 @@
 use std::cell::Cell;
 
 use super::reported;
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Observer, Recorder};
 use hal_mock::chip::Select;
@@ -106,4 +106,26 @@ fn a_gyro_that_is_started_again_and_again_costs_the_keeper_no_motion() {
 #[test]
 fn an_accelerometer_that_is_started_again_and_again_costs_the_keeper_no_motion() {
     costs_no_motion((Select::Accelerometer, "accelerometer"));
+}
+
+/// What a device does whose transfers fail for so long from some time on, s.
+fn away(select: Select, from_s: f64, millis: u64) -> KeptPlan {
+    let start = Instant::from_micros((from_s * 1e6) as u64);
+    let when = When::during(start, Duration::from_millis(millis));
+    let plan = FaultPlan { fault: BusFault::Error, when };
+    let chips = Injection { buses: [(select, plan)].into_iter().collect(), ..Injection::NONE };
+    KeptPlan { chips, ..KeptPlan::of(None) }
+}
+
+/// No angle is read while a sensor that was given up rests, whatever moves meanwhile.
+#[test]
+fn an_encoder_is_not_given_up_for_the_rest_of_another_sensor() {
+    let hold = Hold { drive_s: 30.0, ..Hold::of(100.0) };
+    for (select, from_s) in [(Select::Accelerometer, 60.0), (Select::Gyro, 69.0)] {
+        let run = super::keep(&super::frames(1, hold), &away(select, from_s, 2500));
+        let lines = reported(&run);
+        assert!(lines.iter().any(|line| line.contains("given up")), "{lines:#?}");
+        let encoder = lines.iter().find(|line| line.contains("encoder: given up"));
+        assert_eq!(encoder, None, "{select:?}: {lines:#?}");
+    }
 }
