@@ -137,7 +137,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
         let deadline = Instant::now() + LONGEST_STOP;
         let mut unanswered = 0;
         while Instant::now() < deadline && unanswered < UNANSWERED {
-            let device = &mut self.actuator.device;
+            let device = &mut *self.actuator.device;
             // A motor that stands may have been told to go on, as one that a switch stops.
             let released = device.execute(Command::Release).await;
             match (released, device.execute(Command::Look).await) {
