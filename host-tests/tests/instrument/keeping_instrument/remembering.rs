@@ -45,25 +45,6 @@ impl Store for Failing<'_> {
     }
 }
 
-/// A heading from before the drive must not be recalled after it.
-#[test]
-fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
-    let (reported, asked) = (Reported::default(), RefCell::default());
-    let shared = Shared::new(&reported);
-    let mut store = Failing { failures: 3, asked: &asked };
-    let driving = async {
-        shared.saving.signal(Saving::Nothing);
-        Timer::after(Duration::from_secs(120)).await;
-    };
-    let remembering = async {
-        remember(&mut store, &shared).await;
-    };
-    virtual_time::run_beside(remembering, driving).expect("time wakes both");
-    let waits: Vec<_> = asked.borrow().windows(2).map(|times| times[1] - times[0]).collect();
-    assert_eq!(waits, [10, 10, 10], "asked at {:?} s", asked.borrow());
-    assert_eq!(reported.0.get(), 1, "it is told once");
-}
-
 /// Any heading.
 fn heading() -> Remembered {
     let [azimuth, sigma, pitch, roll] = [1.0, 1e-3, 0.0, 0.0].map(Radians);
@@ -71,21 +52,38 @@ fn heading() -> Remembered {
     Remembered { azimuth, sigma, pitch, roll, rates, rest }
 }
 
-/// The heading of the next rest, which is not kept, does not make that of before the drive valid again.
-#[test]
-fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept_either() {
+/// When a store that fails to forget so many times is asked to, s, and how often that is reported, where it is given
+/// these items at these times, s.
+fn asked(failures: usize, given: &[(u64, Saving)]) -> (Vec<u64>, u32) {
     let (reported, asked) = (Reported::default(), RefCell::default());
     let shared = Shared::new(&reported);
-    let mut store = Failing { failures: 1, asked: &asked };
+    let mut store = Failing { failures, asked: &asked };
     let driving = async {
-        shared.saving.signal(Saving::Nothing);
-        Timer::after(Duration::from_secs(5)).await;
-        shared.saving.signal(Saving::Heading(heading()));
+        for (second, saving) in given {
+            Timer::at(Instant::from_secs(*second)).await;
+            shared.saving.signal(*saving);
+        }
         Timer::after(Duration::from_secs(120)).await;
     };
     let remembering = async {
         remember(&mut store, &shared).await;
     };
     virtual_time::run_beside(remembering, driving).expect("time wakes both");
-    assert_eq!(*asked.borrow(), [0, 15], "s");
+    (asked.take(), reported.0.get())
+}
+
+/// A heading from before the drive must not be recalled after it.
+#[test]
+fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
+    let (asked, reported) = asked(3, &[(0, Saving::Nothing)]);
+    let waits: Vec<_> = asked.windows(2).map(|times| times[1] - times[0]).collect();
+    assert_eq!(waits, [10, 10, 10], "asked at {asked:?} s");
+    assert_eq!(reported, 1, "it is told once");
+}
+
+/// The heading of the next rest, which is not kept, does not make that of before the drive valid again.
+#[test]
+fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept_either() {
+    let (asked, _) = asked(1, &[(0, Saving::Nothing), (5, Saving::Heading(heading()))]);
+    assert_eq!(asked, [0, 15], "s");
 }
