@@ -29,10 +29,8 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     loop {
         request = match request {
             Request::Compute => {
-                shared.begin_computing(aligner.taken());
-                let request = aligner.compute(&mut listener(shared));
-                shared.end_computing();
-                request
+                let taken = aligner.taken();
+                shared.while_computing(taken, || aligner.compute(&mut listener(shared)))
             }
             Request::Locate => match aiding.displacement() {
                 Some(place) => give(&mut aligner, Input::Displaced(place), shared),

@@ -134,8 +134,6 @@ pub struct Shared<'a> {
     pub concluding: Signal<Lock, units::Instant>,
     /// Whether the aligner computes, and needs no samples.
     pub is_computing: Common<bool>,
-    /// Number of samples that had been passed by when it began to.
-    passed_by: Common<u32>,
     /// From the aligner to the navigator: an azimuth, and the time of the sample to which it
     /// belongs.
     pub found: Signal<Lock, (units::Instant, Azimuth)>,
@@ -194,7 +192,6 @@ impl<'a> Shared<'a> {
             motions: Channel::new(),
             concluding: Signal::new(),
             is_computing: Common::new(false),
-            passed_by: Common::new(0),
             found: Signal::new(),
             caught_up: Signal::new(),
             is_behind: Common::new(false),
@@ -270,23 +267,27 @@ impl<'a> Shared<'a> {
         self.is_idle() && !self.is_kept.get()
     }
 
-    /// Notes that the aligner computes what follows from samples up to this time, and needs no others.
-    pub(crate) fn begin_computing(&self, taken: Option<units::Instant>) {
+    /// Has the aligner compute what follows from samples up to this time; it needs no others meanwhile, and how many were
+    /// passed by is reported.
+    pub(crate) fn while_computing<T>(
+        &self,
+        taken: Option<units::Instant>,
+        compute: impl FnOnce() -> T,
+    ) -> T {
         if let Some(taken) = taken {
             self.concluding.signal(taken);
         }
-        self.passed_by.set(self.health.get().passed_by);
+        let passed_by = || self.health.get().passed_by;
+        let before = passed_by();
         self.is_computing.set(true);
         self.caught_up.signal(());
-    }
-
-    /// Notes that the aligner needs samples again, and reports how many it has passed by meanwhile.
-    pub(crate) fn end_computing(&self) {
+        let computed = compute();
         self.is_computing.set(false);
-        let count = self.health.get().passed_by.wrapping_sub(self.passed_by.get());
+        let count = passed_by() - before;
         if count > 0 {
             self.report(Event::PassedBy(count));
         }
+        computed
     }
 
     /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs none, or is

@@ -22,6 +22,8 @@ const LARGEST: f32 = 0.1;
 const FINER: u32 = 41;
 /// Largest rotation that is taken in the finer steps, rad.
 const SMALL: f32 = LARGEST / (1 << (FINER - FINE)) as f32;
+/// No increment about any axis.
+const NONE: [AngleIncrement; 3] = [AngleIncrement(0); 3];
 /// Greatest number of pieces of a rotation: a turn and a half.
 const PIECES: u32 = 100;
 /// Distance from the vertical within which a body counts as standing on end, rad: rounding then
@@ -63,13 +65,14 @@ impl Attitude {
     pub fn turn(&mut self, rotation: &[f32; 3]) {
         let square = dot(rotation, rotation);
         if square <= LARGEST * LARGEST {
-            return self.turn_at_once(rotation, square);
+            return self.turn_at_once(&NONE, rotation, rotation, square);
         }
         let length = libm::sqrtf(square);
         let pieces = ((length / LARGEST) as u32).saturating_add(1);
         let part = if pieces > PIECES { LARGEST / length } else { 1.0 / pieces as f32 };
         for _ in 0..pieces.min(PIECES) {
-            self.turn_at_once(&rotation.map(|turned| part * turned), part * part * square);
+            let piece = rotation.map(|turned| part * turned);
+            self.turn_at_once(&NONE, &piece, &piece, part * part * square);
         }
     }
 
@@ -79,22 +82,26 @@ impl Attitude {
         const STEP: f32 = AngleIncrement::STEP as f32;
         let rotation = array::from_fn(|axis| increments[axis].0 as f32 * STEP + beside[axis]);
         let square = dot(&rotation, &rotation);
-        if square <= SMALL * SMALL {
-            self.turn_in_steps::<FINER>(halves::<FINER>(increments, beside), &rotation, square);
-        } else if square <= LARGEST * LARGEST {
-            self.turn_in_steps::<FINE>(halves::<FINE>(increments, beside), &rotation, square);
+        if square <= LARGEST * LARGEST {
+            self.turn_at_once(increments, beside, &rotation, square);
         } else {
             self.turn(&rotation);
         }
     }
 
-    /// Rotates by a rotation vector up to [`LARGEST`], given its squared length.
-    fn turn_at_once(&mut self, rotation: &[f32; 3], square: f32) {
-        const NONE: [AngleIncrement; 3] = [AngleIncrement(0); 3];
+    /// Rotates by increments and a vector beside them, given their sum, which is up to [`LARGEST`], and its squared
+    /// length.
+    fn turn_at_once(
+        &mut self,
+        increments: &[AngleIncrement; 3],
+        beside: &[f32; 3],
+        rotation: &[f32; 3],
+        square: f32,
+    ) {
         if square <= SMALL * SMALL {
-            self.turn_in_steps::<FINER>(halves::<FINER>(&NONE, rotation), rotation, square);
+            self.turn_in_steps::<FINER>(halves::<FINER>(increments, beside), rotation, square);
         } else {
-            self.turn_in_steps::<FINE>(halves::<FINE>(&NONE, rotation), rotation, square);
+            self.turn_in_steps::<FINE>(halves::<FINE>(increments, beside), rotation, square);
         }
     }
 
