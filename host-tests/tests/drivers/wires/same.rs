@@ -45,9 +45,26 @@ fn after<C: Debug + SpiChip<Bench>>(
     After { reply, chip: format!("{:?}", single.chip), bench: single.environment.clone(), line }
 }
 
+/// Whether a conversion or a sample ends by a time within a transaction, be it one that a part of its bytes begins and
+/// the rest ends.
+fn ends_within<C: Clone + SpiChip<Bench>>(
+    single: &Single<C, Bench>,
+    transaction: &Transaction,
+    end: Instant,
+) -> bool {
+    let ends = |chip: &C| chip.next_event().is_some_and(|at| at <= end);
+    let after = |bytes: usize| {
+        let mut single = single.clone();
+        let part = Transaction { sent: &transaction.sent[..bytes], ..*transaction };
+        single.transact(CHIP, &part, &mut vec![0; bytes]);
+        single.chip
+    };
+    ends(&single.chip) || (1..=transaction.sent.len()).any(|bytes| ends(&after(bytes)))
+}
+
 /// Up to the first transaction that may change a register or a conversion while a conversion or sample ends: which of them comes first,
 /// bytes alone tell.
-fn by_transaction<C: Debug + SpiChip<Bench>>(
+fn by_transaction<C: Clone + Debug + SpiChip<Bench>>(
     chip: C,
     steps: &[Step],
     may_change: fn(&[u8]) -> bool,
@@ -60,12 +77,10 @@ fn by_transaction<C: Debug + SpiChip<Bench>>(
         let transaction = Transaction { now: Instant::from_micros(us), hertz: *hertz, sent };
         single.ready_line(CHIP, transaction.now);
         us += (byte_ns(*hertz) * sent.len() as u64).div_ceil(1000);
-        let ends = |chip: &C| chip.next_event().is_some_and(|at| at <= Instant::from_micros(us));
-        let ends_within = ends(&single.chip);
-        single.transact(CHIP, &transaction, &mut reply);
-        if may_change(sent) && (ends_within || ends(&single.chip)) {
+        if may_change(sent) && ends_within(&single, &transaction, Instant::from_micros(us)) {
             return None;
         }
+        single.transact(CHIP, &transaction, &mut reply);
         Some(after(&mut single, reply, us))
     };
     steps.iter().map_while(&mut transact).collect()
