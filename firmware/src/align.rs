@@ -9,6 +9,7 @@ use orientation::navigation::aligner::{Input, State};
 use orientation::navigation::{Aligner, Order};
 use orientation::signal::Timed;
 
+use crate::event::Event;
 use crate::ports::{Aiding, Recorder};
 use crate::shared::{Channels, Shared, WAITING};
 
@@ -28,10 +29,7 @@ pub async fn align<R: Recorder<S>, S: Timed>(
     let mut request = aligner.begin(&mut listener(shared));
     loop {
         request = match request {
-            Request::Compute => {
-                let taken = aligner.taken();
-                shared.while_computing(taken, || aligner.compute(&mut listener(shared)))
-            }
+            Request::Compute => compute(&mut aligner, channels),
             Request::Locate => match aiding.displacement() {
                 Some(place) => give(&mut aligner, Input::Displaced(place), shared),
                 None => Request::Continue,
@@ -87,6 +85,28 @@ async fn next<S>(channels: &Channels<'_, S>, may_rest: bool) -> Either<Order, S>
         Timer::after(REST.min(period * WAITING as u32)).await;
     }
     select(shared.orders.take(), samples.receive()).await
+}
+
+/// Has the aligner compute what follows from the samples that it has taken. It needs no others meanwhile: they are passed
+/// by and reported, and so are those that waited then, so that no gap is in what it measures next.
+fn compute<S: Timed>(aligner: &mut Aligner<'_, S>, channels: &Channels<'_, S>) -> Request {
+    let Channels { samples, shared } = channels;
+    if let Some(taken) = aligner.taken() {
+        shared.concluding.signal(taken);
+    }
+    let passed_by = || shared.health.get().passed_by;
+    let before = passed_by();
+    shared.is_computing.set(true);
+    shared.caught_up.signal(());
+    let request = aligner.compute(&mut listener(shared));
+    shared.is_computing.set(false);
+    if passed_by() > before {
+        while samples.try_receive().is_ok() {
+            shared.pass_by();
+        }
+        shared.report(Event::PassedBy(passed_by() - before));
+    }
+    request
 }
 
 /// Gives the aligner an input beside its samples.

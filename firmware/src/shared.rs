@@ -267,27 +267,9 @@ impl<'a> Shared<'a> {
         self.is_idle() && !self.is_kept.get()
     }
 
-    /// Has the aligner compute what follows from samples up to this time; it needs no others meanwhile, and how many were
-    /// passed by is reported.
-    pub(crate) fn while_computing<T>(
-        &self,
-        taken: Option<units::Instant>,
-        compute: impl FnOnce() -> T,
-    ) -> T {
-        if let Some(taken) = taken {
-            self.concluding.signal(taken);
-        }
-        let passed_by = || self.health.get().passed_by;
-        let before = passed_by();
-        self.is_computing.set(true);
-        self.caught_up.signal(());
-        let computed = compute();
-        self.is_computing.set(false);
-        let count = passed_by() - before;
-        if count > 0 {
-            self.report(Event::PassedBy(count));
-        }
-        computed
+    /// Counts a sample that the aligner does not need, since it computes.
+    pub(crate) fn pass_by(&self) {
+        self.count(|health| health.passed_by = health.passed_by.saturating_add(1));
     }
 
     /// Whether the navigator may take the motions that were queued: the aligner has had their samples, or needs none, or is

@@ -15,6 +15,7 @@ use hal_mock::flash::nor::PoweredFlash;
 use simulated::executed;
 use simulated::fault::Injection;
 use simulated::scenario::Scenario;
+use simulated::vehicle::VehicleScenario;
 
 use crate::controller::flash::{Flash, STORE};
 use crate::wiring::board::{
@@ -51,11 +52,7 @@ impl World {
     pub fn new(platform: Platform, seed: u64) -> Result<Self, String> {
         let injection = keep(Injection::at(None, Instant::MIN));
         match platform {
-            Platform::Stage => {
-                let scenario = executed::stage(seed);
-                let carrier = simulated::board(&scenario, None, injection);
-                Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), &scenario)
-            }
+            Platform::Stage => Self::stepping(&executed::stage(seed)),
             Platform::Turntable => {
                 let scenario = executed::turntable(seed);
                 let carrier = scenario.board(None, injection);
@@ -66,14 +63,7 @@ impl World {
                 let carrier = scenario.board(None, injection);
                 Self::at_rest(carrier, (FRAMES, ONE_LINE), scenario.settings(), &scenario.base)
             }
-            Platform::Vehicle => {
-                let scenario = executed::vehicle(seed);
-                let day = keep(scenario.day(None));
-                let board = || scenario.board(&day.legs, &day.events, injection);
-                let truth = board().plant;
-                let world = Self::of(board(), (VEHICLE, VEHICLE_LINES), scenario.settings());
-                world.map(|world| world.with(move |now| truth.truth_at(now).attitude.azimuth_rad))
-            }
+            Platform::Vehicle => Self::driving(&executed::vehicle(seed)),
             Platform::Spin => {
                 let scenario = executed::spin(seed);
                 let course = keep(scenario.course(None));
@@ -83,6 +73,29 @@ impl World {
                 world.map(|world| world.with(move |now| truth.truth_at(now).roll_rad))
             }
         }
+    }
+
+    /// The world of a vehicle's scenario, in which nothing goes wrong.
+    ///
+    /// # Errors
+    /// Settings that the record does not take.
+    pub fn driving(scenario: &VehicleScenario) -> Result<Self, String> {
+        let injection = keep(Injection::at(None, Instant::MIN));
+        let day = keep(scenario.day(None));
+        let board = || scenario.board(&day.legs, &day.events, injection);
+        let truth = board().plant;
+        let world = Self::of(board(), (VEHICLE, VEHICLE_LINES), scenario.settings());
+        world.map(|world| world.with(move |now| truth.truth_at(now).attitude.azimuth_rad))
+    }
+
+    /// The world of a stage's scenario, in which nothing goes wrong.
+    ///
+    /// # Errors
+    /// Settings that the record does not take.
+    pub fn stepping(scenario: &Scenario) -> Result<Self, String> {
+        let injection = keep(Injection::at(None, Instant::MIN));
+        let carrier = simulated::board(scenario, None, injection);
+        Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), scenario)
     }
 
     /// A world with the record of these settings in its store.

@@ -48,7 +48,7 @@ impl<'a, S> Outlet<'a, S> {
         let shared = self.shared();
         shared.count(|health| health.samples = health.samples.saturating_add(1));
         if shared.is_computing.get() {
-            return shared.count(|health| health.passed_by = health.passed_by.saturating_add(1));
+            return shared.pass_by();
         }
         shared.is_behind.set(true);
         if self.channels.samples.try_send(sample).is_err() {

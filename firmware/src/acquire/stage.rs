@@ -2,8 +2,9 @@
 //!
 //! The conversion sets the time; encoder and accelerometer are read right after it, the
 //! accelerometer with every n-th sample: between, the stage cannot have turned far, and the force
-//! is only averaged. Without a valid rate and a valid angle there is no sample. While one of these
-//! devices is started again, the sensors on the base are read and passed on all the same.
+//! is only averaged. Without a valid rate and a valid angle there is no sample. The sensors on the base
+//! start first; while one of these devices is started, or started again, they are read and passed on
+//! all the same.
 
 use core::convert::Infallible;
 use core::future::poll_fn;
@@ -101,13 +102,10 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         &mut self.acquisition.outlet
     }
 
+    /// Starts the sensors on the base, which carry attitude and heading alone until the others have
+    /// started.
     async fn start(&mut self) -> Result<(), Refusal> {
-        let Self { acquisition, base } = self;
-        let shared = acquisition.outlet.shared();
-        acquisition.forces.accelerometer.start(shared).await?;
-        acquisition.pointing.start().await?;
-        base.start(shared).await?;
-        acquisition.rates.gyro.start(shared).await
+        self.base.start(self.acquisition.outlet.shared()).await
     }
 
     /// Reads the sensors on the base beside the others, so that none waits for a bus of theirs that
@@ -146,8 +144,11 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
         self.pointing.renew();
     }
 
-    /// Takes samples and hands them over without end.
+    /// Starts the sensors, takes samples and hands them over without end.
     async fn run(&mut self, base: Option<&Compensation>) -> Result<Infallible, Refusal> {
+        while let Err(reason) = self.start(base).await {
+            self.do_without(reason, base).await?;
+        }
         loop {
             match self.sample(base).await {
                 Ok(Some(sample)) => self.outlet.hand_over(sample),
@@ -155,6 +156,20 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
                 Err(reason) => self.do_without(reason, base).await?,
             }
         }
+    }
+
+    /// Starts the sensors beside those on the base.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn start(&mut self, base: Option<&Compensation>) -> Result<(), Refusal> {
+        let shared = self.outlet.shared();
+        let starting = pin!(async {
+            self.forces.accelerometer.start(shared).await?;
+            self.pointing.start().await?;
+            self.rates.gyro.start(shared).await
+        });
+        self.coarse.beside(starting, base, shared).await
     }
 
     /// The compensation by the base's sensors, where a coarse reading is asked for at one of the two moments of a

@@ -5,6 +5,7 @@
 mod clocks;
 mod conclusion;
 mod cost;
+mod course;
 mod readme;
 mod rules;
 mod settings;

@@ -24,14 +24,14 @@ pub(super) fn azimuth(report: &Report) -> (f64, f64) {
 
 #[test]
 fn every_carrier_starts_with_its_record_and_its_chips_pass_their_self_tests() {
-    let axis = ["stage", "accelerometer", "encoder", "base", "gyro"];
+    let axis = ["stage", "base", "accelerometer", "encoder", "gyro"];
     let frames = [
         "outer frame",
         "inner frame",
+        "base",
         "accelerometer",
         "outer encoder",
         "inner encoder",
-        "base",
         "gyro",
     ];
     let triad = ["accelerometer", "forward gyro", "right gyro", "down gyro"];

@@ -7,10 +7,8 @@ use firmware::platform::Platform;
 use super::support::board::Board;
 use super::support::executed::executed;
 use super::support::figure::within;
-use super::support::worlds::short_stage;
+use super::support::worlds::{FULL, short_stage};
 
-/// Headings that fill the page which has the settings.
-const FULL: usize = 18;
 /// Rows of the settings, and of a heading.
 const ROWS: [u64; 2] = [27, 12];
 

@@ -74,12 +74,15 @@ fn a_platform_comes_to_rest_where_a_transfer_of_the_sensors_hangs() {
 /// Where each transfer hangs that goes to a motor's driver, its current is taken away.
 #[test]
 fn a_platform_comes_to_rest_where_each_transfer_of_the_motors_hangs() {
-    let TurningBoard { mut board, turning } = TurningBoard::new();
-    board.controller(|controller| controller.spi[1].is_stuck = true);
-    board.until("not brought to rest: the motors' current is taken away", 12.0);
-    board.run(3.0);
-    let words = "°/s a platform turns three seconds after the motors' current is taken away";
-    within(turning(&board).abs(), 0.0..=1.0, words);
+    for platform in [TurningBoard::new, TurningBoard::stage, TurningBoard::two_frames] {
+        let TurningBoard { mut board, turning } = platform();
+        assert!(turning(&board).abs() > 1.0, "it turns at {} °/s: {board}", turning(&board));
+        board.controller(|controller| controller.spi[1].is_stuck = true);
+        board.until("not brought to rest: the motors' current is taken away", 12.0);
+        board.run(3.0);
+        let words = "°/s a platform turns three seconds after the motors' current is taken away";
+        within(turning(&board).abs(), 0.0..=1.0, words);
+    }
 }
 
 /// What was given up is brought to rest even if its bus works again.
@@ -135,6 +138,21 @@ fn the_keeper_has_motion_all_the_time_where_each_transfer_of_the_motors_hangs() 
     let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
     assert_eq!(count("encoder: given up: its bus hangs"), 2, "{board}");
     assert_eq!(count("no motion"), 0, "{board}");
+}
+
+/// The base starts first, and nothing waits for the others.
+#[test]
+fn the_level_is_kept_where_each_transfer_of_the_motors_hangs_from_power_on() {
+    for carrier in [Platform::Stage, Platform::TwoFrame, Platform::Turntable] {
+        let mut board = Board::new(carrier);
+        board.controller(|controller| controller.spi[1].is_stuck = true);
+        board.until("keeping: level", 5.0);
+        board.run(20.0);
+        let lines = board.lines(0.0, f64::INFINITY);
+        let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
+        assert_eq!(count("ncoder: given up"), 2, "{board}");
+        assert_eq!(count("no motion"), 0, "{board}");
+    }
 }
 
 /// A time limit of five milliseconds ends every transfer, and the log names the base. It is tried twenty times more, and

@@ -19,11 +19,14 @@ use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 use simulated::turntable::TurntableScenario;
 
-/// When a device fails amid the alignment, and how long after it, s.
+/// When a device fails that does not start, or amid the alignment, and how long after it, s.
+const POWER_ON: f64 = 0.0;
 const AMID: f64 = 40.0;
 const AFTER: f64 = 60.0;
 /// Longest time between two motions, µs: the eight periods of 10 ms after which a gyro counts as silent, and two.
 const LONGEST: u64 = 100_000;
+/// Longest time from power-on to the first motion, µs: the coarse sensors' self-test takes 0.7 s.
+const FIRST: u64 = 800_000;
 
 /// A stage whose base drives for half a minute and stands for a minute, in alternation.
 fn stage() -> Scenario {
@@ -49,6 +52,7 @@ fn dead(select: Select, from_s: f64) -> KeptPlan {
 /// The keeper's motions, by their times.
 #[derive(Default)]
 struct Motions {
+    first: Cell<Option<units::Instant>>,
     latest: Cell<Option<units::Instant>>,
     /// The longest time between two of them, µs.
     gap: Cell<u64>,
@@ -59,6 +63,7 @@ impl Observer for Motions {
 
     fn navigates(&self, input: &Input) {
         if let Input::Motion(Motion::Moved(InertialSample { time, .. })) = input {
+            self.first.set(self.first.get().or(Some(*time)));
             let gap = self.latest.replace(Some(*time)).map_or(0, |latest| time.0 - latest.0);
             self.gap.set(self.gap.get().max(gap));
         }
@@ -80,15 +85,17 @@ where
     assert!(count(&format!("{name}: given up")) > 1, "{lines:#?}");
     assert_eq!(count("no motion is measured"), 0, "{lines:#?}");
     assert!(motions.gap.get() <= LONGEST, "{} µs: {lines:#?}", motions.gap.get());
+    let first = motions.first.get().expect("the keeper has motion");
+    assert!(first.0 <= FIRST, "{} µs: {lines:#?}", first.0);
 }
 
-/// Holds it on a stage and on a turntable, amid the alignment and after it.
+/// Holds it on a stage and on a turntable, from power-on, amid the alignment and after it.
 fn costs_no_motion(device: (Select, &str)) {
     let (stage, turntable) = (stage(), turntable());
-    for from_s in [AMID, stage.alignment_seconds() + AFTER] {
+    for from_s in [POWER_ON, AMID, stage.alignment_seconds() + AFTER] {
         holds_motion(&stage, device, from_s);
     }
-    for from_s in [AMID, turntable.alignment_seconds() + AFTER] {
+    for from_s in [POWER_ON, AMID, turntable.alignment_seconds() + AFTER] {
         holds_motion(&turntable, device, from_s);
     }
 }
@@ -115,6 +122,20 @@ fn away(select: Select, from_s: f64, millis: u64) -> KeptPlan {
     let plan = FaultPlan { fault: BusFault::Error, when };
     let chips = Injection { buses: [(select, plan)].into_iter().collect(), ..Injection::NONE };
     KeptPlan { chips, ..KeptPlan::of(None) }
+}
+
+/// The base stops for long enough to align anew, more than once.
+#[test]
+fn an_alignment_that_is_begun_after_the_motor_was_given_up_is_refused_at_once() {
+    let hold = Hold { realigns: true, drive_s: 30.0, stop_s: Some(60.0), ..Hold::of(300.0) };
+    let stage = Scenario { hold, ..stage() };
+    for from_s in [POWER_ON, AMID] {
+        let run = Trial::of(&stage).plan(dead(Select::Actuator, from_s)).run();
+        let lines = reported(&run.expect("the scenario is possible"));
+        let begun = lines.iter().filter(|line| line.ends_with("aligning anew")).count();
+        let refused = lines.iter().filter(|line| line.starts_with("no azimuth: ")).count();
+        assert!(begun > 1 && refused == begun + 1, "{begun} begun, {refused} refused: {lines:#?}");
+    }
 }
 
 /// No angle is read while a sensor that was given up rests, whatever moves meanwhile.

@@ -8,7 +8,7 @@ use emulated_board::wiring::board::BaseImu;
 use emulated_board::world::{World, stored};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
-use firmware::settings::save;
+use firmware::settings::{CarrierSchedule, Settings, save};
 use firmware::storage::HEADING;
 use hal_mock::chip::Single;
 use hal_mock::lsm6dsl::Lsm6dsl;
@@ -31,6 +31,8 @@ const CALIBRATED: CoarseConfiguration = CoarseConfiguration {
     lever_m: [0.1, 0.0, -0.4],
 };
 
+/// Headings that fill the page of the store that has the settings.
+pub const FULL: usize = 18;
 /// Bytes of a heading in the store: a version, eight numbers, a checksum.
 const HEADING_BYTES: usize = 72;
 
@@ -45,14 +47,19 @@ pub fn short_stage(holds: bool, headings: usize) -> World {
     let scenario = Scenario { positions: 3, dwell_s: 2.0, ..simulated::executed::stage(1) };
     let mut settings = scenario.settings().expect("the scenario has a latitude");
     settings.holds = holds;
+    usual(Platform::Stage).with_store(worn_store(&settings, headings))
+}
+
+/// A store with these settings, in which a void heading was written so many times.
+pub fn worn_store<C: CarrierSchedule>(settings: &Settings<C>, headings: usize) -> Vec<u8> {
     let store = stored(async |store| {
-        save(store, &settings).await.map_err(|error| error.to_string())?;
+        save(store, settings).await.map_err(|error| error.to_string())?;
         for _ in 0..headings {
             store.save(HEADING, &[0; HEADING_BYTES]).await.map_err(|fault| format!("{fault:?}"))?;
         }
         Ok(())
     });
-    usual(Platform::Stage).with_store(store.expect("a store takes settings and headings"))
+    store.expect("a store takes settings and headings")
 }
 
 /// Two frames on a base whose IMU has accelerometers as calibrated as their image states, until the result.
