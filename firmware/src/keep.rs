@@ -170,7 +170,8 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
     let loaded = load(store).await;
     shared.remembered.signal(loaded.unwrap_or_default());
     let mut outcome = loaded.map(|_| ());
-    let mut is_to_forget = false;
+    // One that cannot be read now may be read after a drive.
+    let mut is_to_forget = loaded.is_err();
     loop {
         if let Err(fault) = outcome
             && !core::mem::replace(&mut has_failed, true)

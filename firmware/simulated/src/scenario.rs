@@ -67,7 +67,7 @@ pub(super) const CONVERTER_NOISE: f64 = 1e-6;
 /// Play of the stage's gear, rad: 0.01°.
 const BACKLASH: f64 = 0.01 * DEGREE;
 /// The clocks of a stage: its converter runs on its own oscillator.
-const CLOCKS: Timebase = Timebase::nominal(Clock::Converter, Clock::Crystal);
+pub(super) const CLOCKS: Timebase = Timebase::nominal(Clock::Converter, Clock::Crystal);
 /// How the stage rings after it has stopped.
 const RINGING_HZ: f64 = 15.0;
 /// Damping ratio of that ringing.

@@ -18,7 +18,7 @@ use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::units::{DEGREE, Radians, RadiansPerSecond, Seconds, TURN};
 
 use super::fault::{Fault, Injection};
-use super::scenario::{GyroClass, Scenario};
+use super::scenario::{CLOCKS, GyroClass, Scenario};
 use super::{Chips, board_around};
 use firmware::storage::Today;
 
@@ -137,7 +137,13 @@ impl TurntableScenario {
         let count = speeds.iter().take_while(|speed| speed.0 > 0.0).count();
         let Self { modulated_turns, turns, .. } = *self;
         let sample_seconds = Seconds(1.0 / self.base.sample_rate_hz);
-        Procedure { modulated_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
+        let period_tolerance = CLOCKS.period_tolerance();
+        Procedure {
+            modulated_turns,
+            turns,
+            period_tolerance,
+            ..Procedure::new(&speeds[..count], sample_seconds)
+        }
     }
 
     /// Setting and procedure, checked; none where the latitude is none or the procedure impossible.

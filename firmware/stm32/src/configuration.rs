@@ -294,9 +294,10 @@ pub fn turning_setting(settings: &Settings<TurntableSchedule>) -> rotating::Sett
 }
 
 /// Procedure of the session on a rotating platform.
-pub fn turning_procedure(settings: &Settings<TurntableSchedule>) -> Turning {
+pub fn turning_procedure(settings: &Settings<TurntableSchedule>, clocks: Timebase) -> Turning {
     let TurntableSchedule { ref speeds, turns, modulated_turns } = settings.schedule;
-    Turning { turns, modulated_turns, ..Turning::new(speeds, period()) }
+    let period_tolerance = clocks.period_tolerance();
+    Turning { turns, modulated_turns, period_tolerance, ..Turning::new(speeds, period()) }
 }
 
 /// Configuration of the platform's devices.
@@ -388,6 +389,7 @@ pub const SPIN_CONVERTER: Converter =
 pub fn flight(settings: &Settings<SpinSchedule>, clocks: Timebase) -> Flight {
     let setting = spin::Setting {
         sample_seconds: Seconds(1.0 / SPIN_CONVERTER.rate.hertz()),
+        period_tolerance: clocks.period_tolerance(),
         angle_random_walk: RadiansPerRootSecond(SPIN_WALK * DEGREE_PER_SQRT_HOUR),
         scale_sigma: clocks.with_scale(SPIN_SCALE_SIGMA),
         bias_sigma: RadiansPerSecond::from_degrees_per_hour(SPIN_BIAS_SIGMA),

@@ -85,7 +85,7 @@ async fn session(
 ) -> Result<&'static mut Session, SetupError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting(settings);
-    let mut procedure = configuration::turning_procedure(settings);
+    let mut procedure = configuration::turning_procedure(settings, channels.shared.clocks);
     procedure.check()?;
     load_calibration(&mut store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
     Ok(SESSION.init_with(|| Session::of(setting, procedure)))

@@ -1,6 +1,8 @@
 //! The clocks of an instrument: what a nominal second lasts, over what angles integrate, what is contradicted.
 
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::rotating::session::{Procedure as Turning, Session as Rotating};
+use orientation::alignment::rotating::{Sensor, Setting as Platform};
 use orientation::alignment::site::Site;
 use orientation::alignment::stepwise::session::Session as Stepwise;
 use orientation::alignment::stepwise::session::procedure::Procedure as Dwelling;
@@ -9,11 +11,14 @@ use orientation::alignment::stepwise::setting::Setting as Positions;
 use orientation::alignment::stops::Setting as Stops;
 use orientation::alignment::stops::session::{Procedure as Driving, Session as Stopping};
 use orientation::alignment::stops::stop_detector::Rests;
-use orientation::alignment::{Input, Method};
+use orientation::alignment::{Input, Method, Progress};
 use orientation::earth::Latitude;
-use orientation::signal::{InertialSample, Sample, Timed};
+use orientation::roll;
+use orientation::signal::{InertialSample, Sample, SpinSample, Timed};
 use orientation::timebase::{Clock, Timebase};
-use orientation::units::{AngleIncrement, AngularRate, Instant, Seconds, SpecificForce};
+use orientation::units::{
+    AngleIncrement, AngularRate, Instant, Radians, RadiansPerSecond, Seconds, SpecificForce,
+};
 use proptest::prelude::*;
 
 /// The MSI at 4 MHz, locked to the crystal: 122 times 32 768 Hz.
@@ -102,44 +107,64 @@ proptest! {
     }
 }
 
-/// What a method says of samples, s apart, that come until it concludes.
-fn verdict<S: Timed>(
+/// Number of the first sample that is missing in a gap, and of samples in it: half a second.
+const GAP: [u64; 2] = [100, 50];
+
+/// Whether a method refuses the period of samples that come so many seconds apart, with a gap or without one.
+fn refuses<S: Timed>(
     method: &mut impl Method<S>,
-    period: f64,
+    (period, has_gap): (f64, bool),
     sample: impl Fn(u64, Instant) -> S,
-) -> Option<Refusal> {
-    method.begin(&mut |_| ());
-    for index in 1..3000 {
+) -> bool {
+    let mut is_contradicted = false;
+    let mut listener = |progress| {
+        if let Progress::Roll(roll::Progress::Ended(reason)) = progress {
+            is_contradicted |= matches!(reason, Refusal::PeriodContradicted { .. });
+        }
+    };
+    method.begin(&mut listener);
+    let is_there = |index: &u64| !has_gap || !(GAP[0]..GAP[0] + GAP[1]).contains(index);
+    for index in (1..3000).filter(is_there) {
         let sample = sample(index, Instant::from_seconds(index as f64 * period));
-        method.take(Input::Sample(&sample), &mut |_| ());
+        method.take(Input::Sample(&sample), &mut listener);
     }
-    method.take(Input::End, &mut |_| ());
-    method.compute(&mut |_| ());
-    method.verdict().and_then(Result::err)
+    method.take(Input::End, &mut listener);
+    method.compute(&mut listener);
+    let verdict = method.verdict().and_then(Result::err);
+    is_contradicted || matches!(verdict, Some(Refusal::PeriodContradicted { .. }))
 }
 
 /// Nominal sample period, s.
 const PERIOD: f64 = 0.01;
 
-/// Whether a stage and a vehicle with these clocks refuse samples whose period is off by this part of the nominal one.
-fn refuse(clocks: Timebase, off: f64) -> [bool; 2] {
-    let (period, nominal) = (PERIOD * (1.0 + off), Seconds(PERIOD));
+/// Whether a stage, a vehicle, a turntable and a spinning body with these clocks refuse samples whose period is off by
+/// this part of the nominal one, of which some are missing or none.
+fn refuse(clocks: Timebase, off: f64, has_gap: bool) -> [bool; 4] {
+    let (period, nominal) = ((PERIOD * (1.0 + off), has_gap), Seconds(PERIOD));
     let period_tolerance = clocks.period_tolerance();
     let site = Site::at(Latitude::from_degrees(47.58).expect("a latitude"));
     let circle = Schedule::circle(12, Seconds(5.0));
     let dwelling = Dwelling { period_tolerance, ..Dwelling::new(circle, nominal) };
     let mut stage = Stepwise::new(Positions::new(site), dwelling).expect("a procedure");
-    let on_stage = verdict(&mut stage, period, |index, time| {
+    let at_rest = |index, time| {
         let force = Some([0.0, 0.0, -9.81].map(SpecificForce::from_m_per_s2));
         Sample { time, rate: AngularRate((index % 7) as i32), force, ..Sample::default() }
-    });
+    };
+    let on_stage = refuses(&mut stage, period, at_rest);
     let driving = Driving { period_tolerance, ..Driving::recorded(Rests::Whole, nominal) };
     let mut vehicle = Stopping::new(Stops::new(site), driving).expect("a procedure");
-    let driven = verdict(&mut vehicle, period, |_, time| InertialSample {
+    let driven = refuses(&mut vehicle, period, |_, time| InertialSample {
         time,
         ..InertialSample::default()
     });
-    [on_stage, driven].map(|reason| matches!(reason, Some(Refusal::PeriodContradicted { .. })))
+    let turning = Turning { period_tolerance, ..Turning::new(&[RadiansPerSecond(1.0)], nominal) };
+    let turntable = Rotating::new(Platform::new(site, Sensor::GYRO), turning);
+    let turned = refuses(&mut turntable.expect("a procedure"), period, at_rest);
+    let setting = roll::Setting { period_tolerance, ..roll::Setting::new(nominal) };
+    let mut flight = roll::Flight::new(&setting, [Radians(0.0); 2], None);
+    let flown =
+        refuses(&mut flight, period, |_, time| SpinSample { time, ..SpinSample::default() });
+    [on_stage, driven, turned, flown]
 }
 
 #[test]
@@ -153,8 +178,14 @@ fn a_period_is_refused_beyond_what_two_crystals_or_the_data_sheets_allow_and_not
     ] {
         let clocks = of(converter, controller);
         for way in [-1.0, 1.0] {
-            let sides = [-2e-5, 2e-5].map(|side| refuse(clocks, way * (tolerance + side)));
-            assert_eq!(sides, [[false; 2], [true; 2]], "{clocks:?}, {way}");
+            let sides = [-2e-5, 2e-5].map(|side| refuse(clocks, way * (tolerance + side), false));
+            assert_eq!(sides, [[false; 4], [true; 4]], "{clocks:?}, {way}");
         }
     }
+}
+
+#[test]
+fn samples_that_are_missing_show_no_other_period() {
+    let clocks = Timebase::nominal(Clock::Crystal, Clock::Crystal);
+    assert_eq!(refuse(clocks, 0.0, true), [false; 4]);
 }

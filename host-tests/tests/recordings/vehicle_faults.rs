@@ -80,7 +80,7 @@ fn a_session_is_held_to_its_sample_period_as_far_as_its_clock_goes() {
     assert_eq!(
         words.as_deref(),
         Some(
-            "samples come every 20.300 ms, not every 20.000 ms as stated: correct the sample rate or the times"
+            "samples come every 20.2998 ms, not every 20.0000 ms as stated: correct the sample rate or the times"
         )
     );
 }

@@ -138,7 +138,7 @@ crate::words! { Refusal:
     Self::MovedDuringAlignment => "the vehicle drove on before it was aligned";
     Self::PeriodContradicted { stated, found } =>
         "samples come every {} ms, not every {} ms as stated: correct the sample rate or the times",
-        Rounded::<3>(found.0), Rounded::<3>(stated.0);
+        Rounded::<4>(found.0), Rounded::<4>(stated.0);
     Self::MisalignmentUnknown =>
         "the axis misalignment of the sensor is not known: modulate the platform's rate first";
     Self::Device { device, trouble } => "{}: {}", device, trouble;

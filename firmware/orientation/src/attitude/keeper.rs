@@ -237,7 +237,8 @@ impl Keeper {
     /// Reason for which the saved azimuth is rejected.
     pub(crate) fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
         let rest = (self.vertical.rest_rates(), Seconds(self.vertical.course.stood.into()));
-        restart::check(remembered, &self.report(), rest, &self.setting)?;
+        let turned = Radians(self.vertical.course.turned.into());
+        restart::check(remembered, &self.report(), rest, turned, &self.setting)?;
         self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });
         Ok(())
     }

@@ -3,7 +3,8 @@
 //!
 //! A vehicle that was moved has another pitch or roll, and the Earth rate is distributed otherwise
 //! on its gyros. Gravity alone does not show a rotation about the vertical, so gyros whose biases
-//! do not repeat cannot confirm the heading, and then the azimuth is rejected.
+//! do not repeat cannot confirm the heading, and then the azimuth is rejected. What the body turns from the
+//! start on, the gyros do show; a body that has set off before it could be checked is not checked any more.
 
 use super::report::Report;
 use super::setting::Setting;
@@ -13,8 +14,8 @@ use crate::words::Rounded;
 
 /// Shortest rest for the comparison.
 pub(crate) const REST_SECONDS: Seconds = Seconds(10.0);
-/// Greatest change of pitch and roll, rad: the effect of temperature and tyres on a standing
-/// vehicle, 0.05°.
+/// Greatest change of pitch and roll, and greatest turn since the start, rad: the effect of temperature
+/// and tyres on a standing vehicle, 0.05°.
 const TILT: f64 = 0.05 * DEGREE;
 /// Significance, in σ, at which the rates differ.
 const BOUND: f64 = 4.0;
@@ -60,6 +61,13 @@ pub enum RecallRefusal {
         /// Greatest change of a rate, in σ.
         sigmas: f64,
     },
+    /// The body has turned about the vertical since the start.
+    TurnedSince {
+        /// Angle by which it has turned.
+        degrees: Degrees,
+    },
+    /// The body set off before it had rested for long enough.
+    SetOff,
     /// The gyros cannot determine whether the body was turned.
     TurnUnobservable {
         /// Standard deviation with which they could, 1σ.
@@ -71,17 +79,20 @@ crate::words! { RecallRefusal:
     Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds.0);
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees.0);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
+    Self::TurnedSince { degrees } => "it has turned by {}° since the start", Rounded::<3>(degrees.0);
+    Self::SetOff => "it set off before that was known";
     Self::TurnUnobservable { sigma } =>
         "a turn about the vertical shows to {}° only: the gyros' biases differ from start to start",
         Rounded::<2>(sigma.0);
 }
 
 /// Checks that a body is still in its saved attitude, by its mean rates over the present rest (none
-/// where it moves), and the length of that rest.
+/// where it moves), the length of that rest, and the turn about the vertical since the start.
 pub(super) fn check(
     before: &Remembered,
     now: &Report,
     (rates, rest): (Option<[RadiansPerSecond; 3]>, Seconds),
+    turned: Radians,
     setting: &Setting,
 ) -> Result<(), RecallRefusal> {
     let Some(rates) = rates.filter(|_| now.is_at_rest && rest >= REST_SECONDS) else {
@@ -104,6 +115,10 @@ pub(super) fn check(
     let sigma = rotation_sigma(before, setting, &sigmas);
     if sigma > DETERMINED || sigma.is_nan() {
         return Err(RecallRefusal::TurnUnobservable { sigma: Radians(sigma).into() });
+    }
+    let turned = turned.0.abs();
+    if turned > TILT || turned.is_nan() {
+        return Err(RecallRefusal::TurnedSince { degrees: Radians(turned).into() });
     }
     Ok(())
 }

@@ -125,8 +125,11 @@ pub struct Navigator<'k> {
     remembered: Option<Remembered>,
     /// Azimuth that this run has saved, and the time.
     saved: Option<(Azimuth, Instant)>,
-    /// Time of the latest event, and of the latest inertial sample.
+    /// Whether a heading is saved, by this run or before it.
+    is_saved: bool,
+    /// Time of the latest event, and of the first and the latest inertial sample.
     now: Instant,
+    started: Option<Instant>,
     moved: Option<Instant>,
     /// Time of the next check, and checks since the latest full second.
     due: Option<Instant>,
@@ -168,7 +171,9 @@ impl<'k> Navigator<'k> {
             policy: *policy,
             remembered: None,
             saved: None,
+            is_saved: false,
             now: Instant::default(),
+            started: None,
             moved: None,
             due: None,
             looks: 0,
@@ -206,7 +211,10 @@ impl<'k> Navigator<'k> {
     /// Takes an input, within bounded time.
     pub fn take(&mut self, input: &Input, outlet: Outlet) {
         match input {
-            Input::Remembered(heading) => self.remembered = Some(*heading),
+            Input::Remembered(heading) => {
+                self.remembered = Some(*heading);
+                self.is_saved = true;
+            }
             Input::Idle(is_idle) => self.is_idle = *is_idle,
             Input::Concluding(at) => self.concluding = Some(*at),
             Input::Found(at, azimuth) => self.found = Some((*at, *azimuth)),
@@ -228,6 +236,7 @@ impl<'k> Navigator<'k> {
     fn push(&mut self, sample: &InertialSample, outlet: Outlet) {
         self.settle(sample.time, outlet);
         self.keeper.push(sample);
+        self.started.get_or_insert(sample.time);
         self.moved = Some(sample.time);
         self.tick(sample.time, outlet);
     }
@@ -392,12 +401,14 @@ impl<'k> Navigator<'k> {
     /// Decides on the heading from before the restart once the vehicle has rested long enough.
     fn recall(&mut self, outlet: Outlet) {
         let Some(remembered) = &self.remembered else { return };
-        let outcome = self.keeper.recall(remembered);
-        if let Err(RecallRefusal::NotAtRest { .. }) = outcome {
-            return;
-        }
+        let outcome = match self.keeper.recall(remembered) {
+            Err(RecallRefusal::NotAtRest { .. }) if self.has_left() => Err(RecallRefusal::SetOff),
+            Err(RecallRefusal::NotAtRest { .. }) => return,
+            outcome => outcome,
+        };
         self.remembered = None;
         if let Err(reason) = outcome {
+            self.forget(outlet);
             return outlet(Output::Progress(Progress::RecallRefused(reason)));
         }
         (self.is_recalled, self.has_azimuth) = (true, true);
@@ -407,6 +418,24 @@ impl<'k> Navigator<'k> {
         self.spare(outlet);
     }
 
+    /// Whether the body has moved for too long before the remembered heading could be decided on: since its first
+    /// rest, or since the start where it has not rested.
+    fn has_left(&self) -> bool {
+        let since = match self.rests {
+            Some(_) => self.moves,
+            None => self.started,
+        };
+        since.is_some_and(|since| self.now.0.saturating_sub(since.0) >= RESTLESS)
+    }
+
+    /// Has the heading that is saved declared void, where there is one.
+    fn forget(&mut self, outlet: Outlet) {
+        self.saved = None;
+        if core::mem::take(&mut self.is_saved) {
+            outlet(Output::Forget);
+        }
+    }
+
     /// Has the heading of a body at rest saved, at most once a minute, and declares it void when
     /// the body sets off. The remembered one stays until it has been decided on.
     fn save(&mut self, outlet: Outlet) {
@@ -414,16 +443,14 @@ impl<'k> Navigator<'k> {
             return;
         }
         if !self.is_at_rest {
-            if self.saved.take().is_some() {
-                outlet(Output::Forget);
-            }
-            return;
+            return self.forget(outlet);
         }
         let Some(azimuth) = self.keeper.azimuth().filter(|azimuth| self.is_new(*azimuth)) else {
             return;
         };
         if let Some(remembered) = self.keeper.remember() {
             self.saved = Some((azimuth, self.now));
+            self.is_saved = true;
             outlet(Output::Save(remembered));
         }
     }

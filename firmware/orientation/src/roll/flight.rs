@@ -5,12 +5,25 @@ use super::progress::Progress;
 use super::setting::Setting;
 use super::spin::Spin;
 use super::state::{Condition, lasted};
-use crate::alignment::{Input, Listener, Method, Request, Verdict};
+use crate::alignment::period::contradiction;
+use crate::alignment::{Input, Listener, Method, Refusal, Request, Verdict};
 use crate::signal::SpinSample;
 use crate::units::{Instant, Radians, Seconds};
 
 /// Samples between two reports of the roll: they cost arithmetic in software floating point.
 const TRACKED_SAMPLES: u32 = 1024;
+/// Time over which the samples' period is measured, s: 0.2 % of it is 2 ms, later than any stamp.
+const TIMED_SECONDS: f64 = 1.0;
+
+/// A moment from which the samples' period is measured.
+#[derive(Clone, Copy, Debug)]
+struct Timed {
+    /// Time of its sample.
+    at: Instant,
+    /// Number of samples until then, and of gaps, each modulo 2³².
+    samples: u32,
+    gaps: u32,
+}
 
 /// A flight whose roll is tracked.
 #[derive(Clone, Debug)]
@@ -31,6 +44,8 @@ pub struct Flight {
     now: Instant,
     /// Number of samples, modulo 2³².
     samples: u32,
+    /// Since when the samples' period is measured.
+    timed: Option<Timed>,
     /// Condition of the latest sample, and since when it is none in which the roll is known.
     condition: Condition,
     troubled: Option<Instant>,
@@ -52,6 +67,7 @@ impl Flight {
             begun: None,
             now: Instant::default(),
             samples: 0,
+            timed: None,
             condition: Condition::default(),
             troubled: None,
             is_over: false,
@@ -68,6 +84,9 @@ impl Flight {
         self.report_condition(before, listener);
         if self.samples % TRACKED_SAMPLES == 1 {
             self.report(listener);
+            if let Some(reason) = self.contradiction() {
+                return self.end(Some(Progress::Ended(reason)), listener);
+            }
         }
         let has_lasted = |seconds: Seconds| self.now.seconds() - begun.seconds() >= seconds.0;
         if self.seconds.is_some_and(has_lasted) {
@@ -88,6 +107,21 @@ impl Flight {
             }
             _ => listener(Progress::Changed(self.spin.state()).into()),
         }
+    }
+
+    /// Refusal of samples whose time stamps contradict the configured period, over a time without gaps.
+    fn contradiction(&mut self) -> Option<Refusal> {
+        let now = Timed { at: self.now, samples: self.samples, gaps: self.spin.gaps };
+        let since = *self.timed.get_or_insert(now);
+        let elapsed = now.at.seconds() - since.at.seconds();
+        if since.gaps == now.gaps && elapsed < TIMED_SECONDS {
+            return None;
+        }
+        self.timed = Some(now);
+        let found = elapsed / f64::from(now.samples.wrapping_sub(since.samples));
+        let Setting { sample_seconds, period_tolerance, .. } = self.setting;
+        contradiction(sample_seconds, Seconds(found), period_tolerance)
+            .filter(|_| since.gaps == now.gaps)
     }
 
     /// Reports the roll at present.

@@ -1,5 +1,6 @@
 //! Configuration of the roll estimation: the gyro of the spinning body, and the method.
 
+use crate::alignment::period::PERIOD_TOLERANCE;
 use crate::alignment::setup::{GREATEST, PERIODS, SetupError, check_ranges};
 use crate::units::{RadiansPerRootSecond, RadiansPerSecond, Seconds};
 
@@ -24,6 +25,8 @@ pub enum Method {
 pub struct Setting {
     /// Sample period.
     pub sample_seconds: Seconds,
+    /// Tolerance of the time stamps' mean step against that period, relative.
+    pub period_tolerance: f64,
     /// Angle random walk N of the x-gyro.
     pub angle_random_walk: RadiansPerRootSecond,
     /// Standard deviation of the x-gyro's scale factor, 1σ, relative.
@@ -43,6 +46,7 @@ impl Setting {
         let positive = [0.0, GREATEST];
         check_ranges(&[
             ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("period_tolerance", self.period_tolerance, [0.0, 1.0]),
             ("angle_random_walk", self.angle_random_walk.0, positive),
             ("scale_sigma", self.scale_sigma, positive),
             ("bias_sigma", self.bias_sigma.0, positive),
@@ -55,6 +59,7 @@ impl Setting {
     pub fn new(sample_seconds: Seconds) -> Self {
         Self {
             sample_seconds,
+            period_tolerance: PERIOD_TOLERANCE,
             angle_random_walk: RadiansPerRootSecond(1e-3),
             scale_sigma: 0.01,
             bias_sigma: RadiansPerSecond(1e-3),

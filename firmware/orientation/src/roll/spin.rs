@@ -23,6 +23,8 @@ pub struct Spin {
     period: f32,
     /// Time of the latest sample.
     latest: Option<Instant>,
+    /// Number of gaps in which samples were missing, modulo 2³².
+    pub(super) gaps: u32,
     /// Plausibility check of the gyro.
     plausibility: Plausibility,
 }
@@ -53,6 +55,7 @@ impl Spin {
             corrector,
             period: (setting.sample_seconds.0 * 1e6) as f32,
             latest: None,
+            gaps: 0,
             plausibility: Plausibility::new(setting),
         }
     }
@@ -92,6 +95,7 @@ impl Spin {
     fn bridge(&mut self, missing: f32, turned: [AngleIncrement; 2]) {
         let [before, now] = turned.map(|turned| turned.0 as f32);
         let mean = 0.5 * (before + now);
+        self.gaps = self.gaps.wrapping_add((missing > 0.0).into());
         self.phase_accumulator.pass(mean, missing);
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),

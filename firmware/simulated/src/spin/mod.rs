@@ -13,6 +13,7 @@ use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::plant::{CHIPS, SpinBoard, SpinPlant, SpinPlantConfiguration};
 use hal_mock::spin::profile::Profile;
 use orientation::roll::{Flight, Method, Setting};
+use orientation::timebase::{Clock, Timebase};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, Radians, RadiansPerRootSecond, Seconds, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};
@@ -22,6 +23,8 @@ use firmware::ports::{Code, SpinSensors};
 use firmware::spin::budget::SAMPLE_HERTZ;
 use firmware::spin::configuration::{CHANNELS, Channel, SpinConfiguration};
 
+/// The clocks of a spinning body: an oscillator feeds its converters.
+const CLOCKS: Timebase = Timebase::nominal(Clock::Crystal, Clock::Crystal);
 /// Conversions a second, Hz.
 pub const SAMPLE_RATE: f64 = SAMPLE_HERTZ as f64;
 /// Rates, rad/s, and force, m/s², at which the sensors clip; at 2 V each.
@@ -79,7 +82,7 @@ impl SpinScenario {
     #[must_use]
     pub fn setting(&self) -> Setting {
         Setting {
-            sample_seconds: Seconds(1.0 / SAMPLE_RATE),
+            period_tolerance: CLOCKS.period_tolerance(),
             angle_random_walk: RadiansPerRootSecond(self.gyro_n_deg_sqrt_h * DEGREE_PER_SQRT_HOUR),
             scale_sigma: self.scale_sigma,
             method: Method::PhaseLocked,

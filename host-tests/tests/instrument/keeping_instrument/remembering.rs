@@ -23,15 +23,17 @@ impl Observer for Reported {
     }
 }
 
-/// A store that keeps nothing and fails to forget so many times, and when it was asked to, s.
+/// A store that keeps nothing and fails to forget so many times, and when it was asked to, s. It is empty, or cannot be
+/// read.
 struct Failing<'a> {
     failures: usize,
+    is_readable: bool,
     asked: &'a RefCell<Vec<u64>>,
 }
 
 impl Store for Failing<'_> {
     async fn load<const N: usize>(&mut self, _: u8) -> Result<Option<[u8; N]>, Fault> {
-        Ok(None)
+        if self.is_readable { Ok(None) } else { Err(Fault::NotReady) }
     }
 
     async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
@@ -53,11 +55,11 @@ fn heading() -> Remembered {
 }
 
 /// When a store that fails to forget so many times is asked to, s, and how often that is reported, where it is given
-/// these items at these times, s.
-fn asked(failures: usize, given: &[(u64, Saving)]) -> (Vec<u64>, u32) {
+/// these items at these times, s, and can be read or not.
+fn asked((failures, is_readable): (usize, bool), given: &[(u64, Saving)]) -> (Vec<u64>, u32) {
     let (reported, asked) = (Reported::default(), RefCell::default());
     let shared = Shared::new(&reported);
-    let mut store = Failing { failures, asked: &asked };
+    let mut store = Failing { failures, is_readable, asked: &asked };
     let driving = async {
         for (second, saving) in given {
             Timer::at(Instant::from_secs(*second)).await;
@@ -75,7 +77,7 @@ fn asked(failures: usize, given: &[(u64, Saving)]) -> (Vec<u64>, u32) {
 /// A heading from before the drive must not be recalled after it.
 #[test]
 fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
-    let (asked, reported) = asked(3, &[(0, Saving::Nothing)]);
+    let (asked, reported) = asked((3, true), &[(0, Saving::Nothing)]);
     let waits: Vec<_> = asked.windows(2).map(|times| times[1] - times[0]).collect();
     assert_eq!(waits, [10, 10, 10], "asked at {asked:?} s");
     assert_eq!(reported, 1, "it is told once");
@@ -84,6 +86,14 @@ fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
 /// The heading of the next rest, which is not kept, does not make that of before the drive valid again.
 #[test]
 fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept_either() {
-    let (asked, _) = asked(1, &[(0, Saving::Nothing), (5, Saving::Heading(heading()))]);
+    let (asked, _) = asked((1, true), &[(0, Saving::Nothing), (5, Saving::Heading(heading()))]);
     assert_eq!(asked, [0, 15], "s");
+}
+
+/// What cannot be read at the start may be read after a drive.
+#[test]
+fn a_heading_that_cannot_be_read_is_forgotten() {
+    let (asked, reported) = asked((1, false), &[]);
+    assert_eq!(asked, [10, 20], "s");
+    assert_eq!(reported, 1, "it is told once");
 }

@@ -5,7 +5,7 @@ use crate::support::inputs::{recorded, replayed};
 use firmware::event::Event;
 use firmware::ports::Store;
 use firmware::storage::{FlashStore, HEADING};
-use hal_mock::vehicle::Stop;
+use hal_mock::vehicle::{Drive, Leg, Stop};
 use host::instrument::{Trial, VehiclePlan, VehicleRun};
 use orientation::attitude::restart::{RecallRefusal, Remembered};
 use orientation::navigation::Progress;
@@ -113,9 +113,9 @@ fn a_heading_that_was_recalled_is_recalled_again_by_a_replay() {
 
 #[test]
 fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
-    let mut store = Flash::default().store();
-    let before = first(8.0, STEADY, &mut store);
     for turned in [30.0, 180.0, -90.0] {
+        let mut store = Flash::default().store();
+        let before = first(8.0, STEADY, &mut store);
         let after = second(&before, [turned, 0.0], STEADY, &mut store);
         assert!(
             matches!(refusal(&after), Some(RecallRefusal::Turned { .. })),
@@ -154,6 +154,73 @@ fn a_vehicle_that_has_set_off_since_is_forgotten() {
     let before = first(90.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
     assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", reported(&after));
+}
+
+/// The heading that a store holds.
+fn kept(store: &mut FlashStore<Flash>) -> Option<Remembered> {
+    let item = host::virtual_time::run(store.load(HEADING)).expect("no deadlock");
+    let item: Option<[u8; Remembered::BYTES]> = item.expect("the store is sound");
+    item.and_then(|bytes| Remembered::from_bytes(&bytes))
+}
+
+/// A vehicle that stands as it stood for some seconds, drives for some with a slight turn, and stands again, upright as
+/// before.
+fn leaving(
+    before: &VehicleRun,
+    [stands, drives]: [f64; 2],
+    store: &mut FlashStore<Flash>,
+) -> VehicleRun {
+    let (scenario, mut day) = standing(before, [0.0, 0.0], STEADY);
+    let way = scenario.day(None);
+    let drive = way.legs.iter().find_map(|leg| match leg {
+        Leg::Drive(drive) => Some(*drive),
+        Leg::Stop(_) => None,
+    });
+    let drive = Drive {
+        seconds: drives,
+        heading_change_deg: 0.8,
+        turn_s: 0.5 * drives,
+        hills_deg: 0.0,
+        ..drive.expect("it drives")
+    };
+    let stop = day.legs.iter().find_map(|leg| match leg {
+        Leg::Stop(stop) => Some(*stop),
+        Leg::Drive(_) => None,
+    });
+    let stop = stop.expect("it stands");
+    day.legs = [
+        Leg::Stop(Stop { seconds: stands, ..stop }),
+        Leg::Drive(drive),
+        Leg::Stop(Stop { seconds: 120.0, ..stop }),
+    ]
+    .into_iter()
+    .collect();
+    Trial::of(&scenario)
+        .plan(VehiclePlan { day, chips: Injection::NONE })
+        .store(store)
+        .run()
+        .expect("possible")
+}
+
+#[test]
+fn a_vehicle_that_sets_off_before_its_heading_is_checked_recalls_nothing_after_the_drive() {
+    for times in [[5.0, 40.0], [8.0, 15.0], [8.0, 4.0], [3.0, 4.0], [0.0, 3.0], [0.0, 20.0]] {
+        let mut store = Flash::default().store();
+        let before = first(8.0, STEADY, &mut store);
+        assert!(kept(&mut store).is_some());
+        let after = leaving(&before, times, &mut store);
+        assert!(!is_recalled(&after), "{times:?}: {:#?}", reported(&after));
+        assert!(refusal(&after).is_some(), "{times:?}: {:#?}", reported(&after));
+        assert_eq!(kept(&mut store), None, "{times:?}: {:#?}", reported(&after));
+    }
+}
+
+#[test]
+fn a_heading_that_is_not_believed_is_forgotten() {
+    let mut store = Flash::default().store();
+    let before = first(8.0, STEADY, &mut store);
+    let _ = second(&before, [30.0, 0.0], STEADY, &mut store);
+    assert_eq!(kept(&mut store), None);
 }
 
 #[test]

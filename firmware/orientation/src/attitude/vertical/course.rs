@@ -1,11 +1,12 @@
-//! Motion of the body since its heading was handed over.
+//! Motion of the body since its heading was handed over, or since the start.
 
 use super::sums::Window;
 
 /// Longest rest that is counted, s.
 const MEMORY: f32 = 600.0;
 
-/// Motion of the body since its heading was handed over, as far as it affects the heading's error.
+/// Motion of the body since its heading was handed over, or since the start, as far as it affects the
+/// heading's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Course {
     /// Net rotation about the vertical, rad, whole turns included.

@@ -16,7 +16,7 @@ use super::misalignment::AxisMisalignment;
 use super::turn::{Sense, Stretch};
 use super::turn_accumulator::{Mode, TurnAccumulator};
 use super::{Progress, Refusal, Setting};
-use crate::alignment::period::{PERIOD_TOLERANCE, contradiction};
+use crate::alignment::period::contradiction;
 use crate::alignment::progress::Progress::Rotating;
 use crate::alignment::{self, Input, Listener, Method, Request, SetupError, Solution, Verdict};
 use crate::signal::Sample;
@@ -80,8 +80,9 @@ pub struct Session {
 struct Now {
     /// Beginning of the phase.
     since: Option<Instant>,
-    /// Number of samples of this phase.
+    /// Number of samples of this phase, and whether some of it are missing.
     samples: u32,
+    has_gap: bool,
     /// Time in this phase after which the sensor has settled, and after which the phase ends, µs.
     settled: u64,
     end: u64,
@@ -176,6 +177,7 @@ impl Session {
         let last = self.last.replace(now).unwrap_or(now);
         if now.0.saturating_sub(last.0) > self.gap {
             self.turn_accumulator.restart();
+            self.now.has_gap = true;
         }
         if let Some(temperature) = sample.temperature {
             self.level.temperature = Some(temperature.celsius() as f32);
@@ -184,7 +186,9 @@ impl Session {
         let since = *self.now.since.get_or_insert(now);
         let elapsed = now.0.saturating_sub(since.0);
         self.now.samples = self.now.samples.saturating_add(1);
-        if has_turned && let Some(reason) = self.contradiction() {
+        let is_even = matches!(self.phase, Phase::Recorded | Phase::Even(..));
+        let is_first = is_even && has_turned && self.now.turns == 0;
+        if is_first && let Some(reason) = self.contradiction() {
             return self.conclude(Some(reason));
         }
         match self.phase {
@@ -192,21 +196,22 @@ impl Session {
             Phase::Modulated(index) => self.modulated(index, sample, elapsed, listener),
             Phase::Settle(index, sense) => self.settle(index, sense, elapsed, listener),
             Phase::Even(index, sense) => self.even(index, sense, (has_turned, elapsed), listener),
-            Phase::Recorded | Phase::Conclude | Phase::Done => Request::Continue,
+            Phase::Recorded => {
+                self.now.turns += u32::from(has_turned);
+                Request::Continue
+            }
+            Phase::Conclude | Phase::Done => Request::Continue,
         }
     }
 
-    /// Refusal of a recording whose time stamps up to its first turn contradict the configured
-    /// period.
-    fn contradiction(&mut self) -> Option<alignment::Refusal> {
-        if self.phase != Phase::Recorded || core::mem::replace(&mut self.now.turns, 1) > 0 {
-            return None;
-        }
+    /// Refusal of samples whose time stamps in this phase contradict the configured period, unless some are missing.
+    fn contradiction(&self) -> Option<alignment::Refusal> {
         let (since, last) = (self.now.since?, self.last?);
         let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
         let found = elapsed / f64::from(self.now.samples.max(2) - 1);
-        let stated = self.procedure.sample_seconds;
-        contradiction(stated, Seconds(found), PERIOD_TOLERANCE)
+        let Procedure { sample_seconds, period_tolerance, .. } = self.procedure;
+        contradiction(sample_seconds, Seconds(found), period_tolerance)
+            .filter(|_| !self.now.has_gap)
     }
 
     /// Measures the tilt at rest.
@@ -219,6 +224,9 @@ impl Session {
         }
         if elapsed < self.now.end {
             return Request::Continue;
+        }
+        if let Some(reason) = self.contradiction() {
+            return self.conclude(Some(reason));
         }
         let (site, force) = (&self.setting.site, self.force());
         if let Some(force) = force {

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 
+use crate::alignment::period::PERIOD_TOLERANCE;
 use crate::alignment::rotating::turn::SPEEDS;
 use crate::alignment::setup::{LONGEST, PERIODS, SetupError, check_ranges};
 use crate::math::Table;
@@ -33,6 +34,8 @@ pub struct Procedure {
     pub modulation: f64,
     /// Sample period.
     pub sample_seconds: Seconds,
+    /// Tolerance of the time stamps' mean step against that period, relative.
+    pub period_tolerance: f64,
     /// Length of the blocks to which samples are averaged.
     pub block_seconds: Seconds,
     /// Time for which the platform is levelled at rest.
@@ -55,6 +58,7 @@ impl Procedure {
             modulated_turns: if speeds.len() > 1 { 24 } else { 12 },
             modulation: 0.25,
             sample_seconds,
+            period_tolerance: PERIOD_TOLERANCE,
             block_seconds: Seconds(BLOCK_SECONDS.max(BLOCK_ANGLE / slowest)),
             level_seconds: Seconds(2.0),
             ramp_seconds: Seconds(3.0),
@@ -88,6 +92,7 @@ impl Procedure {
         let time = [0.0, LONGEST];
         check_ranges(&[
             ("sample_seconds", self.sample_seconds.0, PERIODS),
+            ("period_tolerance", self.period_tolerance, [0.0, 1.0]),
             ("block_seconds", self.block_seconds.0, time),
             ("level_seconds", self.level_seconds.0, time),
             ("ramp_seconds", self.ramp_seconds.0, time),
