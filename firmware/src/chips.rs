@@ -191,6 +191,7 @@ impl<S: SpiDevice, D: DelayNs> Startable for Tmc5160<S, D> {
 impl<S: SpiDevice, D: DelayNs> Actuator for Tmc5160<S, D> {
     async fn execute(&mut self, request: Command) -> Result<Option<Motion>, Fault> {
         match request {
+            Command::Rest => self.rest().await?,
             Command::GoTo(angle) => self.go_to(microsteps(angle)).await?,
             Command::Seek(rate) => self.run(Velocity(microsteps(rate))).await?,
             Command::SetAngle(angle) => self.set_position(microsteps(angle)).await?,

@@ -94,12 +94,12 @@ impl Event {
             | Self::Late(_)
             | Self::Overflowed(_)
             | Self::Blocked(_)
-            | Self::CurrentOff(_)
             | Self::LinkSilent => Some(Weight::Symptom),
             Self::Navigation(
                 Navigated::Keeping(_) | Navigated::DownGyro(_) | Navigated::Realigning,
             ) => None,
             Self::GivenUp(..)
+            | Self::CurrentOff(_)
             | Self::Alignment(
                 Progress::Concluded(_)
                 | Progress::Refused(_)

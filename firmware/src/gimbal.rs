@@ -85,9 +85,11 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
 }
 
 impl<M: Actuator> Mechanism for Gimbal<'_, M> {
-    /// Starts the drives, waits for the first valid angles, homes, and then follows requests for a
+    /// Has both motors rest before they get their current, starts the drives, waits for the first valid angles, homes, and then follows requests for a
     /// heading or for the vertical.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
+        let (outer, inner) = join(self.outer.motor.rest(), self.inner.motor.rest()).await;
+        self.shared.current.signal(outer && inner);
         let [outer, inner] =
             [&mut self.outer, &mut self.inner].map(|frame| &mut frame.motor.actuator);
         both(join(outer.start(self.shared), inner.start(self.shared)).await)?;

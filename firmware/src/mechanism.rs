@@ -18,7 +18,7 @@ pub trait Mechanism {
     async fn serve(&mut self) -> Result<Infallible, Refusal>;
 
     /// Brings the mechanism to rest, within 10 s, once it was given up or the run is over. Where a motor does not
-    /// obey, its current is taken away ([`Shared::current_off`]).
+    /// obey, its current is taken away ([`Shared::current`]).
     async fn halt(&mut self) {}
 
     /// Brings the mechanism to where it is to stand after the run, while `meanwhile`, which never

@@ -131,6 +131,19 @@ impl<'a, M: Actuator> Motor<'a, M> {
         Err(self.fail(trouble).into())
     }
 
+    /// Brings a motor to rest of which nothing is known, before it has its current; whether it rests.
+    pub(crate) async fn rest(&mut self) -> bool {
+        let deadline = Instant::now() + LONGEST_STOP;
+        while self.actuator.device.execute(Command::Rest).await.is_err() {
+            if Instant::now() > deadline {
+                self.report(Event::CurrentOff);
+                return false;
+            }
+            Timer::after(POLL).await;
+        }
+        true
+    }
+
     /// Brings the motor to rest by its ramp, and has it stay there, whatever has become of its encoder, after any
     /// alarm; where it does not come to rest or does not answer, asks for its current to be taken away.
     pub(crate) async fn halt(&mut self) {
@@ -148,7 +161,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
             Timer::after(POLL).await;
         }
         self.report(Event::CurrentOff);
-        self.shared.current_off.signal(());
+        self.shared.current.signal(false);
     }
 
     /// The encoder's latest angle and the time of its reading; [`None`] if it is older than 100 ms.

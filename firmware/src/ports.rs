@@ -210,6 +210,8 @@ pub struct Motion {
 /// A request to the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
+    /// Come to rest, whatever is known of the motor, and although it may have no current.
+    Rest,
     /// Move to an angle by the motor's step count, rad, not wrapped.
     GoTo(f64),
     /// Turn at a rate, rad/s, clockwise positive, until another request or an end switch; permitted

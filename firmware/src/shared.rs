@@ -147,8 +147,9 @@ pub struct Shared<'a> {
     pub saving: Signal<Lock, Saving>,
     /// From the link to the mechanism: nothing more will happen.
     pub over: Signal<Lock, ()>,
-    /// From the mechanism to the board: a motor cannot be brought to rest, and its current is to be taken away.
-    pub current_off: Signal<Lock, ()>,
+    /// From the mechanism to the board: the motors rest, and are to be given their current, or one cannot be brought
+    /// to rest, and it is to be taken away. They have none at the start.
+    pub current: Signal<Lock, bool>,
     /// From the aligner to the link: an alignment is over.
     pub concluded: Signal<Lock, ()>,
     /// How far the alignments are.
@@ -198,7 +199,7 @@ impl<'a> Shared<'a> {
             remembered: Signal::new(),
             saving: Signal::new(),
             over: Signal::new(),
-            current_off: Signal::new(),
+            current: Signal::new(),
             concluded: Signal::new(),
             alignments: Common::new(Alignments::First),
             is_kept: Common::new(false),
@@ -241,6 +242,8 @@ impl<'a> Shared<'a> {
 
     /// Ends an alignment: hands an azimuth over to the navigator, and wakes the link.
     pub(crate) fn conclude(&self, found: Option<(units::Instant, Azimuth)>) {
+        // An order that waits is one to the alignment that is over.
+        let _ = self.orders.try_take();
         self.alignments.set(Alignments::Idle);
         if let Some(found) = found {
             self.found.signal(found);

@@ -183,9 +183,10 @@ impl<'a, M: Actuator> Stage<'a, M> {
 }
 
 impl<M: Actuator> Mechanism for Stage<'_, M> {
-    /// Starts the driver, waits for the sensors, homes, and then follows requests for ever.
+    /// Has the motor rest before it gets its current, starts the driver, waits for the sensors, homes, and then follows requests for ever.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         let shared = self.motor.shared;
+        shared.current.signal(self.motor.rest().await);
         self.motor.actuator.start(shared).await?;
         shared.sensing.wait().await;
         self.home().await?;

@@ -14,9 +14,11 @@
 //!
 //! The sensors are read, and started again where they fail, beside acquisition, which waits for a
 //! reading until the next conversion at the longest: a bus that hangs costs no other sensor a sample.
-//! If the base unit is given up, a session that does not need it continues without it.
+//! If the base unit is given up, acquisition continues without it; an alignment from whose samples the sway is
+//! subtracted ends.
 
 use core::cell::{Cell, RefCell};
+use core::convert::Infallible;
 use core::future::{pending, poll_fn};
 use core::task::Poll;
 
@@ -55,12 +57,12 @@ pub trait CompensatesSway {
     }
 
     /// What acquisition compensates with, if there are sensors, and the future that reads them beside
-    /// acquisition. It ends where they are given up while their readings are being subtracted. It is
-    /// to be polled wherever acquisition is, before it and again where a reading is wanted then.
+    /// acquisition. It is to be polled wherever acquisition is, before it and again where a reading is
+    /// wanted then.
     fn parts<'s>(
         &'s mut self,
         shared: &'s Shared<'_>,
-    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's);
+    ) -> (Option<&'s Compensation>, impl Future<Output = Infallible> + 's);
 
     /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
     fn period(&self, sample: u32) -> u32 {
@@ -75,7 +77,7 @@ impl CompensatesSway for NoBase {
     fn parts<'s>(
         &'s mut self,
         _: &'s Shared<'_>,
-    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's) {
+    ) -> (Option<&'s Compensation>, impl Future<Output = Infallible> + 's) {
         (None, pending())
     }
 }
@@ -273,9 +275,8 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
         }
     }
 
-    /// Takes readings whenever they are wanted; returns why the sensors were given up while their
-    /// readings were being subtracted.
-    async fn serve(&mut self, known: &Compensation, shared: &Shared<'_>) -> Refusal {
+    /// Takes readings whenever they are wanted.
+    async fn serve(&mut self, known: &Compensation, shared: &Shared<'_>) -> Infallible {
         // A reading that was under way when acquisition last ended is lost.
         known.unit.set(Unit::Idle);
         loop {
@@ -284,27 +285,20 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
             if known.lost.take().is_some() {
                 self.base.renew();
             }
-            let outcome = self.take(known, shared).await;
+            self.take(known, shared).await;
             known.unit.set(Unit::Idle);
-            if let Err(reason) = outcome {
-                return reason;
-            }
         }
     }
 
     /// Takes a reading, and starts the sensors again where they fail.
-    ///
-    /// # Errors
-    /// The sensors are given up while their readings are being subtracted.
-    async fn take(&mut self, known: &Compensation, shared: &Shared<'_>) -> Result<(), Refusal> {
+    async fn take(&mut self, known: &Compensation, shared: &Shared<'_>) {
         let was_decided = known.is_decided();
         if let Err(symptom) = self.read(known, shared).await {
-            self.mend(symptom, known, shared).await?;
+            self.mend(symptom, known, shared).await;
         }
         if !was_decided {
             known.report(shared);
         }
-        Ok(())
     }
 
     /// Takes a reading if there is a new one.
@@ -360,29 +354,19 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
         Ok(())
     }
 
-    /// Starts the sensors again where necessary, and continues without them where the session
-    /// permits.
-    ///
-    /// # Errors
-    /// The sensors are given up although their readings are being subtracted in an alignment.
-    async fn mend(
-        &mut self,
-        symptom: Symptom,
-        known: &Compensation,
-        shared: &Shared<'_>,
-    ) -> Result<(), Refusal> {
+    /// Starts the sensors again where necessary. Where they are given up, an alignment ends from whose samples
+    /// their readings are being subtracted.
+    async fn mend(&mut self, symptom: Symptom, known: &Compensation, shared: &Shared<'_>) {
         let outcome = self.base.mend(symptom, shared).await;
         if outcome != Ok(false) {
             self.silent = Instant::now();
         }
+        let Err(reason) = outcome else { return };
+        known.lose(shared);
         let is_swaying = matches!(known.sway.borrow().decision, Decision::Swaying(..));
-        let is_subtracted = known.compensates && is_swaying;
-        match outcome {
-            Err(reason) if is_subtracted && !shared.is_holding() => return Err(reason),
-            Err(_) => known.lose(shared),
-            Ok(_) => {}
+        if known.compensates && is_swaying && !shared.is_idle() {
+            shared.fail(reason);
         }
-        Ok(())
     }
 }
 
@@ -399,7 +383,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     fn parts<'s>(
         &'s mut self,
         shared: &'s Shared<'_>,
-    ) -> (Option<&'s Compensation>, impl Future<Output = Refusal> + 's) {
+    ) -> (Option<&'s Compensation>, impl Future<Output = Infallible> + 's) {
         (Some(&self.compensation), self.unit.serve(&self.compensation, shared))
     }
 

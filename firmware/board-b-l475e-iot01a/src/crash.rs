@@ -73,7 +73,8 @@ fn callers(stack: usize) -> impl Iterator<Item = u32> {
     words.filter(move |word| word & 1 == 1 && (code[0]..code[1]).contains(word))
 }
 
-/// Takes the motors their current: `DRV_ENN` high. The reset that follows does it, too, by the drivers' own pull-up.
+/// Takes the motors their current: `DRV_ENN` high. It stays high after the reset that follows, by the drivers' own pull-up,
+/// until the next start has brought their ramps to rest.
 fn switch_motors_off() {
     RCC.ahb2enr().modify(|enabled| enabled.set_gpioden(true));
     GPIOD.bsrr().write(|pins| pins.set_bs(2, true));

@@ -167,7 +167,8 @@ impl Board {
             accelerometer: self.buses.accelerometer(self.accelerometer),
             axes: axes(self.buses, self.axis, self.selects),
             base: self.base.connect(),
-            motor_enable: Output::new(self.motor_enable, Level::Low, Speed::Low),
+            // Off until the motors are known to rest.
+            motor_enable: Output::new(self.motor_enable, Level::High, Speed::Low),
             outlets: self.outlets,
         }
     }

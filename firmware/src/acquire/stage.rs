@@ -116,8 +116,8 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let (mut serving, mut sampling) = (pin!(serving), pin!(acquisition.run(compensation)));
         poll_fn(|context| {
             loop {
-                if let Poll::Ready(reason) = serving.as_mut().poll(context) {
-                    return Poll::Ready(Err(reason));
+                if let Poll::Ready(never) = serving.as_mut().poll(context) {
+                    match never {}
                 }
                 if let Poll::Ready(ended) = sampling.as_mut().poll(context) {
                     return Poll::Ready(ended);

@@ -126,20 +126,21 @@ async fn control(mechanism: &mut impl Mechanism, keeping: impl Keep, shared: &Sh
     pending::<()>().await;
 }
 
-/// Serves a mechanism with motors and keeps the attitude, for ever; takes the motors their current where one cannot be
-/// brought to rest.
+/// Serves a mechanism with motors and keeps the attitude, for ever; gives the motors their current once all rest, and
+/// takes it away where one cannot be brought to rest.
 async fn control_motors(
     mechanism: &mut impl Mechanism,
     mut motor_enable: Output<'static>,
     keeping: impl Keep,
     shared: &Shared<'static>,
 ) {
-    let switching_off = async {
-        shared.current_off.wait().await;
-        // Active low.
-        motor_enable.set_high();
+    let switching = async {
+        loop {
+            // Active low.
+            motor_enable.set_level((!shared.current.wait().await).into());
+        }
     };
-    join(control(mechanism, keeping, shared), switching_off).await;
+    join(control(mechanism, keeping, shared), switching).await;
 }
 
 /// Waits for the end of all. Once a second the parts beside it are woken, to check in.

@@ -133,7 +133,10 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// an error cannot be cleared, [`Fault::SelfTest`] for shorts and heat, [`Fault::NotAsWritten`].
     pub async fn start(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, POWER_UP).await;
-        self.identify().await?;
+        let inputs = self.identify().await?;
+        if inputs & ioin::DISABLED != 0 {
+            return Err(Fault::NotReady);
+        }
         self.come_to_rest().await?;
         self.clear_errors().await?;
         let mut position = [0];
@@ -141,6 +144,18 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.link.pass(&mut [Pass::Configure(&self.configuration), look], false).await?;
         self.stand_ready(position).await?;
         self.test_bridges().await
+    }
+
+    /// Brings the ramp to rest of a chip of which nothing is known, as after a reset of the controller: it
+    /// may go on although the enable pin keeps the bridges off, and would drive the motor once it does not.
+    ///
+    /// # Errors
+    /// [`Fault::Identity`] as of [`Self::start`], and [`Fault::NotReady`] where the ramp does not stop
+    /// within two seconds.
+    pub async fn rest(&mut self) -> Result<(), Fault> {
+        pause(&mut self.delay, POWER_UP).await;
+        self.identify().await?;
+        self.come_to_rest().await
     }
 
     /// Moves to a position, microsteps, by the ramp; permitted during a motion. From rest the
@@ -283,18 +298,15 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.pass(passes.get_mut(moving..).unwrap_or_default()).await.map(|_| ())
     }
 
-    /// Verifies that the chip is a TMC5160 in the mode with its internal ramp generator. It may
-    /// have been reset.
-    async fn identify(&mut self) -> Result<(), Fault> {
+    /// Verifies that the chip is a TMC5160 in the mode with its internal ramp generator, and returns its
+    /// inputs. It may have been reset.
+    async fn identify(&mut self) -> Result<u32, Fault> {
         let [inputs, ..] = self.read(&[registers::IOIN], true).await?;
         check_version(inputs)?;
         if inputs & ioin::STEP_MODE != 0 {
             return Err(Fault::Identity { found: inputs });
         }
-        if inputs & ioin::DISABLED != 0 {
-            return Err(Fault::NotReady);
-        }
-        Ok(())
+        Ok(inputs)
     }
 
     /// Stops the motor, whatever it did before, and holds it.

@@ -8,17 +8,18 @@ use crate::board::Board;
 use crate::figure::within;
 use crate::images::image;
 use crate::store::{nearly_full, world};
+use crate::turning::TurningBoard;
 
 /// Where there is nothing.
 const NOWHERE: u32 = 0x6000_0000;
 /// Rows of a record.
 const ROWS: u64 = 9;
 
-/// The words of the lines that the flash of a vehicle's board holds.
-fn lines(board: &Board) -> Vec<String> {
+/// The words of the lines that the flash of a board holds.
+fn lines(carrier: Platform, board: &Board) -> Vec<String> {
     let range = LOG.start as usize..LOG.end as usize;
     let pages = board.controller(|controller| controller.flash.array.bytes()[range].to_vec());
-    let lines = kept::lines(&image(Platform::Vehicle).elf, &pages).expect("it is an image");
+    let lines = kept::lines(&image(carrier).elf, &pages).expect("it is an image");
     lines.into_iter().map(|line| line.words).collect()
 }
 
@@ -53,7 +54,7 @@ fn a_fault_before_a_loss_of_supply_is_told_by_the_next_start_and_found_in_the_fl
     let (log, is_sent) = told(start, f64::INFINITY);
     assert!(log.is_some() && is_sent, "{board}");
     assert!(!board.lines(start, f64::INFINITY).concat().contains("last reset"), "RAM has lost it");
-    let lines = lines(&board);
+    let lines = lines(Platform::Vehicle, &board);
     let found = |words: &str| lines.iter().position(|line| line.starts_with(words));
     let order = [
         "board: started by Supply",
@@ -73,10 +74,22 @@ fn a_sensor_that_fails_and_the_azimuth_that_is_recalled_are_found_in_the_flash()
     board.controller(|controller| controller.spi[0].hangs = true);
     board.until("recalled", 20.0);
     board.run(0.5);
-    let lines = lines(&board);
+    let lines = lines(Platform::Vehicle, &board);
     for words in ["reading lost: its bus hangs", "azimuth 213.7° ± 0.0573° (1σ) recalled"] {
         assert!(lines.iter().any(|line| line.ends_with(words)), "{lines:#?}");
     }
+}
+
+/// The lines of a bus that hangs again and again before it are many.
+#[test]
+fn motors_that_were_not_brought_to_rest_are_found_in_the_flash() {
+    let TurningBoard { mut board, .. } = TurningBoard::new();
+    board.controller(|controller| controller.spi[1].is_stuck = true);
+    let told = "not brought to rest: the motors' current is taken away";
+    board.until(told, 12.0);
+    board.run(0.5);
+    let lines = lines(Platform::Turntable, &board);
+    assert!(lines.iter().any(|line| line.contains(told)), "{lines:#?}");
 }
 
 /// One board, whose supply is lost at every start in a later row of the first record that it writes. At first it is lost in
@@ -90,7 +103,7 @@ fn a_loss_of_supply_amid_a_line_leaves_all_others_and_the_next_start_writes_on()
             cut(&board, operation, reached);
             board.until("board: started by", 3.0);
             board.until("board: started by Supply", 6.0);
-            let lines = lines(&board);
+            let lines = lines(Platform::Vehicle, &board);
             assert!(lines.starts_with(&left), "{reached} of {operation}: {left:#?}, {lines:#?}");
             left = lines;
             board.execution.switch_off();
@@ -98,7 +111,7 @@ fn a_loss_of_supply_amid_a_line_leaves_all_others_and_the_next_start_writes_on()
     }
     board.until("keeping: level", 9.0);
     board.run(1.0);
-    let lines = lines(&board);
+    let lines = lines(Platform::Vehicle, &board);
     assert!(lines.len() > left.len() && lines.starts_with(&left), "{lines:#?}");
     assert!(left.iter().all(|line| line.starts_with("board: ")), "{left:#?}");
 }

@@ -126,7 +126,7 @@ async fn halted(driver: &mut impl Actuator) -> (f64, bool) {
     let shared = Shared::new(&());
     let begun = Instant::now();
     Stage::new(driver, &StageConfiguration::default(), &shared).halt().await;
-    (begun.elapsed().as_micros() as f64 * 1e-6, shared.current_off.signaled())
+    (begun.elapsed().as_micros() as f64 * 1e-6, shared.current.signaled())
 }
 
 #[test]

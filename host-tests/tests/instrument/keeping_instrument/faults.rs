@@ -12,6 +12,7 @@ use host::instrument::kept::KeptPlan;
 use simulated::fault::Injection;
 use simulated::hold::Hold;
 use simulated::mount::FramesScenario;
+use simulated::scenario::Scenario;
 
 /// How long after its departure something goes wrong with a base, s.
 const AFTER: f64 = 60.0;
@@ -70,6 +71,22 @@ fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_report
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
     assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found));
     check(&found);
+}
+
+/// The alignment ends, since its samples have the sway. All else goes on.
+#[test]
+fn coarse_sensors_that_are_given_up_while_their_sway_is_subtracted_cost_no_other_device_anything() {
+    let scenario = scenario();
+    let base = Scenario { sway_deg: 0.1, sway_hz: 0.3, ..scenario.base };
+    let coarse_imu = Some(When::always(moment(60.0)));
+    let plan = Injection { coarse_imu, ..Injection::NONE };
+    let lines = reported(&injected(&FramesScenario { base, ..scenario }, plan));
+    let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
+    assert_eq!(count("it is subtracted"), 1, "{lines:#?}");
+    assert_eq!(count("no azimuth: base: "), 1, "{lines:#?}");
+    assert!(count("base: given up") > 1, "{lines:#?}");
+    assert_eq!(count("given up"), count("base: given up"), "{lines:#?}");
+    assert_eq!(count("missing"), 0, "{lines:#?}");
 }
 
 #[test]
