@@ -55,6 +55,7 @@ mod priorities;
 mod stack;
 mod unmaskable;
 
+use core::fmt::{Debug, Write as _};
 use core::pin::pin;
 
 use defmt_rtt as _;
@@ -66,11 +67,12 @@ use firmware::kept_lines::Weight;
 use firmware::link;
 use firmware::platform::Platform;
 use firmware::ports::Observer as _;
-use firmware::postmortem::Last;
+use firmware::postmortem::{Last, Line};
+use heapless::String;
 use stm32::watchdog::Reason;
 use stm32::wiring::{Clock, Link};
 use stm32::{
-    BoardLog, Executors, PLATFORM, brown_out, spinning, stepwise, stops, turning, watchdog,
+    BoardLog, Executors, PLATFORM, brown_out, once, spinning, stepwise, stops, turning, watchdog,
 };
 
 use crash::RUN;
@@ -131,7 +133,7 @@ async fn main(spawner: Spawner) -> ! {
     // Before any is enabled: what a critical section is to hold back must not have the priority of the edges.
     priorities::set();
     let peripherals = clock::start();
-    spawner.spawn(defmt::unwrap!(watchdog::feed(&RUN)));
+    spawner.spawn(once(watchdog::feed(&RUN)));
     // Log and link tell of the last reset once the crystal oscillates, or is known not to.
     let was_dead = last.is_some_and(|last| last.record.is_crystal_dead);
     let has_crystal = clock::follow_crystal(was_dead).await;
@@ -144,12 +146,18 @@ async fn main(spawner: Spawner) -> ! {
     });
     set_brown_out_level(reason);
     let board = Board::new(peripherals, &LOG, Clock { has_crystal });
-    let (board, mut link) = defmt::unwrap!(board);
+    let (board, mut link) = opened(board);
     let ring = board.flash().ring();
     tell(last.as_ref(), reason, ring.found, &mut link).await;
-    spawner.spawn(defmt::unwrap!(stack::watch()));
+    spawner.spawn(once(stack::watch()));
     run(spawner, board, link);
     Checked::new(LOG.check_ins(), Part::Log, pin!(LOG.write(ring))).await
+}
+
+/// The board, whose link has settings that its port takes.
+#[expect(clippy::expect_used, reason = "other settings are a mistake of the program")]
+fn opened<E: Debug>(board: Result<(Board, Link), E>) -> (Board, Link) {
+    board.expect("the port takes the link's settings")
 }
 
 /// Has the option bytes hold the level of the supply below which the board is reset: once, for a controller as it is
@@ -167,24 +175,31 @@ fn set_brown_out_level(reason: Reason) {
     brown_out::set();
 }
 
+/// Most characters of the registers at a fault: eight of them, each with its name.
+const REGISTERS: usize = 160;
+
 /// Tells log and link how the last run ended, unless it did so on purpose, and how many records of the log the flash holds.
 async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link) {
     let how = |last: &Last| last.how(reason == Reason::Watchdog, reason == Reason::Supply);
-    let mut words = [""; 8];
+    let (mut words, mut registers) = ([""; 9], String::<REGISTERS>::new());
     if let Some(last) = last
         && let Some(how) = how(last)
     {
         for line in last.lines(how).iter().flatten() {
             LOG.keep(Weight::Outcome, || defmt::warn!("board: {}", line));
+            if let Line::Place(_) | Line::Cause(_) = line {
+                // It takes what fits, and never fails.
+                let _ = write!(registers, "; {line}");
+            }
         }
         let text = last.record.text.as_str();
         let place = if text.is_empty() { "" } else { " at " };
         let [what, part] = [how.brief(), last.part(how)];
-        words = ["last reset: ", what, " in ", part, place, text, "\r\n", ""];
+        words = ["last reset: ", what, " in ", part, place, text, &registers, "\r\n", ""];
     }
     if records > 0 {
         defmt::info!("board: {} records of the log in flash", records);
-        words[7] = "log in flash\r\n";
+        words[8] = "log in flash\r\n";
     }
     link::say(link, &words).await;
 }
@@ -195,19 +210,19 @@ fn run(spawner: Spawner, board: Board, link: Link) {
     // Tasks that are never spawned are not in the image.
     match PLATFORM {
         Platform::Stage => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_a_stage(above, board.axis(), link)));
+            spawner.spawn(once(stepwise::on_a_stage(above, board.axis(), link)));
         }
         Platform::TwoFrame => {
-            spawner.spawn(defmt::unwrap!(stepwise::on_two_frames(above, board.two_frames(), link)));
+            spawner.spawn(once(stepwise::on_two_frames(above, board.two_frames(), link)));
         }
         Platform::Turntable => {
-            spawner.spawn(defmt::unwrap!(turning::align(above, board.axis(), link)));
+            spawner.spawn(once(turning::align(above, board.axis(), link)));
         }
         Platform::Vehicle => {
-            spawner.spawn(defmt::unwrap!(stops::align(above, board.vehicle(), link)));
+            spawner.spawn(once(stops::align(above, board.vehicle(), link)));
         }
         Platform::Spin => {
-            spawner.spawn(defmt::unwrap!(spinning::follow(above, board.spinning_body(), link)));
+            spawner.spawn(once(spinning::follow(above, board.spinning_body(), link)));
         }
     }
 }

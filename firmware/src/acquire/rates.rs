@@ -88,11 +88,12 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         self.check(outcome, shared)
     }
 
-    /// Reads once more after a transfer that its bus has given up: the conversion is still there.
+    /// Reads once more after a transfer that its bus has given up: the conversion is still there, although the
+    /// converter may take it for read.
     pub(super) async fn read_again(&mut self, shared: &Shared<'_>) -> Result<Option<V>, Symptom> {
         shared.lose(self.gyro.name, Symptom::Chip(Fault::Hung));
         let outcome = self.gyro.device.read().await;
-        self.check(outcome, shared)
+        self.check(outcome.map(|reading| RateReading { is_new: true, ..reading }), shared)
     }
 
     /// Checks what was read.

@@ -38,7 +38,7 @@ pub use log::BoardLog;
 use core::future::pending;
 use core::pin::pin;
 
-use embassy_executor::SendSpawner;
+use embassy_executor::{SendSpawner, SpawnError, SpawnToken};
 use embassy_futures::join::join;
 use embassy_futures::select::select;
 use embassy_stm32::gpio::Output;
@@ -111,6 +111,16 @@ fn keeping<C>(settings: &Settings<C>, clocks: Timebase) -> Option<Keeping<'stati
 fn keeper(setting: &Setting) -> &'static mut Keeper {
     static KEEPER: StaticCell<Keeper> = StaticCell::new();
     KEEPER.init_with(|| Keeper::new(setting))
+}
+
+/// A task that is spawned once, so that there is memory for it.
+///
+/// # Panics
+/// Where it runs already, with the place of the call.
+#[expect(clippy::expect_used, reason = "to spawn a task twice is a mistake of the program")]
+#[track_caller]
+pub fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
+    task.expect("a task is spawned once")
 }
 
 /// Task that acquires samples on a stage or a turntable for ever.

@@ -108,6 +108,12 @@ const REALIGNS: bool = true;
 /// Course and pitch at the start of the flight, °: no sensor on the body measures them.
 const LAUNCH: [f64; 2] = [0.0, 0.0];
 
+/// Latitude that the image states.
+#[expect(clippy::expect_used, reason = "an image that states none is a mistake of the program")]
+fn latitude() -> Latitude {
+    Latitude::from_degrees(LATITUDE).expect("the image states a latitude")
+}
+
 /// Settings of the image with a schedule.
 fn of_image<C>(schedule: C) -> Settings<C> {
     let errors = attitude::Gyro {
@@ -117,7 +123,7 @@ fn of_image<C>(schedule: C) -> Settings<C> {
     };
     let limit = RadiansPerSecond(GYRO_LIMIT * DEGREE);
     Settings {
-        latitude: defmt::unwrap!(Latitude::from_degrees(LATITUDE)),
+        latitude: latitude(),
         gyro: Gyro { volts_per_rad_per_s: GYRO_SCALE / DEGREE, limit, errors },
         required_sigma: Radians(ACCURACY.map_or(ACCEPTED_SIGMA, |(sigma, _)| sigma) * DEGREE),
         holds: HOLDS,

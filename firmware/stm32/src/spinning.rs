@@ -10,7 +10,7 @@ use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::{Link, Outlets, SpinWires};
-use crate::{Channels, Executors, configuration, find_and_report, ports, refuse, settings};
+use crate::{Channels, Executors, configuration, find_and_report, once, ports, refuse, settings};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
@@ -47,7 +47,7 @@ fn begin(
     let channels: &'static Channels<_> = channels;
     let flight = FLIGHT.init_with(|| configuration::flight(&settings, clocks));
     let sensors = ports::spinning(converters);
-    executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, configuration, channels)));
+    executors.acquisition.spawn(once(acquisition(sensors, configuration, channels)));
     // Nothing turns: the angles are valid.
     channels.shared.homed.signal(());
     Ok((flight, channels))

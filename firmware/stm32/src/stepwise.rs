@@ -20,7 +20,7 @@ use crate::ports::{AxisMotor, MountInputs};
 use crate::wiring::{AxisPlatformWires, FramesWires, Link, Outlets};
 use crate::{
     Begun, Channels, Executors, OnBase, channels, configuration, control_motors, go_on, keeping,
-    on_base, ports, settings, stage_acquisition,
+    on_base, once, ports, settings, stage_acquisition,
 };
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
@@ -52,9 +52,9 @@ fn begin_on_a_stage(
     let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
     let channels = channels(log, clocks);
     let motor = ports::motor(axes.motor);
-    executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
+    executors.acquisition.spawn(once(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings, clocks);
-    executors.control.spawn(defmt::unwrap!(stage(motor, motor_enable, keeping, channels)));
+    executors.control.spawn(once(stage(motor, motor_enable, keeping, channels)));
     Ok((session, flash, channels))
 }
 
@@ -103,9 +103,9 @@ fn begin_on_two_frames(
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoders, base)?;
     let motors = Frames { outer: outer.motor, inner: inner.motor }.map(ports::motor);
-    executors.acquisition.spawn(defmt::unwrap!(mount_acquisition(inputs, frames, channels)));
+    executors.acquisition.spawn(once(mount_acquisition(inputs, frames, channels)));
     let keeping = keeping(&settings, clocks);
-    executors.control.spawn(defmt::unwrap!(mount(motors, motor_enable, frames, keeping, channels)));
+    executors.control.spawn(once(mount(motors, motor_enable, frames, keeping, channels)));
     Ok((session, flash, channels))
 }
 

@@ -14,7 +14,9 @@ use static_cell::StaticCell;
 
 use crate::ports::Triad;
 use crate::wiring::{Link, Outlets, VehicleWires};
-use crate::{Begun, Channels, Executors, configuration, control, go_on, keeper, ports, settings};
+use crate::{
+    Begun, Channels, Executors, configuration, control, go_on, keeper, once, ports, settings,
+};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
@@ -47,8 +49,8 @@ fn begin(
         let keeper = keeper(&configuration::keeper(&settings, clocks));
         Keeping { keeper, policy: configuration::policy(&settings, clocks) }
     });
-    executors.acquisition.spawn(defmt::unwrap!(acquisition(sensors, channels)));
-    executors.control.spawn(defmt::unwrap!(keep(keeping, channels)));
+    executors.acquisition.spawn(once(acquisition(sensors, channels)));
+    executors.control.spawn(once(keep(keeping, channels)));
     Ok((session, flash, channels))
 }
 

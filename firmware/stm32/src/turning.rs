@@ -19,7 +19,7 @@ use crate::ports::AxisMotor;
 use crate::wiring::{AxisPlatformWires, Link, Outlets};
 use crate::{
     Channels, Executors, channels, configuration, control_motors, find_and_report, keeping,
-    on_base, ports, refuse, settings, stage_acquisition,
+    on_base, once, ports, refuse, settings, stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -54,9 +54,9 @@ async fn begin(
     let store = &SharedStore::new(flash.store());
     let session = session(&settings, store, channels).await?;
     let motor = ports::motor(axes.motor);
-    executors.acquisition.spawn(defmt::unwrap!(stage_acquisition(inputs, channels)));
+    executors.acquisition.spawn(once(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings, clocks);
-    executors.control.spawn(defmt::unwrap!(platform(motor, motor_enable, keeping, channels)));
+    executors.control.spawn(once(platform(motor, motor_enable, keeping, channels)));
     let recorder = &mut CalibrationStore { store, channels };
     find_and_report(session, link, recorder, store, channels).await
 }

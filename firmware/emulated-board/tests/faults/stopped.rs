@@ -164,7 +164,10 @@ fn a_stuck_task_is_reset_by_the_watchdog() {
 
 #[test]
 fn the_start_after_a_stuck_task_tells_which_task_it_was() {
-    assert_eq!(STUCK.telling(&["last reset: stuck task in keeper"]), 2.0, "{:?}", STUCK.lines);
+    // Which part the core is in is what the moment meets: the executor may be between two.
+    let parts = ["keeper", "aligner"].map(|part| format!("last reset: stuck task in {part}"));
+    let told = parts.map(|words| STUCK.telling(&[&words]));
+    assert!(told.contains(&2.0), "log and link: {:?}", STUCK.lines);
 }
 
 #[test]
@@ -204,10 +207,11 @@ fn a_fault_of_the_core_resets_at_once() {
 
 #[test]
 fn the_start_after_a_fault_of_the_core_tells_its_registers_and_its_place() {
-    let words = ["board: PC 0x60000000", "CFSR 0x00000100, HFSR 0x40000000", "called from 0x0800"];
-    for words in words {
-        assert_eq!(FAULT.telling(&[words]), 1.0, "{words}: {:?}", FAULT.lines);
+    // On log and link, and what is on the log alone.
+    for words in ["PC 0x60000000, LR 0x08", "CFSR 0x00000100, HFSR 0x40000000"] {
+        assert_eq!(FAULT.telling(&[words]), 2.0, "{words}: {:?}", FAULT.lines);
     }
+    assert_eq!(FAULT.telling(&["board: called from 0x0800"]), 1.0, "{:?}", FAULT.lines);
     assert_eq!(FAULT.telling(&["last reset: fault of the core"]), 2.0, "{:?}", FAULT.lines);
 }
 
