@@ -44,30 +44,34 @@ fn keep<T>(kept: T) -> &'static T {
     Box::leak(Box::new(kept))
 }
 
+/// Nothing goes wrong with chips that borrow this.
+pub fn nothing() -> &'static Injection {
+    keep(Injection::NONE)
+}
+
 impl World {
     /// The world of a carrier by its seed, in which nothing goes wrong.
     ///
     /// # Errors
     /// Settings that the record does not take.
     pub fn new(platform: Platform, seed: u64) -> Result<Self, String> {
-        let injection = keep(Injection::at(None, Instant::MIN));
         match platform {
             Platform::Stage => Self::stepping(&executed::stage(seed)),
             Platform::Turntable => {
                 let scenario = executed::turntable(seed);
-                let carrier = scenario.board(None, injection);
+                let carrier = scenario.board(None, nothing());
                 Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), &scenario.base)
             }
             Platform::TwoFrame => {
                 let scenario = executed::two_frames(seed);
-                let carrier = scenario.board(None, injection);
+                let carrier = scenario.board(None, nothing());
                 Self::at_rest(carrier, (FRAMES, ONE_LINE), scenario.settings(), &scenario.base)
             }
             Platform::Vehicle => Self::driving(&executed::vehicle(seed)),
             Platform::Spin => {
                 let scenario = executed::spin(seed);
                 let course = keep(scenario.course(None));
-                let board = || scenario.board(course, injection);
+                let board = || scenario.board(course, nothing());
                 let truth = board().plant;
                 let world = Self::of(board(), (SPIN, SPIN_LINES), scenario.settings());
                 world.map(|world| world.with(move |now| truth.truth_at(now).roll_rad))
@@ -80,9 +84,8 @@ impl World {
     /// # Errors
     /// Settings that the record does not take.
     pub fn driving(scenario: &VehicleScenario) -> Result<Self, String> {
-        let injection = keep(Injection::at(None, Instant::MIN));
         let day = keep(scenario.day(None));
-        let board = || scenario.board(&day.legs, &day.events, injection);
+        let board = || scenario.board(&day.legs, &day.events, nothing());
         let truth = board().plant;
         let world = Self::of(board(), (VEHICLE, VEHICLE_LINES), scenario.settings());
         world.map(|world| world.with(move |now| truth.truth_at(now).attitude.azimuth_rad))
@@ -93,8 +96,7 @@ impl World {
     /// # Errors
     /// Settings that the record does not take.
     pub fn stepping(scenario: &Scenario) -> Result<Self, String> {
-        let injection = keep(Injection::at(None, Instant::MIN));
-        let carrier = simulated::board(scenario, None, injection);
+        let carrier = simulated::board(scenario, None, nothing());
         Self::at_rest(carrier, (STAGE, ONE_LINE), scenario.settings(), scenario)
     }
 

@@ -21,14 +21,14 @@ const SURVEY_SECONDS: f64 = 60.0;
 const DWELL_SECONDS: f64 = 8.0;
 
 /// Holds that a course lost nothing, told nothing that is false, and had a page erased in it.
-fn lost_nothing(shown: &Executed, pages: u64) {
+fn lost_nothing(shown: &Executed) {
     let report = &shown.report;
     let lost: u64 = report.service.iter().map(|service| service.lost).sum();
     within(lost as f64, 0.0..=0.0, "conversions are lost in a course");
     assert_eq!(report.false_notices(), 0, "{:?}: {}", report.false_notices, shown.text());
     assert_eq!(shown.lines("missing").count(), 0, "{}", shown.text());
     assert!(report.resets.is_empty() && report.violations.is_empty(), "{report:?}");
-    assert!(report.flash_use.pages >= pages, "{:?}: {}", report.flash_use, shown.text());
+    assert!(report.flash_use.pages >= 1, "{:?}: {}", report.flash_use, shown.text());
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn a_vehicle_that_drives_stops_and_aligns_anew_loses_no_conversion() {
     let world = World::driving(&scenario).expect("its settings are possible");
     let order = Order { afterwards: AFTERWARDS, ..Order::usual(Platform::Vehicle, 1) };
     let shown = execute_in(&order, world.with_store(worn_store(&settings, FULL)));
-    lost_nothing(&shown, 1);
+    lost_nothing(&shown);
     assert_eq!(shown.lines("handed over").count(), 1, "{}", shown.text());
     assert!(shown.lines("realigned: ").count() >= 1, "{}", shown.text());
 }
@@ -60,7 +60,7 @@ fn a_stage_that_surveys_its_gyro_aligns_and_saves_loses_no_conversion() {
         &Order::usual(Platform::Stage, 1),
         world.with_store(worn_store(&settings, FULL)),
     );
-    lost_nothing(&shown, 1);
+    lost_nothing(&shown);
     assert_eq!(shown.lines("survey").count(), 1, "{}", shown.text());
     assert_eq!(shown.lines("handed over").count(), 1, "{}", shown.text());
 }

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use drivers::fault::Fault;
 use emulated_board::wiring::board::Carrier;
-use emulated_board::world::{Driver, World, at_once, erased, pages, store};
+use emulated_board::world::{Driver, World, at_once, erased, nothing, pages, store};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
 use firmware::settings::{self, Settings, VehicleSchedule, save};
@@ -22,7 +22,6 @@ use orientation::alignment::rotating::misalignment;
 use orientation::attitude::restart::Remembered;
 use orientation::units::{Radians, RadiansPerSecond, Seconds};
 use simulated::executed;
-use simulated::fault::Injection;
 use simulated::scenario::{GyroClass, Scenario};
 use simulated::vehicle::VehicleScenario;
 
@@ -72,7 +71,7 @@ fn standing() -> (Rc<RefCell<dyn Carrier>>, Items) {
     let stop = Stop { seconds: STANDS_SECONDS, ..Stop::default() };
     // Chips borrow what goes on around them.
     let day: &'static Day = Box::leak(Box::new(Day::standing(latitude_deg, azimuth_deg, stop)));
-    let board = scenario.board(&day.legs, &day.events, Box::leak(Box::new(Injection::NONE)));
+    let board = scenario.board(&day.legs, &day.events, nothing());
     let items = Items::of(&scenario, board.plant.truth().gyro_bias_rad_s);
     (Rc::new(RefCell::new(board)), items)
 }

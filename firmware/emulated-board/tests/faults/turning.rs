@@ -4,13 +4,12 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use emulated_board::wiring::board::{Carrier, Parts};
-use emulated_board::world::World;
+use emulated_board::world::{World, nothing};
 use firmware::platform::Platform;
 use hal_mock::assembly::{Board as Assembly, Chips};
 use hal_mock::gimbal::Gimbal;
 use hal_mock::plant::Plant;
 use simulated::executed;
-use simulated::fault::Injection;
 
 use crate::board::Board;
 
@@ -69,9 +68,4 @@ impl TurningBoard {
         };
         Self { board, turning: Box::new(turning) }
     }
-}
-
-/// Nothing goes wrong with the chips, which borrow that.
-fn nothing() -> &'static Injection {
-    Box::leak(Box::new(Injection::NONE))
 }
