@@ -85,8 +85,8 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
 }
 
 impl<M: Actuator> Mechanism for Gimbal<'_, M> {
-    /// Has both motors rest before they get their current, starts the drives, waits for the first valid angles, homes, and then follows requests for a
-    /// heading or for the vertical.
+    /// Has both motors rest before they get their current, starts the drives, waits for the first valid angles, homes,
+    /// and then follows requests for a heading or for the vertical.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         let (outer, inner) = join(self.outer.motor.rest(), self.inner.motor.rest()).await;
         self.shared.current.signal(outer && inner);

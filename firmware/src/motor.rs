@@ -131,6 +131,15 @@ impl<'a, M: Actuator> Motor<'a, M> {
         Err(self.fail(trouble).into())
     }
 
+    /// Has the motor of the only axis rest, gives it its current, and starts its driver.
+    ///
+    /// # Errors
+    /// The driver is given up.
+    pub(crate) async fn start(&mut self) -> Result<(), Refusal> {
+        self.shared.current.signal(self.rest().await);
+        self.actuator.start(self.shared).await
+    }
+
     /// Brings a motor to rest of which nothing is known, before it has its current; whether it rests.
     pub(crate) async fn rest(&mut self) -> bool {
         let deadline = Instant::now() + LONGEST_STOP;
@@ -187,7 +196,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
     pub(crate) async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
         let mut deadline = Instant::now() + LONGEST_WAIT;
         while self.fresh().is_none() {
-            if self.shared.are_sensors_resting.get() {
+            if self.shared.without_sensors.get().is_some() {
                 deadline = Instant::now() + LONGEST_WAIT;
             }
             if Instant::now() > deadline {

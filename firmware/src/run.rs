@@ -12,13 +12,12 @@
 //! unless it is to hold the azimuth, or to track a roll, without end.
 
 use core::convert::Infallible;
+use core::future::pending;
 use core::pin::pin;
 
 use embassy_futures::select::{select3, select4};
-use embassy_time::{Duration, Timer};
 use embedded_io_async::Write;
 use orientation::alignment::Method;
-use orientation::alignment::refusal::Refusal;
 use orientation::signal::Timed;
 
 use crate::align::align;
@@ -63,9 +62,10 @@ pub async fn operate<M: Mechanism, K: Keep>(
     {
         let turning = pin!(async {
             let Err(reason) = mechanism.serve().await;
+            shared.without_mechanism.set(Some(reason));
             shared.fail(reason);
             mechanism.halt().await;
-            refuse(reason, shared).await
+            pending::<Infallible>().await
         });
         let kept = pin!(keeping.keep(aiding, shared));
         // The navigator is polled last, so that it takes only what the aligner has taken.
@@ -73,19 +73,6 @@ pub async fn operate<M: Mechanism, K: Keep>(
         select3(pin!(beside), turning, shared.checked(Part::Keeper, kept)).await;
     }
     shared.checked(Part::Mechanism, pin!(mechanism.park(meanwhile))).await;
-}
-
-/// Time within which an alignment that begins without its mechanism is ended.
-const REFUSED: Duration = Duration::from_secs(1);
-
-/// Ends for this reason every alignment that begins after its mechanism was given up.
-async fn refuse(reason: Refusal, shared: &Shared<'_>) -> Infallible {
-    loop {
-        Timer::after(REFUSED).await;
-        if !shared.is_idle() {
-            shared.fail(reason);
-        }
-    }
 }
 
 /// Where results go: link, recorder, and the store of what outlasts a loss of supply.

@@ -104,6 +104,11 @@ impl Orders {
         taken
     }
 
+    /// Drops an order to an alignment that is over: each but that to begin another.
+    fn drop_void(&self) {
+        self.waiting.change(|waiting| *waiting = waiting.filter(|order| *order == Order::Restart));
+    }
+
     /// Waits for an order, and takes it.
     pub(crate) async fn take(&self) -> Order {
         loop {
@@ -158,8 +163,10 @@ pub struct Shared<'a> {
     pub is_kept: Common<bool>,
     /// Whether the body is at rest, by the navigator's detection.
     pub is_at_rest: Common<bool>,
-    /// Whether sensors that were given up rest until they may be tried again: no angle is read meanwhile.
-    pub(crate) are_sensors_resting: Common<bool>,
+    /// The reason for which every alignment that begins is refused: the mechanism was given up.
+    pub(crate) without_mechanism: Common<Option<Refusal>>,
+    /// The same while sensors that were given up rest until they may be tried again: no angle is read meanwhile.
+    pub(crate) without_sensors: Common<Option<Refusal>>,
     /// Sampling period; one second until acquisition has stated it.
     pub period: Common<Duration>,
     /// Time between two motions; one second until acquisition has stated it.
@@ -204,7 +211,8 @@ impl<'a> Shared<'a> {
             alignments: Common::new(Alignments::First),
             is_kept: Common::new(false),
             is_at_rest: Common::new(false),
-            are_sensors_resting: Common::default(),
+            without_mechanism: Common::default(),
+            without_sensors: Common::default(),
             period: Common::new(Duration::from_secs(1)),
             motion_period: Common::new(Duration::from_secs(1)),
             clocks: Timebase::nominal(Clock::Converter, Clock::Crystal),
@@ -228,23 +236,29 @@ impl<'a> Shared<'a> {
         self.orders.give(order);
     }
 
-    /// Ends the alignment with a reason.
+    /// Ends the alignment that runs, with a reason. One that is ordered meanwhile begins all the same.
     pub fn fail(&self, reason: Refusal) {
-        self.order(Order::Fail(reason));
+        if !self.is_idle() {
+            self.order(Order::Fail(reason));
+        }
     }
 
-    /// Notes that the aligner obeys an order.
+    /// Notes that the aligner obeys an order. An alignment that begins without its devices is ended for the reason for
+    /// which they were given up.
     pub(crate) fn obey(&self, order: &Order) {
         if *order == Order::Restart && self.is_idle() {
             self.alignments.set(Alignments::Again);
+            let reason = self.without_sensors.get().or(self.without_mechanism.get());
+            if let Some(reason) = reason {
+                self.fail(reason);
+            }
         }
     }
 
     /// Ends an alignment: hands an azimuth over to the navigator, and wakes the link.
     pub(crate) fn conclude(&self, found: Option<(units::Instant, Azimuth)>) {
-        // An order that waits is one to the alignment that is over.
-        let _ = self.orders.try_take();
         self.alignments.set(Alignments::Idle);
+        self.orders.drop_void();
         if let Some(found) = found {
             self.found.signal(found);
         }

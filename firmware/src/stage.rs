@@ -183,17 +183,15 @@ impl<'a, M: Actuator> Stage<'a, M> {
 }
 
 impl<M: Actuator> Mechanism for Stage<'_, M> {
-    /// Has the motor rest before it gets its current, starts the driver, waits for the sensors, homes, and then follows requests for ever.
+    /// Starts the motor, waits for the sensors, homes, and then follows requests for ever.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        let shared = self.motor.shared;
-        shared.current.signal(self.motor.rest().await);
-        self.motor.actuator.start(shared).await?;
-        shared.sensing.wait().await;
+        self.motor.start().await?;
+        self.motor.shared.sensing.wait().await;
         self.home().await?;
         self.turn_to(self.configuration.home).await?;
-        shared.homed.signal(());
+        self.motor.shared.homed.signal(());
         loop {
-            if let Request::Point(target) = shared.wanted.wait().await {
+            if let Request::Point(target) = self.motor.shared.wanted.wait().await {
                 self.turn_to(target.0).await?;
             }
         }

@@ -153,12 +153,10 @@ impl<'a, M: Actuator> Turntable<'a, M> {
 }
 
 impl<M: Actuator> Mechanism for Turntable<'_, M> {
-    /// Has the motor rest before it gets its current, starts the driver, waits for the sensors, and turns until the session has to end.
+    /// Starts the motor, waits for the sensors, and turns until the session has to end.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        let shared = self.motor.shared;
-        shared.current.signal(self.motor.rest().await);
-        self.motor.actuator.start(shared).await?;
-        shared.sensing.wait().await;
+        self.motor.start().await?;
+        self.motor.shared.sensing.wait().await;
         loop {
             let Err(broken) = self.turn().await;
             self.forgive(broken)?;

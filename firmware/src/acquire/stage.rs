@@ -297,18 +297,16 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
     }
 }
 
-/// Waits until the body rests and sensors that were given up may be tried again; they are the reason for which an
-/// alignment that runs or begins meanwhile ends.
+/// Waits until the body rests and sensors that were given up may be tried again; they are the reason for which the
+/// alignment that runs, and any that begins meanwhile, ends.
 async fn pause(reason: Refusal, shared: &Shared<'_>) {
     let until = Instant::now() + RETRY;
     let mut ticker = Ticker::every(shared.period.get());
-    shared.are_sensors_resting.set(true);
+    shared.without_sensors.set(Some(reason));
+    shared.fail(reason);
     while Instant::now() < until || !shared.is_at_rest.get() {
         ticker.next().await;
         shared.count(|health| health.samples = health.samples.saturating_add(1));
-        if !shared.is_idle() {
-            shared.fail(reason);
-        }
     }
-    shared.are_sensors_resting.set(false);
+    shared.without_sensors.set(None);
 }

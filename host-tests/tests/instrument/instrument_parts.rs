@@ -4,22 +4,28 @@ use std::cell::RefCell;
 
 use drivers::data_ready::Edge;
 use drivers::fault::Fault;
+use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_io_async::{ErrorKind, ErrorType, Write};
+use firmware::align::align;
 use firmware::calibration::{Calibration, Harmonics};
 use firmware::event::Event;
 use firmware::guarded::Guarded;
 use firmware::health::Health;
 use firmware::link;
-use firmware::ports::{Observer, Startable};
+use firmware::ports::{NoRecorder, Observer, Startable};
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
-use firmware::shared::Shared;
+use firmware::shared::{Channels, Shared};
 use firmware::status::Status;
 use firmware::timeline::{Arrival, Timeline};
 use host::virtual_time;
-use orientation::alignment::{Azimuth, Progress, Solution};
+use orientation::alignment::{
+    Azimuth, Input, Listener, Method, Progress, Refusal, Request, Solution, Verdict,
+};
 use orientation::attitude::{State, Trust};
 use orientation::device::{Device, Trouble};
+use orientation::navigation::Order;
+use orientation::signal::Sample;
 use orientation::units::{self, Angle, Radians, Seconds};
 use proptest::prelude::*;
 
@@ -287,4 +293,63 @@ fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault
         let line = String::from_utf8(heard.0).expect("text");
         assert!(line.ends_with(", recalled, faults 4294967295\r\n"), "{line}");
     }
+}
+
+/// A method that needs no sample, and ends where it has failed; how often it began, and whether it is over.
+#[derive(Default)]
+struct Begun {
+    times: usize,
+    verdict: Option<Verdict>,
+}
+
+impl Method<Sample> for Begun {
+    fn begin(&mut self, _: Listener<'_>) -> Request {
+        (self.times, self.verdict) = (self.times + 1, None);
+        Request::Continue
+    }
+
+    fn take(&mut self, input: Input<'_, Sample>, _: Listener<'_>) -> Request {
+        let Input::Failed(reason) = input else { return Request::Continue };
+        self.verdict = Some(Err(*reason));
+        Request::Done
+    }
+
+    fn compute(&mut self, _: Listener<'_>) -> Request {
+        Request::Continue
+    }
+
+    fn verdict(&self) -> Option<Verdict> {
+        self.verdict
+    }
+}
+
+/// Begins an alignment after each ending of the one before, which fails; `between` is done before the aligner hears of the
+/// order. Returns how many alignments began.
+fn begun_after(orders: usize, between: impl Fn(&Shared<'_>)) -> usize {
+    let channels = Channels::<Sample>::new(&());
+    let shared = &channels.shared;
+    let (mut method, mut recorder) = (Begun::default(), NoRecorder);
+    virtual_time::run(async {
+        let aligning = align(&mut method, &(), &mut recorder, &channels);
+        let ordering = async {
+            for _ in 0..orders {
+                shared.fail(Refusal::TimeExhausted);
+                Timer::after(Duration::from_secs(1)).await;
+                assert!(shared.is_idle());
+                shared.order(Order::Restart);
+                between(shared);
+                Timer::after(Duration::from_secs(1)).await;
+            }
+        };
+        select(aligning, ordering).await;
+    })
+    .expect("time wakes everybody");
+    method.times
+}
+
+#[test]
+fn an_alignment_that_is_ordered_begins_whatever_fails_meanwhile() {
+    assert_eq!(begun_after(3, |_| ()), 4);
+    assert_eq!(begun_after(3, |shared| shared.fail(Refusal::MovedDuringAlignment)), 4);
+    assert_eq!(begun_after(3, |shared| shared.order(Order::Skip)), 4);
 }

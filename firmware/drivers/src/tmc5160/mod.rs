@@ -132,12 +132,10 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// the enable pin keeps the bridges off or the motor does not stop, [`Fault::Alarm`] with GSTAT where
     /// an error cannot be cleared, [`Fault::SelfTest`] for shorts and heat, [`Fault::NotAsWritten`].
     pub async fn start(&mut self) -> Result<(), Fault> {
-        pause(&mut self.delay, POWER_UP).await;
-        let inputs = self.identify().await?;
+        let inputs = self.come_to_rest().await?;
         if inputs & ioin::DISABLED != 0 {
             return Err(Fault::NotReady);
         }
-        self.come_to_rest().await?;
         self.clear_errors().await?;
         let mut position = [0];
         let look = Pass::Read(&[registers::XACTUAL], &mut position);
@@ -153,9 +151,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::Identity`] as of [`Self::start`], and [`Fault::NotReady`] where the ramp does not stop
     /// within two seconds.
     pub async fn rest(&mut self) -> Result<(), Fault> {
-        pause(&mut self.delay, POWER_UP).await;
-        self.identify().await?;
-        self.come_to_rest().await
+        self.come_to_rest().await.map(|_| ())
     }
 
     /// Moves to a position, microsteps, by the ramp; permitted during a motion. From rest the
@@ -309,13 +305,15 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(inputs)
     }
 
-    /// Stops the motor, whatever it did before, and holds it.
-    async fn come_to_rest(&mut self) -> Result<(), Fault> {
+    /// Checks the chip, stops the motor, whatever it did before, and holds it; returns the chip's inputs.
+    async fn come_to_rest(&mut self) -> Result<u32, Fault> {
+        pause(&mut self.delay, POWER_UP).await;
+        let inputs = self.identify().await?;
         self.pass_anyhow(&mut [Pass::Write(&STOP)]).await?;
         for _ in 0..STOPPING_LOOKS {
             let [state, ..] = self.read(&[registers::RAMP_STAT], true).await?;
             if is_set(state, ramp_stat::STANDING) {
-                return self.pass_anyhow(&mut [Pass::Write(&HOLD)]).await.map(|_| ());
+                return self.pass_anyhow(&mut [Pass::Write(&HOLD)]).await.map(|_| inputs);
             }
             pause(&mut self.delay, STOPPING).await;
         }
