@@ -8,7 +8,7 @@ use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical, rates};
 use crate::math::quaternion::{angles, quaternion};
 use crate::signal::InertialSample;
-use crate::units::{Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds};
+use crate::units::{Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds, wrapped};
 
 use crate::alignment::Azimuth;
 
@@ -106,9 +106,10 @@ impl Keeper {
         }
     }
 
-    /// Marks the present course as that of a time, to which an azimuth belongs that is being computed.
-    pub(crate) fn mark(&mut self, at: Instant) {
-        if self.heading.is_none() {
+    /// Marks the present course as that of a time, to which an azimuth belongs that is being computed. Without an azimuth
+    /// the count of the turn's error is restarted, which is the more precise, unless it is still needed from the start on.
+    pub(crate) fn mark(&mut self, at: Instant, is_start_needed: bool) {
+        if self.heading.is_none() && !is_start_needed {
             self.vertical.begin_course();
         }
         self.mark = Some(Mark::new(at, &self.vertical));
@@ -231,15 +232,20 @@ impl Keeper {
     }
 
     /// Adopts the azimuth saved before a loss of supply, if the body has not moved since as far as
-    /// the sensors show.
+    /// the sensors show. A turn that they would not show is in its σ.
     ///
     /// # Errors
     /// Reason for which the saved azimuth is rejected.
     pub(crate) fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
-        let rest = (self.vertical.rest_rates(), Seconds(self.vertical.course.stood.into()));
-        let turned = Radians(self.vertical.course.turned.into());
-        restart::check(remembered, &self.report(), rest, turned, &self.setting)?;
-        self.hand_over(Azimuth { angle: remembered.azimuth, sigma: remembered.sigma });
+        let course = &self.vertical.course;
+        let rest = (self.vertical.rest_rates(), Seconds(course.stood.into()));
+        let turned = Radians(course.turned.into());
+        let unseen = Radians(libm::sqrt(self.vertical.turn_variance().into()));
+        let hidden =
+            restart::check(remembered, &self.report(), rest, [turned, unseen], &self.setting)?;
+        let angle = Radians(wrapped(remembered.azimuth.0 + turned.0));
+        let sigma = Radians(libm::hypot(remembered.sigma.0, hidden.0));
+        self.hand_over(Azimuth { angle, sigma });
         Ok(())
     }
 }

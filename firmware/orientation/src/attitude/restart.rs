@@ -3,8 +3,10 @@
 //!
 //! A vehicle that was moved has another pitch or roll, and the Earth rate is distributed otherwise
 //! on its gyros. Gravity alone does not show a rotation about the vertical, so gyros whose biases
-//! do not repeat cannot confirm the heading, and then the azimuth is rejected. What the body turns from the
-//! start on, the gyros do show; a body that has set off before it could be checked is not checked any more.
+//! do not repeat cannot confirm the heading, and then the azimuth is rejected. Where they do repeat, the 1σ with which
+//! they determine such a rotation is in the σ of what is recalled: a body that was turned by less passes the check. What it
+//! turns from the start on, the gyros do show, but for gaps in what they measure; a body that has set off before it could
+//! be checked is not checked any more.
 
 use super::report::Report;
 use super::setting::Setting;
@@ -14,11 +16,14 @@ use crate::words::Rounded;
 
 /// Shortest rest for the comparison.
 pub(crate) const REST_SECONDS: Seconds = Seconds(10.0);
-/// Greatest change of pitch and roll, and greatest turn since the start, rad: the effect of temperature
-/// and tyres on a standing vehicle, 0.05°.
+/// Greatest change of pitch and roll, and greatest turn since the start and its greatest 1σ, rad: the effect of
+/// temperature and tyres on a standing vehicle, 0.05°.
 const TILT: f64 = 0.05 * DEGREE;
 /// Significance, in σ, at which the rates differ.
 const BOUND: f64 = 4.0;
+/// Significance, in σ, at which the body counts as turned about the vertical. One that stands is refused once in twenty
+/// starts for that; one that was turned by four σ, which is four σ of what is recalled, passes once in forty.
+const TURN_BOUND: f64 = 2.0;
 /// Greatest 1σ with which the gyros must be able to determine a rotation about the vertical, rad:
 /// 0.5°.
 const DETERMINED: f64 = 0.5 * DEGREE;
@@ -66,6 +71,11 @@ pub enum RecallRefusal {
         /// Angle by which it has turned.
         degrees: Degrees,
     },
+    /// The body may have turned since the start, while nothing was measured.
+    TurnUnseen {
+        /// Standard deviation of the turn, 1σ.
+        sigma: Degrees,
+    },
     /// The body set off before it had rested for long enough.
     SetOff,
     /// The gyros cannot determine whether the body was turned.
@@ -80,6 +90,7 @@ crate::words! { RecallRefusal:
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees.0);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
     Self::TurnedSince { degrees } => "it has turned by {}° since the start", Rounded::<3>(degrees.0);
+    Self::TurnUnseen { sigma } => "it may have turned by {}° (1σ) since the start", Rounded::<3>(sigma.0);
     Self::SetOff => "it set off before that was known";
     Self::TurnUnobservable { sigma } =>
         "a turn about the vertical shows to {}° only: the gyros' biases differ from start to start",
@@ -87,14 +98,15 @@ crate::words! { RecallRefusal:
 }
 
 /// Checks that a body is still in its saved attitude, by its mean rates over the present rest (none
-/// where it moves), the length of that rest, and the turn about the vertical since the start.
+/// where it moves), the length of that rest, and the turn about the vertical since the start with its 1σ. Returns the 1σ of
+/// a rotation about the vertical that stays hidden.
 pub(super) fn check(
     before: &Remembered,
     now: &Report,
     (rates, rest): (Option<[RadiansPerSecond; 3]>, Seconds),
-    turned: Radians,
+    [turned, unseen]: [Radians; 2],
     setting: &Setting,
-) -> Result<(), RecallRefusal> {
+) -> Result<Radians, RecallRefusal> {
     let Some(rates) = rates.filter(|_| now.is_at_rest && rest >= REST_SECONDS) else {
         return Err(RecallRefusal::NotAtRest { seconds: rest });
     };
@@ -112,25 +124,41 @@ pub(super) fn check(
     if away > BOUND || away.is_nan() {
         return Err(RecallRefusal::Turned { sigmas: away });
     }
-    let sigma = rotation_sigma(before, setting, &sigmas);
+    let [rotation, sigma] = rotation(before, rates, setting, &sigmas);
     if sigma > DETERMINED || sigma.is_nan() {
         return Err(RecallRefusal::TurnUnobservable { sigma: Radians(sigma).into() });
+    }
+    if rotation.abs() > TURN_BOUND * sigma {
+        return Err(RecallRefusal::Turned { sigmas: rotation.abs() / sigma });
     }
     let turned = turned.0.abs();
     if turned > TILT || turned.is_nan() {
         return Err(RecallRefusal::TurnedSince { degrees: Radians(turned).into() });
     }
-    Ok(())
+    if unseen.0 > TILT || unseen.0.is_nan() {
+        return Err(RecallRefusal::TurnUnseen { sigma: unseen.into() });
+    }
+    Ok(Radians(libm::hypot(sigma, unseen.0)))
 }
 
-/// Standard deviation, 1σ, rad, with which the gyros forward and right can determine a rotation
-/// about the vertical: it moves the horizontal Earth rate from one to the other.
-fn rotation_sigma(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
+/// Rotation about the vertical by the gyros forward and right, between which it moves the horizontal Earth rate, and its
+/// 1σ, rad: least squares of the changes of both, weighted by their σ.
+fn rotation(
+    before: &Remembered,
+    now: [RadiansPerSecond; 3],
+    setting: &Setting,
+    sigmas: &[f64; 3],
+) -> [f64; 2] {
     let (sine, cosine) = libm::sincos(before.azimuth.0);
     let rate = setting.latitude.horizontal_rate().0;
-    let weight = |moved: f64, sigma: f64| (moved / sigma) * (moved / sigma);
-    let whole = weight(rate * sine, sigmas[0]) + weight(rate * cosine, sigmas[1]);
-    1.0 / libm::sqrt(whole)
+    // By the azimuth's derivative of the rates, rate · cos A forward and −rate · sin A right.
+    let [mut moment, mut weight] = [0.0; 2];
+    for (axis, moved) in [-rate * sine, -rate * cosine].into_iter().enumerate() {
+        let part = moved / (sigmas[axis] * sigmas[axis]);
+        moment += part * (now[axis].0 - before.rates[axis].0);
+        weight += part * moved;
+    }
+    [moment / weight, 1.0 / libm::sqrt(weight)]
 }
 
 impl Remembered {

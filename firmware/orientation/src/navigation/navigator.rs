@@ -292,7 +292,7 @@ impl<'k> Navigator<'k> {
         if let Some(at) = self.concluding.take_if(|at| *at < before)
             && !self.is_behind(at)
         {
-            self.keeper.mark(at);
+            self.keeper.mark(at, self.remembered.is_some());
         }
         let Some((at, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
@@ -340,6 +340,7 @@ impl<'k> Navigator<'k> {
         if core::mem::replace(&mut self.has_azimuth, has_azimuth) && !has_azimuth {
             self.is_recalled = false;
             outlet(Output::Progress(Progress::AzimuthLost));
+            self.forget(outlet);
         }
         let is_beyond = self.keeper.is_bias_beyond_stated();
         if is_beyond && !core::mem::replace(&mut self.is_bias_beyond_stated, true) {

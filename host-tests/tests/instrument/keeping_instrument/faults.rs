@@ -25,8 +25,8 @@ fn moment(seconds: f64) -> Instant {
     Instant::from_micros((seconds * 1e6) as u64)
 }
 
-fn lost(seconds: f64, for_s: u64) -> When {
-    When::during(moment(seconds), Duration::from_secs(for_s))
+fn lost(seconds: f64, for_s: f64) -> When {
+    When::during(moment(seconds), Duration::from_micros((for_s * 1e6) as u64))
 }
 
 fn injected(scenario: &FramesScenario, chips: Injection) -> FramesRun {
@@ -54,20 +54,32 @@ fn has(found: &FramesRun, words: &str) -> bool {
 }
 
 #[test]
-fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
+fn coarse_sensors_that_are_lost_at_rest_for_less_than_a_second_cost_nothing() {
     let scenario = scenario();
     let stands = departure(&scenario) - 25.0;
-    let coarse_imu = Some(lost(stands, 2));
+    let coarse_imu = Some(lost(stands, 0.5));
+    let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
+    assert!(has(&found, "base: reading lost"), "{:#?}", reported(&found));
+    assert!(!has(&found, "the azimuth is lost"), "{:#?}", reported(&found));
+    check(&found);
+}
+
+/// What nothing has measured for seconds nothing confirms, whether the base went on standing or not.
+#[test]
+fn an_azimuth_does_not_outlast_seconds_without_coarse_sensors() {
+    let scenario = scenario();
+    let stands = departure(&scenario) - 25.0;
+    let coarse_imu = Some(lost(stands, 4.0));
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
     assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found));
-    assert!(!has(&found, "the azimuth is lost"), "{:#?}", reported(&found));
+    assert!(has(&found, "the azimuth is lost"), "{:#?}", reported(&found));
     check(&found);
 }
 
 #[test]
 fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_reported() {
     let scenario = scenario();
-    let coarse_imu = Some(lost(departure(&scenario) + AFTER, 3));
+    let coarse_imu = Some(lost(departure(&scenario) + AFTER, 3.0));
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
     assert!(has(&found, "no motion is measured"), "{:#?}", reported(&found));
     check(&found);
@@ -133,7 +145,7 @@ fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
 fn without_the_accelerometer_the_gyros_carry_the_level_on() {
     let scenario = scenario();
     let begins = departure(&scenario) + 10.0;
-    let found = injected(&scenario, bus_error(Select::Accelerometer, lost(begins, 20)));
+    let found = injected(&scenario, bus_error(Select::Accelerometer, lost(begins, 20.0)));
     assert!(has(&found, "accelerometer: reading lost"), "{:#?}", reported(&found));
     // Starting it again would cost what the base turns meanwhile.
     assert!(!has(&found, "starting it again"), "{:#?}", reported(&found));

@@ -5,6 +5,7 @@ mod faults;
 mod handing;
 mod healthy;
 mod realigning;
+mod recalling;
 mod remembering;
 mod restart;
 mod restarting;

@@ -126,6 +126,33 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
     }
 }
 
+/// What gyros of that repeatability determine a turn about the vertical by, 1σ, °: both starts' biases over the Earth's
+/// horizontal rate, 15.04 °/h.
+fn determined(latitude_deg: f64) -> f64 {
+    let bias = f64::sqrt(2.0) * STEADY.bias_sigma_deg_h;
+    (bias / (15.041 * latitude_deg.to_radians().cos())).to_degrees()
+}
+
+#[test]
+fn a_recalled_heading_states_the_turn_that_its_gyros_would_not_show() {
+    let mut store = Flash::default().store();
+    let before = first(8.0, STEADY, &mut store);
+    let (_, [_, saved]) = before.kept.with_azimuth().last().expect("it was kept");
+    let flash = store.into_flash();
+    let least = determined(scenario(1, 8.0, STEADY).base.latitude_deg);
+    for turned in [0.0, 0.1, -0.2, 0.3, -0.4, 0.5, 0.7, -0.9, 1.2] {
+        let after = second(&before, [turned, 0.0], STEADY, &mut flash.clone().store());
+        let Some((_, [error, sigma])) = after.kept.with_azimuth().next() else {
+            assert!(turned.abs() > 2.0 * least, "{turned}° are refused");
+            continue;
+        };
+        assert!(error.abs() < 3.5 * sigma, "{turned}°: {error} of {sigma} rad");
+        let expected = saved.to_degrees().hypot(least);
+        let ratio = sigma.to_degrees() / expected;
+        assert!((0.95..1.2).contains(&ratio), "{turned}°: {ratio} of {expected}°");
+    }
+}
+
 #[test]
 fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let mut store = Flash::default().store();

@@ -17,6 +17,9 @@ const GAP_PART: f32 = 0.3;
 /// Longest gap through which a body goes on resting that rested before it, s: whatever moved it
 /// would have to move it and bring it to rest again within that time.
 const STANDING: f32 = 1.0;
+/// Rate of a turn of which nothing is seen, as of a vehicle that manoeuvres, 1σ, rad/s: what is measured before and after a
+/// gap bounds the rate within it for as long as a resting body goes on resting, and not beyond.
+const UNSEEN: f32 = 0.35;
 /// Standard deviation of the tilt at which the level is lost, 1σ, rad: it is set anew by the
 /// forces.
 const ALL: f32 = 0.3;
@@ -33,7 +36,7 @@ const ANY_ANGLE: f32 = 6.3;
 
 impl Vertical {
     /// Bridges missing samples: the rate in the gap is the mean of those at both ends, or none of
-    /// a body at rest.
+    /// a body at rest. In a gap of more than a second it may have been any.
     #[inline(never)]
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
@@ -53,7 +56,7 @@ impl Vertical {
         let jump = difference(&after, &before);
         let lost = 0.5 * length(&jump) + GAP_PART * self.before.lately;
         self.advance(&scaled(&mean, missing), missing);
-        self.lose(lost * missing);
+        self.lose(lost * missing + UNSEEN * (missing - STANDING).max(0.0));
     }
 
     /// Continues a rest after missing samples, with these rates, rad/s. A body that has set off
