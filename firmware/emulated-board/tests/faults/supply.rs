@@ -61,17 +61,18 @@ fn is_after_brown_out(line: &&str) -> bool {
     is_usual(line) || line.starts_with("last reset: brown-out") || *line == "log in flash"
 }
 
-/// Twelve seconds after the start the vehicle knows its azimuth again.
+/// Twelve seconds after the start the vehicle knows its azimuth again. To the 0.06° that are stored, each start adds the turn
+/// that gyros which come back to 0.03 °/h would not show, 0.24° at this latitude and 0.26° to 0.28° with their noise over both rests.
 #[test]
 fn a_brown_out_amid_keeping_costs_a_vehicle_at_rest_its_heading_for_fifteen_seconds() {
     let mut board = Board::within(Platform::Vehicle, world(0));
-    board.until("azimuth 213.7° ± 0.0573° (1σ) recalled", 20.0);
+    board.until("azimuth 213.7° ± 0.27", 20.0);
     board.run(0.5);
     let lost = board.seconds();
     board.execution.lose_supply();
     let start = board.until("board: started by Supply", 3.0);
     assert_eq!(board.controller(|controller| item(&controller.flash.array)), Item::New);
-    let known = board.until("azimuth 213.7° ± 0.0573° (1σ) recalled", 20.0);
+    let known = board.until("azimuth 213.7° ± 0.39", 20.0);
     assert!((14.0..16.0).contains(&(known - lost)), "{} s", known - lost);
     assert!(board.sent(start, known).iter().all(is_after_brown_out), "{board}");
 }
