@@ -87,11 +87,13 @@ pub(crate) struct Orders {
 }
 
 impl Orders {
-    /// Gives an order, unless one goes first that waits already.
+    /// Gives an order, unless one goes first that waits already. One to begin an alignment goes before all that wait,
+    /// which are to the one that is over.
     fn give(&self, order: Order) {
         let is_failure = |order: &Order| matches!(order, Order::Fail(_));
         self.waiting.change(|waiting| {
-            let first = waiting.filter(|first| is_failure(first) || !is_failure(&order));
+            let goes_first = |first: &Order| is_failure(first) || !is_failure(&order);
+            let first = waiting.filter(|first| order != Order::Restart && goes_first(first));
             *waiting = Some(first.unwrap_or(order));
         });
         self.given.signal(());

@@ -63,6 +63,11 @@ impl Heading {
         Azimuth { angle, sigma: Radians(libm::sqrt(self.variance(vertical))) }
     }
 
+    /// Begins with the present azimuth.
+    pub(super) fn restart(&mut self, gyro: &Gyro, vertical: &mut Vertical) {
+        *self = Self::begin(self.azimuth(vertical), gyro, vertical);
+    }
+
     /// Variance of the present azimuth, rad².
     fn variance(&self, vertical: &Vertical) -> f64 {
         let motion = &vertical.course;

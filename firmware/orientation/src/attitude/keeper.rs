@@ -106,11 +106,15 @@ impl Keeper {
         }
     }
 
-    /// Marks the present course as that of a time, to which an azimuth belongs that is being computed. Without an azimuth
-    /// the count of the turn's error is restarted, which is the more precise, unless it is still needed from the start on.
+    /// Marks the present course as that of a time, to which an azimuth belongs that is being computed. The count of the turn's
+    /// error is restarted, so that nothing that is learnt later corrects the turn before, unless it is still needed from the
+    /// start on.
     pub(crate) fn mark(&mut self, at: Instant, is_start_needed: bool) {
-        if self.heading.is_none() && !is_start_needed {
-            self.vertical.begin_course();
+        let [.., gyro] = &self.setting.gyros;
+        match &mut self.heading {
+            Some(heading) => heading.restart(gyro, &mut self.vertical),
+            None if is_start_needed => {}
+            None => self.vertical.begin_course(),
         }
         self.mark = Some(Mark::new(at, &self.vertical));
     }

@@ -141,24 +141,32 @@ pub(super) fn check(
     Ok(Radians(libm::hypot(sigma, unseen.0)))
 }
 
-/// Rotation about the vertical by the gyros forward and right, between which it moves the horizontal Earth rate, and its
-/// 1σ, rad: least squares of the changes of both, weighted by their σ.
+/// Rotation about the vertical by what it changes of the Earth rate on the gyros, and its 1σ, rad: least squares of the
+/// changes of all three, weighted by their σ.
 fn rotation(
     before: &Remembered,
     now: [RadiansPerSecond; 3],
     setting: &Setting,
     sigmas: &[f64; 3],
 ) -> [f64; 2] {
-    let (sine, cosine) = libm::sincos(before.azimuth.0);
-    let rate = setting.latitude.horizontal_rate().0;
-    // By the azimuth's derivative of the rates, rate · cos A forward and −rate · sin A right.
     let [mut moment, mut weight] = [0.0; 2];
-    for (axis, moved) in [-rate * sine, -rate * cosine].into_iter().enumerate() {
+    for (axis, moved) in by_azimuth(before, setting).into_iter().enumerate() {
         let part = moved / (sigmas[axis] * sigmas[axis]);
         moment += part * (now[axis].0 - before.rates[axis].0);
         weight += part * moved;
     }
     [moment / weight, 1.0 / libm::sqrt(weight)]
+}
+
+/// Derivative by the azimuth A of the Earth rate about forward, right, down, 1/s. On level axes the horizontal rate H is
+/// (H cos A, −H sin A, 0).
+fn by_azimuth(before: &Remembered, setting: &Setting) -> [f64; 3] {
+    let [(sine, cosine), (up, along), (over, upright)] =
+        [before.azimuth, before.pitch, before.roll].map(|angle| libm::sincos(angle.0));
+    let rate = setting.latitude.horizontal_rate().0;
+    let [forward, right] = [-rate * sine, -rate * cosine];
+    let [across, down] = [over * up * forward, upright * up * forward];
+    [along * forward, across + upright * right, down - over * right]
 }
 
 impl Remembered {

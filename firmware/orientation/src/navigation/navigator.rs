@@ -328,6 +328,9 @@ impl<'k> Navigator<'k> {
             self.is_recalled = false;
         }
         outlet(Output::Progress(Progress::HandedOver(azimuth, outcome)));
+        if matches!(outcome, Realigned::Disagrees { .. }) {
+            self.forget(outlet);
+        }
         self.has_azimuth = true;
     }
 

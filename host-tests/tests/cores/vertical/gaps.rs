@@ -38,7 +38,8 @@ fn a_rest_goes_on_through_a_gap_of_a_second_and_costs_no_azimuth() {
             assert!(after(HANDED).all(|known| known.report.is_at_rest), "{missing} s");
             assert!(after(HANDED).all(|known| known.report.state.trust == Trust::Level));
             let (before, now) = (sigma(&known, GAP - 0.1), sigma(&known, GAP + missing + 0.5));
-            assert!(now - before < 0.03 * DEGREE, "{missing} s: {}°", (now - before) / DEGREE);
+            // Of 0.07°/s of noise on each axis at both ends.
+            assert!(now - before < 0.05 * DEGREE, "{missing} s: {}°", (now - before) / DEGREE);
             let worst = after(10.0).map(Known::in_sigmas).fold(0.0, f64::max);
             assert!(worst < 3.0, "{missing} s: {worst} σ");
         }

@@ -6,6 +6,7 @@ mod forces;
 mod gaps;
 mod honesty;
 mod rest;
+mod unseen;
 mod world;
 
 use crate::support::assert_near;

@@ -4,6 +4,7 @@ mod behind;
 mod faults;
 mod handing;
 mod healthy;
+mod learning;
 mod realigning;
 mod recalling;
 mod remembering;

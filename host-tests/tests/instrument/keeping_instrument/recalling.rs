@@ -16,7 +16,7 @@ use super::handing::{azimuth, policy};
 /// North and down parts of the Earth's rate at 45° of latitude, rad/s.
 const EARTH: f64 = 7.292_115e-5 * core::f64::consts::FRAC_1_SQRT_2;
 /// Samples a second.
-const RATE: u64 = 100;
+pub const RATE: u64 = 100;
 /// The azimuth in which the body stood, °.
 const STOOD: f64 = 100.0;
 /// By what the body turns, °, and in which samples.
@@ -30,7 +30,7 @@ fn gyro() -> Gyro {
 }
 
 /// The moment of a sample.
-fn at(index: u64) -> Instant {
+pub fn at(index: u64) -> Instant {
     Instant(index * 1_000_000 / RATE)
 }
 
@@ -40,24 +40,35 @@ fn earth(azimuth: f64) -> [f64; 3] {
     [EARTH * cosine, -EARTH * sine, -EARTH]
 }
 
-/// A level body on the turning Earth, and what is left of its increments.
+/// A body on the turning Earth, level or pitched, °, with a bias of its gyro about down, rad/s, and what is left of its
+/// increments.
 #[derive(Default)]
-struct Body {
-    azimuth: f64,
-    left: [f64; 3],
+pub struct Body {
+    pub azimuth: f64,
+    pub pitch: f64,
+    pub bias: f64,
+    pub left: [f64; 3],
 }
 
 impl Body {
     /// Its sample after it has turned by so many degrees.
-    fn moved(&mut self, index: u64, degrees: f64) -> Input {
+    pub fn moved(&mut self, index: u64, degrees: f64) -> Input {
         self.azimuth += degrees;
-        let mut rates = earth(self.azimuth).map(|rate| rate / RATE as f64);
-        rates[2] += degrees * DEGREE;
+        let mut level = earth(self.azimuth).map(|rate| rate / RATE as f64);
+        level[2] += degrees * DEGREE;
+        let mut shown = self.pitched(level);
+        shown[2] += self.bias / RATE as f64;
         let turned = core::array::from_fn(|axis| {
-            AngleIncrement::from_rad(rates[axis], &mut self.left[axis])
+            AngleIncrement::from_rad(shown[axis], &mut self.left[axis])
         });
-        let force = Some([0.0, 0.0, -9.81].map(SpecificForce::from_m_per_s2));
+        let force = Some(self.pitched([0.0, 0.0, -9.81]).map(SpecificForce::from_m_per_s2));
         Input::Motion(Motion::Moved(InertialSample { time: at(index), turned, force }))
+    }
+
+    /// Parts forward, right, down of what has these on level axes.
+    fn pitched(&self, [forward, right, down]: [f64; 3]) -> [f64; 3] {
+        let (sine, cosine) = (self.pitch * DEGREE).sin_cos();
+        [cosine * forward - sine * down, right, sine * forward + cosine * down]
     }
 }
 
@@ -151,4 +162,55 @@ fn a_heading_that_is_contradicted_is_forgotten_at_once() {
     assert_eq!(saved.len(), 1, "saved at {saved:?}");
     let [forgotten] = forgotten[..] else { panic!("forgotten at {forgotten:?}") };
     assert!((8000..8000 + RATE).contains(&forgotten), "forgotten at {forgotten}");
+}
+
+/// Whatever comes between it and the navigator's next look.
+#[test]
+fn a_heading_that_is_contradicted_is_forgotten_where_another_comes_at_once() {
+    let given = [
+        (3000, Input::Found(at(2999), azimuth(STOOD + 0.5, 0.01))),
+        (8000, Input::Found(at(7999), azimuth(STOOD, 0.01))),
+        (8000, Input::Settled),
+        (8000, Input::Aided(None, Some(azimuth(STOOD, 0.5)))),
+    ];
+    let outputs = outputs((8100, false), 0..0, &given);
+    let forgets = outputs.iter().filter(|(_, output)| matches!(output, Output::Forget)).count();
+    assert_eq!(forgets, 1, "{:?}", outputs.last());
+}
+
+/// What a vehicle that stands on a slope is told of its saved heading after it was turned by so many degrees.
+fn recalled_on_a_slope(pitch: f64, turned: f64) -> Result<Azimuth, RecallRefusal> {
+    let latitude = Latitude::from_degrees(45.0).expect("a latitude");
+    let mut keeper = Keeper::new(&Setting::precise(latitude, Seconds(1.0 / RATE as f64), gyro()));
+    let policy = Policy { beside: gyro(), precise: gyro(), ..policy() };
+    let mut navigator = Navigator::new(&mut keeper, &policy);
+    let mut body = Body { azimuth: 90.0, pitch, ..Body::default() };
+    let [angle, sigma, pitch, roll] = [90.0, 0.01, pitch, 0.0].map(Radians::from_degrees);
+    let (rates, rest) = (body.pitched(earth(90.0)).map(RadiansPerSecond), Seconds(60.0));
+    let saved = Remembered { azimuth: angle, sigma, pitch, roll, rates, rest };
+    navigator.take(&Input::Remembered(saved), &mut |_| ());
+    body.azimuth += turned;
+    let mut outputs = Vec::new();
+    for index in 0..4000 {
+        navigator.take(&body.moved(index, 0.0), &mut |output| outputs.push((index, output)));
+    }
+    decided(&outputs)
+}
+
+/// The Earth's horizontal rate is 10.64 °/h at 45°, and both starts' biases are 0.042 °/h: 0.229°, whatever the slope.
+#[test]
+fn a_turn_shows_on_a_slope_as_on_the_level() {
+    for pitch in [0.0, 30.0, -60.0, 75.0] {
+        let found = recalled_on_a_slope(pitch, 0.0).expect("it stands");
+        let sigma = found.sigma.degrees();
+        assert!((0.225..0.240).contains(&sigma), "pitch {pitch}°: {sigma}°");
+        for turned in [0.3, -0.4] {
+            assert!(recalled_on_a_slope(pitch, turned).is_ok(), "pitch {pitch}°: {turned}°");
+        }
+        for turned in [0.6, -0.6, 1.6, -3.0] {
+            let refused = recalled_on_a_slope(pitch, turned);
+            let is_turned = matches!(refused, Err(RecallRefusal::Turned { .. }));
+            assert!(is_turned, "pitch {pitch}°, {turned}°: {refused:?}");
+        }
+    }
 }

@@ -3,10 +3,10 @@
 use super::filter::{Filter, TURN};
 use super::judge::{Findings, Task};
 use super::stretch::Stretch;
-use super::sums::{Rested, Sums, Window};
+use super::sums::{Rested, Sums};
 use super::{Trust, Vertical};
 use crate::math::quaternion::Vector;
-use crate::math::rotation::{difference, length, scaled, sum, transposed, turned};
+use crate::math::rotation::{difference, dot, length, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::{Increment, STEP};
 use crate::units::{AngleIncrement, Instant};
@@ -14,12 +14,12 @@ use crate::units::{AngleIncrement, Instant};
 /// Deviation of the rate within a gap from the mean of its ends, as a part of the recent rate
 /// beyond the biases.
 const GAP_PART: f32 = 0.3;
-/// Longest gap through which a body goes on resting that rested before it, s: whatever moved it
-/// would have to move it and bring it to rest again within that time.
+/// Longest time without samples, of one gap or of several between two looks for rest, through which a body goes on resting,
+/// s: whatever moved it would have to move it and bring it to rest again within that time.
 const STANDING: f32 = 1.0;
-/// Rate of a turn of which nothing is seen, as of a vehicle that manoeuvres, 1σ, rad/s: what is measured before and after a
-/// gap bounds the rate within it for as long as a resting body goes on resting, and not beyond.
-const UNSEEN: f32 = 0.35;
+/// Angular acceleration of a body that manoeuvres, 1σ, rad/s²: speeding up for half of a gap and slowing down for the other,
+/// it turns by a quarter of this times the square of the gap beside what the ends show.
+const MANOEUVRE: f32 = 0.5;
 /// Standard deviation of the tilt at which the level is lost, 1σ, rad: it is set anew by the
 /// forces.
 const ALL: f32 = 0.3;
@@ -27,8 +27,8 @@ const ALL: f32 = 0.3;
 const BLOW: f32 = 10.0;
 /// Recent rate from which the limit is about that rate, and only a part of it may be hidden, rad/s.
 const TURNING: f32 = 0.2;
-/// Part of the recent rate that may be hidden.
-const HIDDEN: f32 = 0.5;
+/// Part of the recent rate that may be hidden beyond the limit.
+const HIDDEN: f32 = 1.0;
 /// Longest gap that is bridged, s.
 const LONGEST: f32 = 60.0;
 /// Standard deviation of an unknown angle, 1σ, rad.
@@ -36,7 +36,7 @@ const ANY_ANGLE: f32 = 6.3;
 
 impl Vertical {
     /// Bridges missing samples: the rate in the gap is the mean of those at both ends, or none of
-    /// a body at rest. In a gap of more than a second it may have been any.
+    /// a body at rest. The longer the gap, the more a body that moves may have turned beside that.
     #[inline(never)]
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
@@ -49,23 +49,27 @@ impl Vertical {
         let rate =
             |turned: &[AngleIncrement; 3]| turned.map(|part| part.0 as f32 * STEP / self.period);
         let (before, after) = (rate(&self.before.turned), rate(&sample.turned));
-        if self.is_at_rest() && missing <= STANDING {
-            return self.rest_through(&after, missing);
+        if self.is_at_rest() && self.window.missing + missing <= STANDING {
+            return self.rest_through([&before, &after], missing);
         }
         let mean = scaled(&sum(&before, &after), 0.5);
         let jump = difference(&after, &before);
-        let lost = 0.5 * length(&jump) + GAP_PART * self.before.lately;
+        let lost = 0.5 * length(&jump) + GAP_PART * self.before.lately + 0.25 * MANOEUVRE * missing;
         self.advance(&scaled(&mean, missing), missing);
-        self.lose(lost * missing + UNSEEN * (missing - STANDING).max(0.0));
+        self.lose(lost * missing);
     }
 
-    /// Continues a rest after missing samples, with these rates, rad/s. A body that has set off
+    /// Continues a rest through missing samples, with these rates before and after them, rad/s. A body that has set off
     /// meanwhile has turned by half of what those rates would turn it; whether it has is left to rest
-    /// detection.
-    fn rest_through(&mut self, after: &Vector, missing: f32) {
+    /// detection, until whose next look the angles of all gaps have one sign and add up.
+    fn rest_through(&mut self, ends: [&Vector; 2], missing: f32) {
         let still = sum(&self.bias, &turned(&transposed(&self.matrix), &self.frame));
-        let lost = 0.5 * missing * length(&difference(after, &still));
-        self.inflate_attitude(lost * lost);
+        let [before, after] = ends.map(|rate| difference(rate, &still));
+        let lost = 0.5 * missing * libm::sqrtf(dot(&before, &before) + dot(&after, &after));
+        let until_now = self.window.lost;
+        self.window.missing += missing;
+        self.window.lost += lost;
+        self.inflate_attitude(self.window.lost * self.window.lost - until_now * until_now);
     }
 
     /// Resets everything but the biases, which are kept with the variance of a switch-on.
@@ -82,10 +86,15 @@ impl Vertical {
         self.lose(ANY_ANGLE);
     }
 
-    /// Accounts for a gyro at the limit of its range: rotation beyond it is unknown.
+    /// Accounts for a gyro at the limit of its range: it goes on at its latest rate, and rotation beyond it is unknown.
     #[inline(never)]
-    pub(super) fn clip(&mut self, now: Instant) {
-        self.tick(now);
+    pub(super) fn clip(&mut self, sample: &InertialSample) {
+        let latest = self.before.turned;
+        self.increment.push(core::array::from_fn(|axis| {
+            let turned = sample.turned[axis];
+            if turned.is_saturated() { latest[axis] } else { turned }
+        }));
+        self.tick(sample.time);
         // Rotation lost in one saturation has one sign: the angles add up, not their squares.
         let before = self.before.clipped;
         let lately = self.before.lately;
@@ -112,8 +121,8 @@ impl Vertical {
             self.is_lost = true;
             self.trust = Trust::RotationLost;
         }
+        self.break_off();
         self.rest.disturb();
         self.rested = Rested::default();
-        self.window = Window::default();
     }
 }

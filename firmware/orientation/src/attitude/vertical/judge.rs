@@ -203,7 +203,7 @@ impl Vertical {
         }
         let Some(force) = self.window.force() else { return };
         let rate = self.window.rate();
-        self.window = Window::default();
+        self.break_off();
         // A falling or thrown body shows no level.
         let beside = (length(&force) - GRAVITY).abs();
         if beside > BEGINNING * GRAVITY {
@@ -391,8 +391,11 @@ impl Vertical {
             }
             self.findings.level = Some(tilt(&force));
         }
-        // The body did not turn, so the rotation from the gyro is undone.
-        self.attitude.correct(&[0.0, 0.0, -window.about]);
+        // The body did not turn, so the rotation from the gyro is undone. That of the first window is in the variances
+        // until then, and what the rest shows of the biases undoes it.
+        if was_rest {
+            self.attitude.correct(&[0.0, 0.0, -window.about]);
+        }
     }
 
     /// Measurement of the biases by the part of the rest that was not used yet.

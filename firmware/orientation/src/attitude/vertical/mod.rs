@@ -158,7 +158,7 @@ impl Vertical {
         let [x, y, z] = sample.turned;
         let is_lost = x.is_saturated() || y.is_saturated() || z.is_saturated();
         if is_lost {
-            self.clip(sample.time);
+            self.clip(sample);
         } else {
             self.increment.push(sample.turned);
             self.before.turned = sample.turned;
@@ -301,8 +301,8 @@ impl Vertical {
         self.filter.reset(BIAS + 2, sigma * sigma);
         self.filter.reset_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
+        self.break_off();
         self.rest.exchange(2, self.expected.walk[2]);
-        self.window = Window::default();
     }
 
     /// Replaces the accelerometers by others: the level is wrong by the biases of the former ones.
@@ -311,8 +311,8 @@ impl Vertical {
         self.filter.inflate_level(self.force_tilt * self.force_tilt);
         self.force_tilt = force_tilt(setting);
         self.force = Sums::default();
+        self.break_off();
         self.rest.exchange_forces();
-        self.window = Window::default();
     }
 
     /// Sets the rate of the level frame, rad/s, and reports that north is known for the first time,
@@ -322,7 +322,7 @@ impl Vertical {
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
         self.frame = rate;
         self.knows_north = true;
-        self.window = Window::default();
+        self.break_off();
         if !self.is_at_rest() {
             return;
         }
@@ -340,6 +340,16 @@ impl Vertical {
         self.frame = rate;
         self.knows_north = false;
         self.inflate_biases();
+    }
+
+    /// Breaks off the window in progress, of which rest detection is not to know. What the body turned in it counts.
+    fn break_off(&mut self) {
+        let window = core::mem::take(&mut self.window);
+        if self.is_at_rest() {
+            self.course.turned += window.about;
+        } else {
+            self.course.drive(&window);
+        }
     }
 
     /// Restarts the motion statistics and the error of the rotation about the vertical.

@@ -33,6 +33,9 @@ pub(super) struct Window {
     pub(super) impulse: Vector,
     /// Time with valid forces, s.
     pub(super) forced: f32,
+    /// Time without samples through which a rest went on, s, and rotation that may have been lost in it, rad.
+    pub(super) missing: f32,
+    pub(super) lost: f32,
     /// Sum of half the squared differences of the rates between attitude updates, times their
     /// interval, rad²/s.
     scatter: Vector,
