@@ -9,6 +9,14 @@ use super::world::{Body, Known, coarse, keep, precise};
 const HANDED: f64 = 40.0;
 const UNSEEN: f64 = 60.0;
 
+/// Attitude at a time, s: course, pitch, roll, rad.
+type Attitude = fn(f64) -> [f64; 3];
+
+/// Whether the sample of this time is one in so many.
+fn is_one_of(time: f64, count: u64) -> bool {
+    ((time * 100.0).round() as u64).is_multiple_of(count)
+}
+
 /// The greatest error of the azimuth after its handing over, in its σ, at moments of which there is a sample.
 fn worst(known: &[Known]) -> f64 {
     let is_fresh = |known: &&Known| known.time - known.report.time.seconds() < 1e-3;
@@ -20,10 +28,7 @@ fn worst(known: &[Known]) -> f64 {
 }
 
 /// A body with this attitude, precise or coarse, of which `spoil` changes samples, or loses them.
-fn worst_of(
-    attitude: fn(f64) -> [f64; 3],
-    spoil: impl Fn(f64, &mut InertialSample) -> bool,
-) -> [f64; 2] {
+fn worst_of(attitude: Attitude, spoil: impl Fn(f64, &mut InertialSample) -> bool) -> [f64; 2] {
     [precise(90.0), coarse(90.0)].map(|body| {
         let body = Body { attitude, handed: Some(HANDED), ..body };
         worst(&keep(&body, |time, sample| spoil(time, sample)))
@@ -43,7 +48,7 @@ fn sets_off<const BEFORE: u32, const WITHIN: u32>(time: f64) -> [f64; 3] {
 
 #[test]
 fn a_body_that_sets_off_before_a_gap_and_stands_after_it_has_its_turn_in_sigma() {
-    let turns: [fn(f64) -> [f64; 3]; 6] = [
+    let turns: [Attitude; 6] = [
         sets_off::<300, 800>,
         sets_off::<200, 300>,
         sets_off::<100, 500>,
@@ -63,7 +68,7 @@ fn a_body_that_sets_off_while_few_samples_come_has_its_turn_in_sigma() {
     let attitude = |time: f64| [0.5 + 0.1 * (time - UNSEEN - 1.0).clamp(0.0, 10.0), 0.0, 0.0];
     for each in [2, 5, 10, 50, 90] {
         let errors = worst_of(attitude, |time, _| {
-            !(UNSEEN..UNSEEN + 15.0).contains(&time) || (time * 100.0).round() as u64 % each == 0
+            !(UNSEEN..UNSEEN + 15.0).contains(&time) || is_one_of(time, each)
         });
         assert_within(errors, &format!("every {each}th"));
     }
@@ -82,7 +87,7 @@ fn the_scale_error_of_a_turn_is_in_sigma_where_samples_are_missing_again_and_aga
         let body = Body { attitude, handed: Some(HANDED), ..coarse(300.0) };
         let known = keep(&body, |time, sample| {
             scaled(sample);
-            (time * 100.0).round() as u64 % each != 0 || time < HANDED
+            !is_one_of(time, each) || time < HANDED
         });
         assert!(worst(&known) < 3.5, "one of {each}: {} σ", worst(&known));
     }
@@ -101,7 +106,7 @@ fn swings<const TENTHS: u32, const MS: u32>(time: f64) -> [f64; 3] {
 
 #[test]
 fn what_a_body_turns_beyond_the_range_of_its_gyros_is_in_sigma() {
-    let swung: [fn(f64) -> [f64; 3]; 6] = [
+    let swung: [Attitude; 6] = [
         swings::<13, 200>,
         swings::<20, 100>,
         swings::<20, 200>,
@@ -133,7 +138,7 @@ fn swerves<const MS: u32>(time: f64) -> [f64; 3] {
 
 #[test]
 fn a_swerve_within_a_gap_is_in_sigma() {
-    let swerved: [(f64, fn(f64) -> [f64; 3]); 3] =
+    let swerved: [(f64, Attitude); 3] =
         [(0.5, swerves::<500>), (0.9, swerves::<900>), (1.5, swerves::<1500>)];
     for (missing, attitude) in swerved {
         let gap = UNSEEN..UNSEEN + missing;
