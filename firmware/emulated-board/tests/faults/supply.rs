@@ -72,7 +72,7 @@ fn a_brown_out_amid_keeping_costs_a_vehicle_at_rest_its_heading_for_fifteen_seco
     board.execution.lose_supply();
     let start = board.until("board: started by Supply", 3.0);
     assert_eq!(board.controller(|controller| item(&controller.flash.array)), Item::New);
-    let known = board.until("azimuth 213.7° ± 0.39", 20.0);
+    let known = board.until("azimuth 213.7° ± 0.3", 20.0);
     assert!((14.0..16.0).contains(&(known - lost)), "{} s", known - lost);
     assert!(board.sent(start, known).iter().all(is_after_brown_out), "{board}");
 }
