@@ -280,7 +280,9 @@ impl Store for () {
 /// vehicle's instrument, an odometer or a satellite receiver; [`None`] where they are unknown.
 pub trait Aiding {
     /// A new azimuth of body x with its 1σ, at the time of the latest sample that was taken, a few
-    /// milliseconds ago; [`None`] if there is none since the last call. Asked once a second.
+    /// milliseconds ago; [`None`] if there is none since the last call. Asked once a second. Its errors must be
+    /// independent of those of the azimuths before: each is fused as a new one, so that what errs in the same way again and
+    /// again, as two antennas do that are mounted askew, is to be given once, or with a σ for its number.
     fn azimuth(&self) -> Option<Azimuth> {
         None
     }
