@@ -261,3 +261,14 @@ fn restarted(mut flash: Driver) -> (Driver, bool) {
     flash.operations = 0;
     (flash, starts)
 }
+
+/// The 1σ of the azimuth in which the vehicle stands, °, where a line says that it was recalled.
+pub fn recalled_sigma(line: &str) -> Option<f64> {
+    line.split_once("azimuth 213.7° ± ")?.1.strip_suffix("° (1σ) recalled")?.parse().ok()
+}
+
+/// The 1σ of what is recalled, °: to the 0.06° that are stored each start adds the turn that gyros which come back to 0.03 °/h
+/// would not show, 0.24° at this latitude, and 0.26° to 0.28° with their noise over both rests.
+pub const RECALLED: core::ops::Range<f64> = 0.26..0.29;
+/// The same after another start.
+pub const RECALLED_AGAIN: core::ops::Range<f64> = 0.37..0.41;

@@ -131,6 +131,12 @@ pub(super) fn check(
     if rotation.abs() > TURN_BOUND * sigma {
         return Err(RecallRefusal::Turned { sigmas: rotation.abs() / sigma });
     }
+    check_since(turned, unseen)?;
+    Ok(Radians(libm::hypot(sigma, unseen.0)))
+}
+
+/// Checks the turn about the vertical since the start, and its 1σ.
+fn check_since(turned: Radians, unseen: Radians) -> Result<(), RecallRefusal> {
     let turned = turned.0.abs();
     if turned > TILT || turned.is_nan() {
         return Err(RecallRefusal::TurnedSince { degrees: Radians(turned).into() });
@@ -138,7 +144,7 @@ pub(super) fn check(
     if unseen.0 > TILT || unseen.0.is_nan() {
         return Err(RecallRefusal::TurnUnseen { sigma: unseen.into() });
     }
-    Ok(Radians(libm::hypot(sigma, unseen.0)))
+    Ok(())
 }
 
 /// Rotation about the vertical by what it changes of the Earth rate on the gyros, and its 1σ, rad: least squares of the

@@ -54,17 +54,14 @@ fn what_a_stop_shows_of_a_bias_does_not_turn_an_azimuth_that_was_found_at_it() {
     let weaves = |index| if index < 60 * RATE { 0.05 * (0.02 * index as f64).sin() } else { 0.0 };
     for (marked, found) in [(60, 90), (61, 90), (62, 64), (63, 100), (75, 77)] {
         for biases in [-2.0, 0.8, 2.0] {
-            let marked = at(marked * RATE - 1);
-            let given = [
+            let moment = at(marked * RATE - 1);
+            let given: [Given; 3] = [
                 outside(5, 0.05),
-                (
-                    (marked.0 / 1_000_000 + 1) * RATE,
-                    Box::new(move |_| Input::Concluding(marked)) as _,
-                ),
-                (found * RATE, Box::new(move |truth| Input::Found(marked, azimuth(truth, 0.02)))),
+                (marked * RATE, Box::new(move |_| Input::Concluding(moment))),
+                (found * RATE, Box::new(move |truth| Input::Found(moment, azimuth(truth, 0.02)))),
             ];
             let sigmas = in_sigmas(120, biases, weaves, &given);
-            assert!(sigmas < 3.0, "{marked:?}, {found} s, {biases} σ of bias: {sigmas} σ");
+            assert!(sigmas < 3.0, "{marked} s, {found} s, {biases} σ of bias: {sigmas} σ");
         }
     }
 }

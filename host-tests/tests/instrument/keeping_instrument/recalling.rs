@@ -72,9 +72,19 @@ impl Body {
     }
 }
 
-/// Outputs with their samples' numbers of a navigator in a body that stands for so many samples, but for a turn in
+/// Outputs with their samples' numbers of a navigator in a body that stands level for so many samples, but for a turn in
 /// [`TURNING`] where it does turn; the samples of `missing` are none, and inputs are given before samples.
 fn outputs(
+    (count, turns): (u64, bool),
+    missing: core::ops::Range<u64>,
+    given: &[(u64, Input)],
+) -> Vec<(u64, Output)> {
+    outputs_of(Body { azimuth: STOOD, ..Body::default() }, (count, turns), missing, given)
+}
+
+/// The same in any body.
+fn outputs_of(
+    mut body: Body,
     (count, turns): (u64, bool),
     missing: core::ops::Range<u64>,
     given: &[(u64, Input)],
@@ -83,7 +93,6 @@ fn outputs(
     let mut keeper = Keeper::new(&Setting::precise(latitude, Seconds(1.0 / RATE as f64), gyro()));
     let policy = Policy { beside: gyro(), precise: gyro(), ..policy() };
     let mut navigator = Navigator::new(&mut keeper, &policy);
-    let mut body = Body { azimuth: STOOD, ..Body::default() };
     let mut outputs = Vec::new();
     for index in 0..count {
         for (_, input) in given.iter().filter(|(at, _)| *at == index) {
@@ -99,12 +108,18 @@ fn outputs(
     outputs
 }
 
-/// The heading in which the body stood, as it was saved.
+/// The heading in which a body stands, as it is saved with this 1σ, °.
+fn saved(body: &Body, sigma: f64) -> (u64, Input) {
+    let [azimuth, sigma, pitch, roll] =
+        [body.azimuth, sigma, body.pitch, 0.0].map(Radians::from_degrees);
+    let rates = body.pitched(earth(body.azimuth)).map(RadiansPerSecond);
+    let rest = Seconds(60.0);
+    (0, Input::Remembered(Remembered { azimuth, sigma, pitch, roll, rates, rest }))
+}
+
+/// The heading in which the level body stood.
 fn remembered() -> (u64, Input) {
-    let [angle, sigma] = [STOOD, 0.03].map(Radians::from_degrees);
-    let [pitch, roll] = [Radians(0.0); 2];
-    let (rates, rest) = (earth(STOOD).map(RadiansPerSecond), Seconds(60.0));
-    (0, Input::Remembered(Remembered { azimuth: angle, sigma, pitch, roll, rates, rest }))
+    saved(&Body { azimuth: STOOD, ..Body::default() }, 0.03)
 }
 
 /// What is decided on the heading: the azimuth that is recalled, or why none is.
@@ -180,21 +195,10 @@ fn a_heading_that_is_contradicted_is_forgotten_where_another_comes_at_once() {
 
 /// What a vehicle that stands on a slope is told of its saved heading after it was turned by so many degrees.
 fn recalled_on_a_slope(pitch: f64, turned: f64) -> Result<Azimuth, RecallRefusal> {
-    let latitude = Latitude::from_degrees(45.0).expect("a latitude");
-    let mut keeper = Keeper::new(&Setting::precise(latitude, Seconds(1.0 / RATE as f64), gyro()));
-    let policy = Policy { beside: gyro(), precise: gyro(), ..policy() };
-    let mut navigator = Navigator::new(&mut keeper, &policy);
-    let mut body = Body { azimuth: 90.0, pitch, ..Body::default() };
-    let [angle, sigma, pitch, roll] = [90.0, 0.01, pitch, 0.0].map(Radians::from_degrees);
-    let (rates, rest) = (body.pitched(earth(90.0)).map(RadiansPerSecond), Seconds(60.0));
-    let saved = Remembered { azimuth: angle, sigma, pitch, roll, rates, rest };
-    navigator.take(&Input::Remembered(saved), &mut |_| ());
-    body.azimuth += turned;
-    let mut outputs = Vec::new();
-    for index in 0..4000 {
-        navigator.take(&body.moved(index, 0.0), &mut |output| outputs.push((index, output)));
-    }
-    decided(&outputs)
+    let stood = Body { azimuth: 90.0, pitch, ..Body::default() };
+    let given = [saved(&stood, 0.01)];
+    let stands = Body { azimuth: 90.0 + turned, ..stood };
+    decided(&outputs_of(stands, (4000, false), 0..0, &given))
 }
 
 /// The Earth's horizontal rate is 10.64 °/h at 45°, and both starts' biases are 0.042 °/h: 0.229°, whatever the slope.

@@ -66,10 +66,9 @@ impl Vertical {
         let still = sum(&self.bias, &turned(&transposed(&self.matrix), &self.frame));
         let [before, after] = ends.map(|rate| difference(rate, &still));
         let lost = 0.5 * missing * libm::sqrtf(dot(&before, &before) + dot(&after, &after));
-        let until_now = self.window.lost;
         self.window.missing += missing;
-        self.window.lost += lost;
-        self.inflate_attitude(self.window.lost * self.window.lost - until_now * until_now);
+        let variance = add_lost(&mut self.window.lost, lost);
+        self.inflate_attitude(variance);
     }
 
     /// Resets everything but the biases, which are kept with the variance of a switch-on.
@@ -95,12 +94,10 @@ impl Vertical {
             if turned.is_saturated() { latest[axis] } else { turned }
         }));
         self.tick(sample.time);
-        // Rotation lost in one saturation has one sign: the angles add up, not their squares.
-        let before = self.before.clipped;
         let lately = self.before.lately;
         let hidden = if lately > TURNING { HIDDEN * lately } else { BLOW };
-        self.before.clipped += hidden * self.period;
-        self.lose_square(self.before.clipped * self.before.clipped - before * before);
+        let variance = add_lost(&mut self.before.clipped, hidden * self.period);
+        self.lose_square(variance);
     }
 
     /// Accounts for a possible loss of rotation of this size, rad.
@@ -125,4 +122,12 @@ impl Vertical {
         self.rest.disturb();
         self.rested = Rested::default();
     }
+}
+
+/// Adds an angle that may have been lost, rad, to others of one cause, and returns what it adds to their variance, rad²: they
+/// have one sign, so that the angles add up, not their squares.
+fn add_lost(sum: &mut f32, angle: f32) -> f32 {
+    let before = *sum;
+    *sum += angle;
+    *sum * *sum - before * before
 }
