@@ -80,7 +80,7 @@ fn of_memory(runs: &[Run], memory: &Memory) -> [Check; 3] {
 
 /// Mean instructions for a sample, rounded up.
 pub(crate) fn per_sample(figures: &Figures) -> u64 {
-    figures.instructions.div_ceil(figures.samples.max(1))
+    figures.of_a_sample(figures.instructions)
 }
 
 /// Share of the core's time that a gyro at [`GREATEST_RATE`] leaves, rounded down; at best, as

@@ -12,6 +12,8 @@ use super::outcome::{Outcome, Row};
 pub struct Figures {
     /// Instructions of the instrument in all polls.
     pub instructions: u64,
+    /// How many of them are those of the emulator's time driver, which stands in for the board's.
+    pub stand_ins: u64,
     /// Instructions of the simulated chips and world.
     pub simulation: u64,
     /// Samples of the gyro.
@@ -25,6 +27,11 @@ pub struct Figures {
 }
 
 impl Figures {
+    /// A sample's part of so many instructions, rounded up.
+    pub(crate) fn of_a_sample(&self, instructions: u64) -> u64 {
+        instructions.div_ceil(self.samples.max(1))
+    }
+
     /// Instructions of the longest poll of a task.
     pub(crate) fn longest_poll(&self) -> u64 {
         self.tasks.iter().map(|task| task.worst).max().unwrap_or(0)
@@ -72,6 +79,7 @@ impl Collected {
             "reason" => self.outcome.reason = Some(rest.to_owned()),
             "effort" => {
                 self.figures.instructions = number("instructions")?;
+                self.figures.stand_ins = number("stand-ins")?;
                 self.figures.simulation = number("simulation")?;
                 self.figures.samples = number("samples")?;
                 self.figures.microseconds = number("microseconds")?;

@@ -52,11 +52,14 @@ fn of_cost(rows: &[Row]) -> Part {
 
 /// What each run took with the executor, and more of the simulated chips and world.
 fn of_runs(Emulation { runs, .. }: &Emulation) -> Part {
-    Columns::of("Runs, with the executor, without bus drivers and interrupts", runs)
+    let heading = "Runs, with executor and a time driver that stands in for the board's, without \
+                   bus drivers and interrupts";
+    Columns::of(heading, runs)
         .column("run", |run| run.job.word)
         .column("samples", |run| run.figures.samples)
         .column("seconds", |run| format!("{:.1}", run.figures.microseconds as f64 / 1e6))
         .column("a sample", |run| per_sample(&run.figures))
+        .column("of it time driver", |run| run.figures.of_a_sample(run.figures.stand_ins))
         .column("instructions", |run| run.figures.instructions)
         .column("longest poll", |run| run.figures.longest_poll())
         .column("stack", |run| run.figures.stack_bytes)
@@ -102,6 +105,7 @@ pub fn object(emulation: &Emulation) -> Value {
             "run": job.word,
             "instructions": figures.instructions,
             "instructions_per_sample": per_sample(figures),
+            "stand_in_instructions": figures.stand_ins,
             "simulation_instructions": figures.simulation,
             "samples": figures.samples,
             "seconds": figures.microseconds as f64 / 1e6,

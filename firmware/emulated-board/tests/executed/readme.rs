@@ -13,18 +13,24 @@ use super::support::executed::executed;
 /// Greatest relative deviation of a figure: where an image is built moves its code, and with it what runs when.
 const ALIKE: f64 = 0.03;
 
-/// A row of the table: its name, and its figure of a report.
-type Row = (&'static str, fn(&Report) -> f64);
+/// The same of the stack, which is deepest where the tasks of interrupts come at the deepest moment of a conclusion, as
+/// some executions show and others do not: by 3.4 % of it, as was seen; twice that is allowed.
+const STACK_ALIKE: f64 = 0.07;
+
+/// A row of the table: its name, its figure of a report, and how far it may be off.
+type Row = (&'static str, fn(&Report) -> f64, f64);
 
 /// The rows.
 const ROWS: [Row; 5] = [
-    ("instructions a sample, all in", |report| {
-        report.instructions_per_sample.expect("it has measured")
-    }),
-    ("percent of the time asleep", |report| 100.0 * report.idle),
-    ("bytes of flash", |report| report.flash_bytes.into()),
-    ("bytes of static RAM", |report| report.static_bytes.into()),
-    ("bytes of stack at its deepest", |report| report.stack_bytes.into()),
+    (
+        "instructions a sample, all in",
+        |report| report.instructions_per_sample.expect("it has measured"),
+        ALIKE,
+    ),
+    ("percent of the time asleep", |report| 100.0 * report.idle, ALIKE),
+    ("bytes of flash", |report| report.flash_bytes.into(), ALIKE),
+    ("bytes of static RAM", |report| report.static_bytes.into(), ALIKE),
+    ("bytes of stack at its deepest", |report| report.stack_bytes.into(), STACK_ALIKE),
 ];
 
 /// The page.
@@ -52,7 +58,7 @@ fn figures(line: &str) -> Option<Vec<f64>> {
 fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
     let mut text = std::fs::read_to_string(page()).expect("the page is there");
     let is_written = std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write");
-    for (name, of) in ROWS {
+    for (name, of, alike) in ROWS {
         let found = Platform::ALL.map(|carrier| of(&executed(carrier, 1).report));
         let row = |line: &&str| {
             line.starts_with(&format!("| {name} |")) && line.matches('|').count() == 7
@@ -63,7 +69,7 @@ fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
             continue;
         }
         let shown = figures(&kept).unwrap_or_else(|| panic!("no figures in {kept}"));
-        let is_alike = |(shown, found): (&f64, f64)| (shown - found).abs() <= ALIKE * found + 1.0;
+        let is_alike = |(shown, found): (&f64, f64)| (shown - found).abs() <= alike * found + 1.0;
         let agree = shown.len() == found.len() && shown.iter().zip(found).all(is_alike);
         assert!(
             agree,

@@ -67,6 +67,7 @@ fn figures(sample: u64, worst: u64) -> Figures {
     Figures {
         // Rounded up.
         instructions: 10 * sample - 9,
+        stand_ins: 2,
         simulation: 5,
         samples: 10,
         microseconds: 124,

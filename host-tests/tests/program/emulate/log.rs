@@ -13,7 +13,8 @@ fn whole_log() -> Vec<String> {
     vec![
         "row stop from to [4602678819172646912, 18446744073709551615]".to_owned(),
         "row azimuth angle sigma [4608308318706860032, 4602678819172646912]".to_owned(),
-        "effort instructions=1000 simulation=200 samples=10 microseconds=5000".to_owned(),
+        "effort instructions=1000 stand-ins=300 simulation=200 samples=10 microseconds=5000"
+            .to_owned(),
         "task polls=30 instructions=900 worst=100 name=the instrument".to_owned(),
         "stack bytes=4096".to_owned(),
     ]
@@ -36,6 +37,7 @@ fn the_log_gives_back_the_bits_and_the_figures() {
         vec![Task { name: "the instrument".into(), polls: 30, instructions: 900, worst: 100 }];
     let expected = Figures {
         instructions: 1000,
+        stand_ins: 300,
         simulation: 200,
         samples: 10,
         microseconds: 5000,

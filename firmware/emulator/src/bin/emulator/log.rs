@@ -18,10 +18,12 @@ defmt::timestamp!("{=u64:us}", clock::now());
 /// Logs the cost of the whole instrument from its first dwell to its last, for a gyro with this
 /// sample rate, Hz.
 pub fn effort(meter: &Meter, sample_rate: f64) {
-    let Accounts { instrument, simulation, microseconds } = meter.between_marks();
+    let Accounts { instrument, stand_ins, simulation, microseconds } = meter.between_marks();
     println!(
-        "effort instructions={=u64} simulation={=u64} samples={=u64} microseconds={=u64}",
+        "effort instructions={=u64} stand-ins={=u64} simulation={=u64} samples={=u64} \
+         microseconds={=u64}",
         instrument.instructions(),
+        stand_ins.instructions(),
         simulation.instructions(),
         (microseconds as f64 * sample_rate * 1e-6) as u64,
         microseconds

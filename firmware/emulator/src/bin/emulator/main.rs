@@ -87,6 +87,7 @@ fn run() -> Result<(), Failure> {
         instrument: Task { name: "instrument", ..Task::default() },
         finished: OnceCell::new(),
     });
+    clock::book(&harness.meter);
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
     let (ground, method) = job.begin(&harness.meter).ok_or(Failure::Session)?;
     let spawner = executor.spawner();
