@@ -3,7 +3,10 @@
 //! The azimuth is `A(t) = A₀ + ∫(ω_down + Ω_v) dt`, in any attitude and with the gyros' biases
 //! subtracted (Burov, section 2, storage of azimuth). Its variance is the sum of those of A₀, of
 //! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
-//! over the net turn, of a ramp of its bias, and of rotation during gaps.
+//! over the net turn, of a ramp of its bias, of rotation during gaps, and of the level's error, which
+//! turns the azimuth of a sloping axis.
+
+use core::f64::consts::PI;
 
 use super::setting::Gyro;
 use super::vertical::Vertical;
@@ -12,7 +15,8 @@ use crate::earth::Latitude;
 use crate::math::quaternion::angles;
 use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 
-/// Significance, in σ, at which an alignment and the held azimuth contradict each other.
+/// Significance, in σ, at which an alignment and the held azimuth contradict each other, and at which an
+/// axis is not upright.
 const BOUND: f64 = 4.0;
 
 /// Outcome of a new alignment.
@@ -33,6 +37,41 @@ pub enum Realigned {
     },
 }
 
+/// Slope of body x at a moment, on which an error ε of the level about the horizontal below body x turns
+/// its azimuth by ε·tan P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slope {
+    /// Cosine and tangent of the pitch P.
+    cosine: f64,
+    tangent: f64,
+    /// Variance of the level's error, rad².
+    variance: f64,
+}
+
+impl Slope {
+    /// The present one.
+    fn of(vertical: &Vertical) -> Self {
+        let [_, pitch, _] = angles(vertical.attitude().parts());
+        let (sine, cosine) = libm::sincos(pitch);
+        let sigma = f64::from(vertical.sigma());
+        Self { cosine, tangent: sine / cosine, variance: sigma * sigma }
+    }
+
+    /// Whether body x may be upright, so that it has no azimuth.
+    fn is_upright(&self) -> bool {
+        self.cosine * self.cosine < BOUND * BOUND * self.variance
+    }
+
+    /// Variance of what the level's error turned the azimuth by since an earlier moment, rad². What the
+    /// errors of both have in common is that of the accelerometers, which stays with the body.
+    fn variance_since(&self, before: &Self) -> f64 {
+        let common = self.variance.min(before.variance);
+        let [now, then] =
+            [self, before].map(|slope| slope.variance * slope.tangent * slope.tangent);
+        (now + then - 2.0 * common * self.tangent * before.tangent).max(0.0)
+    }
+}
+
 /// An azimuth that is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Heading {
@@ -40,6 +79,8 @@ pub(super) struct Heading {
     pub(super) frame: f64,
     /// Variance of the azimuth that was handed over, rad².
     variance: f64,
+    /// Slope since which the level's error counts.
+    slope: Slope,
     /// Standard deviations of the gyro's scale factor, and of an unknown ramp of its bias, rad/s².
     scale: f64,
     ramp: f64,
@@ -52,23 +93,34 @@ impl Heading {
         Self {
             frame: wrapped(azimuth.angle.0 - course(vertical)),
             variance: azimuth.sigma.0 * azimuth.sigma.0,
+            slope: Slope::of(vertical),
             scale: gyro.scale_sigma,
             ramp: gyro.noise.rate_ramp.0,
         }
     }
 
-    /// Present azimuth of body x.
+    /// Present azimuth of body x; where that may be upright σ is π.
     pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
         let angle = Radians(wrapped(self.frame + course(vertical)));
-        Azimuth { angle, sigma: Radians(libm::sqrt(self.variance(vertical))) }
+        let slope = Slope::of(vertical);
+        let of_level = slope.variance_since(&self.slope);
+        let sigma = libm::sqrt(self.variance(vertical) + of_level);
+        Azimuth { angle, sigma: Radians(if slope.is_upright() { PI } else { sigma }) }
     }
 
-    /// Begins with the present azimuth.
+    /// Standard deviation of the azimuth of the level frame, rad: without what the slope makes of it.
+    pub(super) fn sigma(&self, vertical: &Vertical) -> f64 {
+        libm::sqrt(self.variance(vertical))
+    }
+
+    /// Restarts the error of the turn. That of the level goes on from the slope on which it began.
     pub(super) fn restart(&mut self, gyro: &Gyro, vertical: &mut Vertical) {
-        *self = Self::begin(self.azimuth(vertical), gyro, vertical);
+        self.variance = self.variance(vertical);
+        (self.scale, self.ramp) = (gyro.scale_sigma, gyro.noise.rate_ramp.0);
+        vertical.begin_course();
     }
 
-    /// Variance of the present azimuth, rad².
+    /// Variance of the azimuth of the level frame, rad².
     fn variance(&self, vertical: &Vertical) -> f64 {
         let motion = &vertical.course;
         let scale = self.scale * f64::from(motion.turned);
@@ -109,13 +161,16 @@ pub(super) struct Mark {
     turned: f32,
     /// Standard deviation of the turn since then, rad, until its count was restarted.
     since: f64,
+    /// Slope of the moment.
+    slope: Slope,
 }
 
 impl Mark {
     /// Marks the present course as that of a moment.
     pub(super) fn new(at: Instant, vertical: &Vertical) -> Self {
         let (variance, turned) = (vertical.turn_variance(), vertical.course.turned);
-        Self { at, course: course(vertical), variance, turned, since: 0.0 }
+        let slope = Slope::of(vertical);
+        Self { at, course: course(vertical), variance, turned, since: 0.0, slope }
     }
 
     /// Standard deviation of the turn since the moment, rad. Errors of biases and scale factors before and after
@@ -135,7 +190,9 @@ impl Mark {
     /// Carries an azimuth of the moment on to the present.
     pub(super) fn carry(&self, azimuth: Azimuth, gyro: &Gyro, vertical: &Vertical) -> Azimuth {
         let angle = wrapped(azimuth.angle.0 + course(vertical) - self.course);
-        let sigma = libm::hypot(azimuth.sigma.0, self.sigma(gyro, vertical));
+        let of_level = libm::sqrt(Slope::of(vertical).variance_since(&self.slope));
+        let of_turn = libm::hypot(self.sigma(gyro, vertical), of_level);
+        let sigma = libm::hypot(azimuth.sigma.0, of_turn);
         Azimuth { angle: Radians(angle), sigma: Radians(sigma) }
     }
 }

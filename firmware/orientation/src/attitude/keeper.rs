@@ -67,7 +67,7 @@ impl Keeper {
             self.trust = self.vertical.trust;
             self.since = now;
         }
-        let is_nowhere = |heading: &Heading| heading.azimuth(&self.vertical).sigma > NOWHERE;
+        let is_nowhere = |heading: &Heading| heading.sigma(&self.vertical) > NOWHERE.0;
         // The test is made only after a loss of rotation: otherwise σ grows slowly.
         if self.trust == Trust::RotationLost && self.heading.as_ref().is_some_and(is_nowhere) {
             self.withdraw();

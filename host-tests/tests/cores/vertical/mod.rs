@@ -6,6 +6,7 @@ mod forces;
 mod gaps;
 mod honesty;
 mod rest;
+mod slope;
 mod unseen;
 mod world;
 
