@@ -170,26 +170,24 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
     let loaded = load(store).await;
     shared.remembered.signal(loaded.unwrap_or_default());
     let mut outcome = loaded.map(|_| ());
-    // One that cannot be read now may be read after a drive.
-    let mut is_to_forget = loaded.is_err();
     loop {
         if let Err(fault) = outcome
             && !core::mem::replace(&mut has_failed, true)
         {
             shared.report(Event::HeadingNotKept(fault));
         }
-        let saving = if is_to_forget {
+        // What is stored is of before: one that could not be read may be read after a drive, and one that was to be
+        // replaced may be that of another place.
+        let saving = if outcome.is_err() {
             let waited = with_timeout(FORGOTTEN_AGAIN, shared.saving.wait()).await;
             waited.unwrap_or(Saving::Nothing)
         } else {
             shared.saving.wait().await
         };
-        is_to_forget |= saving == Saving::Nothing;
         outcome = match saving {
             Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
             Saving::Nothing => store.forget(HEADING).await,
         };
-        is_to_forget &= outcome.is_err();
     }
 }
 

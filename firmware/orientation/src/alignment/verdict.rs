@@ -13,6 +13,14 @@ pub struct Azimuth {
     pub sigma: Radians,
 }
 
+impl Azimuth {
+    /// Whether it is one: both numbers are finite, and σ is above zero.
+    #[must_use]
+    pub fn is_possible(&self) -> bool {
+        self.angle.0.is_finite() && self.sigma.0.is_finite() && self.sigma.0 > 0.0
+    }
+}
+
 /// An azimuth beside the least standard deviation that its data allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {

@@ -82,6 +82,10 @@ impl Keeper {
 
     /// Replaces the gyro of the down axis by another one.
     pub fn exchange_down(&mut self, gyro: Gyro) {
+        self.restart_mark();
+        if let Some(heading) = &mut self.heading {
+            heading.restart(&gyro, &mut self.vertical);
+        }
         self.setting = self.setting.with_down(gyro);
         self.vertical.exchange_down(&self.setting);
     }

@@ -143,6 +143,8 @@ pub struct Navigator<'k> {
     /// Whether the azimuth is that from before the restart, whether it was known at the latest
     /// check, and whether a bias beyond its stated σ has been reported.
     is_recalled: bool,
+    /// Whether what was given from outside latest was impossible.
+    is_aiding_impossible: bool,
     has_azimuth: bool,
     is_bias_beyond_stated: bool,
     /// Whether the body is at rest, since when it has been, and since when it has been in motion
@@ -181,6 +183,7 @@ impl<'k> Navigator<'k> {
             found: None,
             state: None,
             is_recalled: false,
+            is_aiding_impossible: false,
             has_azimuth: false,
             is_bias_beyond_stated: false,
             is_at_rest: false,
@@ -224,10 +227,7 @@ impl<'k> Navigator<'k> {
                 self.keeper.exchange_forces(*bias_sigma);
             }
             Input::Settled => self.settle(Instant(u64::MAX), outlet),
-            Input::Aided(velocity, azimuth) => {
-                self.keeper.move_at(*velocity);
-                self.aid(*azimuth, outlet);
-            }
+            Input::Aided(velocity, azimuth) => self.aid(*velocity, *azimuth, outlet),
             Input::Passed(now) => self.tick(*now, outlet),
         }
     }
@@ -255,9 +255,23 @@ impl<'k> Navigator<'k> {
         outlet(Output::Progress(Progress::DownGyro(down)));
     }
 
-    /// Takes an azimuth from outside.
-    fn aid(&mut self, azimuth: Option<Azimuth>, outlet: Outlet) {
-        if let Some(azimuth) = azimuth {
+    /// Takes velocity and azimuth from outside. Numbers that are none are told, the first of them in a row, and not used.
+    fn aid(
+        &mut self,
+        velocity: Option<[MetresPerSecond; 2]>,
+        azimuth: Option<Azimuth>,
+        outlet: Outlet,
+    ) {
+        let is_velocity = |speeds: &[MetresPerSecond; 2]| speeds.iter().all(|it| it.0.is_finite());
+        let possible = (velocity.filter(is_velocity), azimuth.filter(Azimuth::is_possible));
+        let is_impossible =
+            possible.0.is_some() != velocity.is_some() || possible.1.is_some() != azimuth.is_some();
+        let was_impossible = core::mem::replace(&mut self.is_aiding_impossible, is_impossible);
+        if is_impossible && !was_impossible {
+            outlet(Output::Progress(Progress::AidingImpossible));
+        }
+        self.keeper.move_at(possible.0);
+        if let Some(azimuth) = possible.1 {
             self.align(azimuth, outlet);
             self.spare(outlet);
         }

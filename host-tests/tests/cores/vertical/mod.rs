@@ -8,6 +8,7 @@ mod honesty;
 mod rest;
 mod slope;
 mod unseen;
+mod wheels;
 mod world;
 
 use crate::support::assert_near;

@@ -7,7 +7,8 @@ use orientation::earth::Latitude;
 use orientation::navigation::{self, Input, Motion, Navigator, Order, Output, Policy, Realignment};
 use orientation::signal::InertialSample;
 use orientation::units::{
-    AngleIncrement, DEGREE, Instant, Radians, RadiansPerSecond, Seconds, SpecificForce,
+    AngleIncrement, DEGREE, Instant, MetresPerSecond, Radians, RadiansPerSecond, Seconds,
+    SpecificForce,
 };
 
 use super::{drive, vehicle};
@@ -158,6 +159,53 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
         navigator.take(&Input::Settled, &mut outlet);
     }
     assert_eq!(shown, [None, Some(true), Some(true), Some(false)]);
+}
+
+#[test]
+fn numbers_from_outside_that_are_none_are_told_once_and_not_used() {
+    let (nan, infinite, zero) = (f64::NAN, f64::INFINITY, MetresPerSecond(0.0));
+    let impossible: [Input; 7] = [
+        Input::Aided(None, Some(azimuth(nan, 0.1))),
+        Input::Aided(None, Some(azimuth(infinite, 0.1))),
+        Input::Aided(None, Some(azimuth(100.0, nan))),
+        Input::Aided(None, Some(azimuth(100.0, 0.0))),
+        Input::Aided(None, Some(azimuth(100.0, -0.1))),
+        Input::Aided(Some([zero, MetresPerSecond(nan)]), None),
+        Input::Aided(Some([MetresPerSecond(infinite), zero]), None),
+    ];
+    for input in impossible {
+        let follows = [input, input].into_iter().chain((3001..=3200).map(|i| moved(i, 0.0)));
+        let outputs = outputs(&policy(), follows);
+        let told = Output::Progress(navigation::Progress::AidingImpossible);
+        assert_eq!(outputs.iter().filter(|output| **output == told).count(), 1, "{input:?}");
+        let reports = outputs.iter().filter_map(|output| match output {
+            Output::Report(report, _) => Some(report),
+            _ => None,
+        });
+        let last = reports.last().expect("a report a second");
+        assert_eq!(last.azimuth, None, "{input:?}");
+        assert!(last.attitude.iter().all(|part| part.is_finite()), "{input:?}");
+    }
+}
+
+/// A body whose precise gyro is replaced by one with another error of its scale, and which turns by ten turns then.
+#[test]
+fn a_held_azimuth_has_the_errors_of_the_gyro_that_carries_it() {
+    let coarse = Gyro { scale_sigma: 5e-3, ..gyro() };
+    let turn = 3600.0 * 0.1 * DEGREE;
+    for (first, second, scale) in [(gyro(), coarse, 5e-3), (coarse, gyro(), 1e-4)] {
+        let mut keeper = keeper();
+        keeper.exchange_down(first);
+        (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
+        keeper.hand_over(azimuth(100.0, 0.01));
+        (501..=600).for_each(|index| keeper.push(&sample(index, 0.0)));
+        keeper.exchange_down(second);
+        // Not even, as a bias is.
+        let turned = |index: u64| TURN * (1.0 + 0.9 * (0.05 * index as f64).sin());
+        (601..=4200).for_each(|index| keeper.push(&sample(index, turned(index))));
+        let sigma = keeper.report().azimuth.expect("it is held").sigma.0;
+        assert!((0.95..1.3).contains(&(sigma / (scale * turn))), "{sigma} of {}", scale * turn);
+    }
 }
 
 #[test]

@@ -90,6 +90,15 @@ fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept
     assert_eq!(asked, [0, 15], "s");
 }
 
+/// A rest that ends before the store forgets is followed by another one, and the heading of that is not kept: that of before the
+/// first is not valid.
+#[test]
+fn a_heading_that_could_not_be_replaced_is_forgotten() {
+    let (asked, reported) = asked((0, true), &[(5, Saving::Heading(heading()))]);
+    assert_eq!(asked, [15], "s");
+    assert_eq!(reported, 1, "it is told once");
+}
+
 /// What cannot be read at the start may be read after a drive.
 #[test]
 fn a_heading_that_cannot_be_read_is_forgotten() {

@@ -39,14 +39,10 @@ const EXPECTED: f32 = 1.0;
 const EXPLAINED: f32 = 2.0;
 /// Greatest mean square of a drift, in units of that of the swing.
 const GREATEST_DRIFT: f32 = 10.0;
-/// Mean square of the rate about level axes from which a body tumbles, rad²/s²: wheels do not turn
-/// so.
+/// Mean square of the rate about level axes from which a body tumbles, rad²/s²: half a radian in a
+/// second, as wheels do not turn; a ramp at 3 m/s turns a vehicle by half as much.
 const TUMBLING: f32 = 0.25;
-/// Mean rate about a level axis from which a body counts as tumbling, rad/s.
-const QUICK_ROLL: f32 = 0.15;
-/// Averaging time of that rate, s.
-const ROLLING: f32 = 0.5;
-/// Time for which the body then counts as tumbling, s.
+/// Time for which a body that turned so within a stretch counts as tumbling, s.
 const TUMBLED: f32 = 60.0;
 /// Greatest mean square of a tumbling body's swing, in units of that of the heave.
 const GREATEST_SWING: f32 = 4.0;
@@ -78,9 +74,7 @@ pub(super) struct Motion {
     greatest: f32,
     /// Mean square of the rate about level axes, rad²/s².
     tumbling: f32,
-    /// Mean rates about north and east within half a second, rad/s, and time for which the body
-    /// still counts as tumbling, s.
-    rolling: [f32; 2],
+    /// Time for which a body that turned suddenly still counts as tumbling, s.
     tumbled: f32,
 }
 
@@ -129,12 +123,7 @@ impl Motion {
         self.size = before + (size - before) * (seconds / BAND);
         self.heave.push([(size - self.size) * seconds], seconds, BAND, QUICK);
         self.tumbling += (stretch.level_rate_square() - self.tumbling) * (seconds / WATCH);
-        let [about_north, about_east] = stretch.level_turn();
-        for (rolling, turned) in self.rolling.iter_mut().zip([about_north, about_east]) {
-            *rolling += (turned - *rolling * seconds) * (1.0 / ROLLING);
-        }
-        let [a, b] = self.rolling;
-        self.tumbled = if a * a + b * b > QUICK_ROLL * QUICK_ROLL {
+        self.tumbled = if stretch.level_rate_square() > TUMBLING {
             TUMBLED
         } else {
             (self.tumbled - seconds).max(0.0)
