@@ -32,9 +32,9 @@ use crate::storage::HEADING;
 
 /// Longest time for which inertial samples wait in the queue, where the aligner does not say that it has had theirs.
 const REST: Duration = Duration::from_millis(50);
-/// Time after which a heading is forgotten again where that has failed: one from before the drive must not be recalled
+/// Time after which what has failed is tried again with the stored heading: one from before the drive must not be recalled
 /// after it.
-const FORGOTTEN_AGAIN: Duration = Duration::from_secs(10);
+const TRIED_AGAIN: Duration = Duration::from_secs(10);
 /// Time without an inertial sample after which the navigator goes by the clock, µs.
 const SILENCE: u64 = 100_000;
 
@@ -169,25 +169,33 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
     let mut has_failed = false;
     let loaded = load(store).await;
     shared.remembered.signal(loaded.unwrap_or_default());
-    let mut outcome = loaded.map(|_| ());
+    // One that cannot be read now may be read after a drive.
+    let (mut outcome, mut latest) = (loaded.map(|_| ()), Saving::Nothing);
     loop {
         if let Err(fault) = outcome
             && !core::mem::replace(&mut has_failed, true)
         {
             shared.report(Event::HeadingNotKept(fault));
         }
-        // What is stored is of before: one that could not be read may be read after a drive, and one that was to be
-        // replaced may be that of another place.
-        let saving = if outcome.is_err() {
-            let waited = with_timeout(FORGOTTEN_AGAIN, shared.saving.wait()).await;
-            waited.unwrap_or(Saving::Nothing)
+        let is_again = outcome.is_err();
+        latest = if is_again {
+            with_timeout(TRIED_AGAIN, shared.saving.wait()).await.unwrap_or(latest)
         } else {
             shared.saving.wait().await
         };
-        outcome = match saving {
-            Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
-            Saving::Nothing => store.forget(HEADING).await,
-        };
+        outcome = put(store, latest, is_again).await;
+    }
+}
+
+/// Keeps in a store what the navigator saves. After a failure the stored heading may be one from before a drive: it is
+/// forgotten first.
+async fn put<T: Store>(store: &mut T, saving: Saving, is_again: bool) -> Result<(), Fault> {
+    if is_again || saving == Saving::Nothing {
+        store.forget(HEADING).await?;
+    }
+    match saving {
+        Saving::Heading(heading) => store.save(HEADING, &heading.to_bytes()).await,
+        Saving::Nothing => Ok(()),
     }
 }
 

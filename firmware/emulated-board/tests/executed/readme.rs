@@ -13,8 +13,8 @@ use super::support::executed::executed;
 /// Greatest relative deviation of a figure: where an image is built moves its code, and with it what runs when.
 const ALIKE: f64 = 0.03;
 
-/// The same of the stack, which is deepest where the tasks of interrupts come at the deepest moment of a conclusion, as
-/// some executions show and others do not: by 3.4 % of it, as was seen; twice that is allowed.
+/// Greatest relative deviation of the stack, which is deepest where the tasks of interrupts come at the deepest moment of
+/// a conclusion, as some executions show and others do not: by 3.4 % of it, as was seen; twice that is allowed.
 const STACK_ALIKE: f64 = 0.07;
 
 /// A row of the table: its name, its figure of a report, and how far it may be off.

@@ -14,7 +14,7 @@ pub struct Azimuth {
 }
 
 impl Azimuth {
-    /// Whether it is one: both numbers are finite, and σ is above zero.
+    /// Whether both numbers are finite and σ is above zero.
     #[must_use]
     pub fn is_possible(&self) -> bool {
         self.angle.0.is_finite() && self.sigma.0.is_finite() && self.sigma.0 > 0.0

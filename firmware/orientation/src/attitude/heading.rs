@@ -19,6 +19,9 @@ use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 /// axis is not upright.
 const BOUND: f64 = 4.0;
 
+/// Error of a level that is not known any more, 1σ, rad: it says of no axis that it is upright.
+const LOST: f64 = 0.1;
+
 /// Outcome of a new alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Realigned {
@@ -44,6 +47,8 @@ struct Slope {
     /// Cosine and tangent of the pitch P.
     cosine: f64,
     tangent: f64,
+    /// Roll, rad.
+    roll: f64,
     /// Variance of the level's error, rad².
     variance: f64,
 }
@@ -51,24 +56,35 @@ struct Slope {
 impl Slope {
     /// The present one.
     fn of(vertical: &Vertical) -> Self {
-        let [_, pitch, _] = angles(vertical.attitude().parts());
+        let [_, pitch, roll] = angles(vertical.attitude().parts());
         let (sine, cosine) = libm::sincos(pitch);
         let sigma = f64::from(vertical.sigma());
-        Self { cosine, tangent: sine / cosine, variance: sigma * sigma }
+        Self { cosine, tangent: sine / cosine, roll, variance: sigma * sigma }
     }
 
     /// Whether body x may be upright, so that it has no azimuth.
     fn is_upright(&self) -> bool {
-        self.cosine * self.cosine < BOUND * BOUND * self.variance
+        self.cosine * self.cosine < BOUND * BOUND * self.variance.min(LOST * LOST)
     }
 
-    /// Variance of what the level's error turned the azimuth by since an earlier moment, rad². What the
-    /// errors of both have in common is that of the accelerometers, which stays with the body.
+    /// Variance of what the level's error turns the azimuth by, rad².
+    fn of_azimuth(&self) -> f64 {
+        self.variance * self.tangent * self.tangent
+    }
+
+    /// Variance of what the level's error turned the azimuth by since an earlier moment, rad². The smaller of both errors is
+    /// taken for that of the accelerometers, which both have in common and which stays with the body.
     fn variance_since(&self, before: &Self) -> f64 {
-        let common = self.variance.min(before.variance);
-        let [now, then] =
-            [self, before].map(|slope| slope.variance * slope.tangent * slope.tangent);
-        (now + then - 2.0 * common * self.tangent * before.tangent).max(0.0)
+        let common = self.variance.min(before.variance) * libm::cos(self.roll - before.roll);
+        let both = self.of_azimuth() + before.of_azimuth();
+        (both - 2.0 * common * self.tangent * before.tangent).max(0.0)
+    }
+
+    /// Ends what it has in common with later ones, and returns the variance that is left of it, rad².
+    fn part(&mut self) -> f64 {
+        let variance = self.of_azimuth();
+        self.tangent = 0.0;
+        variance
     }
 }
 
@@ -77,7 +93,7 @@ impl Slope {
 pub(super) struct Heading {
     /// Azimuth of the level frame's x, rad.
     pub(super) frame: f64,
-    /// Variance of the azimuth that was handed over, rad².
+    /// Variance of the azimuth that was handed over, with the error of the turns before the latest restart, rad².
     variance: f64,
     /// Slope since which the level's error counts.
     slope: Slope,
@@ -105,7 +121,7 @@ impl Heading {
         let slope = Slope::of(vertical);
         let of_level = slope.variance_since(&self.slope);
         let sigma = libm::sqrt(self.variance(vertical) + of_level);
-        Azimuth { angle, sigma: Radians(if slope.is_upright() { PI } else { sigma }) }
+        Azimuth { angle, sigma: Radians(if slope.is_upright() { PI } else { sigma.min(PI) }) }
     }
 
     /// Standard deviation of the azimuth of the level frame, rad: without what the slope makes of it.
@@ -118,6 +134,11 @@ impl Heading {
         self.variance = self.variance(vertical);
         (self.scale, self.ramp) = (gyro.scale_sigma, gyro.noise.rate_ramp.0);
         vertical.begin_course();
+    }
+
+    /// Notes that other accelerometers show the level from now on.
+    pub(super) fn exchange_forces(&mut self) {
+        self.variance += self.slope.part();
     }
 
     /// Variance of the azimuth of the level frame, rad².
@@ -161,8 +182,9 @@ pub(super) struct Mark {
     turned: f32,
     /// Standard deviation of the turn since then, rad, until its count was restarted.
     since: f64,
-    /// Slope of the moment.
+    /// Slope of the moment, and the variance of what other accelerometers' errors did on it, rad².
     slope: Slope,
+    parted: f64,
 }
 
 impl Mark {
@@ -170,7 +192,7 @@ impl Mark {
     pub(super) fn new(at: Instant, vertical: &Vertical) -> Self {
         let (variance, turned) = (vertical.turn_variance(), vertical.course.turned);
         let slope = Slope::of(vertical);
-        Self { at, course: course(vertical), variance, turned, since: 0.0, slope }
+        Self { at, course: course(vertical), variance, turned, since: 0.0, slope, parted: 0.0 }
     }
 
     /// Standard deviation of the turn since the moment, rad. Errors of biases and scale factors before and after
@@ -181,19 +203,28 @@ impl Mark {
         self.since + libm::sqrt(grown + scale * scale)
     }
 
-    /// Notes that the count of the turn's error restarts.
-    pub(super) fn restart(&mut self, gyro: &Gyro, vertical: &Vertical) {
+    /// Closes the error of the turn up to now, which this gyro has measured, before its count restarts.
+    pub(super) fn close(&mut self, gyro: &Gyro, vertical: &Vertical) {
         self.since = self.sigma(gyro, vertical);
-        (self.variance, self.turned) = (0.0, 0.0);
+    }
+
+    /// Goes on from the present count.
+    pub(super) fn go_on(&mut self, vertical: &Vertical) {
+        (self.variance, self.turned) = (vertical.turn_variance(), vertical.course.turned);
+    }
+
+    /// Notes that other accelerometers show the level from now on.
+    pub(super) fn exchange_forces(&mut self) {
+        self.parted += self.slope.part();
     }
 
     /// Carries an azimuth of the moment on to the present.
     pub(super) fn carry(&self, azimuth: Azimuth, gyro: &Gyro, vertical: &Vertical) -> Azimuth {
         let angle = wrapped(azimuth.angle.0 + course(vertical) - self.course);
-        let of_level = libm::sqrt(Slope::of(vertical).variance_since(&self.slope));
-        let of_turn = libm::hypot(self.sigma(gyro, vertical), of_level);
+        let of_level = Slope::of(vertical).variance_since(&self.slope) + self.parted;
+        let of_turn = libm::hypot(self.sigma(gyro, vertical), libm::sqrt(of_level));
         let sigma = libm::hypot(azimuth.sigma.0, of_turn);
-        Azimuth { angle: Radians(angle), sigma: Radians(sigma) }
+        Azimuth { angle: Radians(angle), sigma: Radians(sigma.min(PI)) }
     }
 }
 
@@ -216,6 +247,11 @@ pub(super) fn frame_rate(
     let x = about_north * cosine + about_east * sine;
     let y = about_east * cosine - about_north * sine;
     [x as f32, y as f32, about_down as f32]
+}
+
+/// Whether body x may be upright, so that it has no azimuth.
+pub(super) fn is_upright(vertical: &Vertical) -> bool {
+    Slope::of(vertical).is_upright()
 }
 
 /// Course of body x on the level frame, rad.

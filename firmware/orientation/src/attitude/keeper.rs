@@ -1,7 +1,7 @@
 //! Attitude and heading reference (AHRS): gyrovertical and heading hold together. It takes samples
 //! from switch-on and reports pitch, roll and azimuth.
 
-use super::heading::{Heading, Mark, Realigned, frame_rate};
+use super::heading::{Heading, Mark, Realigned, frame_rate, is_upright};
 use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
@@ -82,26 +82,34 @@ impl Keeper {
 
     /// Replaces the gyro of the down axis by another one.
     pub fn exchange_down(&mut self, gyro: Gyro) {
-        self.restart_mark();
+        self.close_mark();
         if let Some(heading) = &mut self.heading {
             heading.restart(&gyro, &mut self.vertical);
         }
+        self.go_on_from_mark();
         self.setting = self.setting.with_down(gyro);
         self.vertical.exchange_down(&self.setting);
     }
 
     /// Replaces the accelerometers by others, whose biases have this 1σ.
     pub fn exchange_forces(&mut self, bias_sigma: MetresPerSecondSquared) {
+        if let Some(heading) = &mut self.heading {
+            heading.exchange_forces();
+        }
+        if let Some(mark) = &mut self.mark {
+            mark.exchange_forces();
+        }
         self.setting.force_bias_sigma = bias_sigma;
         self.vertical.exchange_forces(&self.setting);
     }
 
     /// Adopts an azimuth of body x at the present time, in place of any previous one.
     pub fn hand_over(&mut self, azimuth: Azimuth) {
-        self.restart_mark();
+        self.close_mark();
         let [.., gyro] = &self.setting.gyros;
         let is_first = self.heading.is_none();
         self.heading = Some(Heading::begin(azimuth, gyro, &mut self.vertical));
+        self.go_on_from_mark();
         self.handed = self.vertical.time();
         if is_first {
             self.vertical.find_north(self.frame_rate());
@@ -130,25 +138,31 @@ impl Keeper {
         Some(mark.carry(azimuth, gyro, &self.vertical))
     }
 
-    /// Notes for an azimuth that is being computed that the error of the turn restarts.
-    fn restart_mark(&mut self) {
+    /// Closes the error of the turn since the mark, of an azimuth that is being computed, before its count restarts.
+    fn close_mark(&mut self) {
         let [.., gyro] = &self.setting.gyros;
         if let Some(mark) = &mut self.mark {
-            mark.restart(gyro, &self.vertical);
+            mark.close(gyro, &self.vertical);
+        }
+    }
+
+    /// Goes on from there, after the count of the error has restarted, or not.
+    fn go_on_from_mark(&mut self) {
+        if let Some(mark) = &mut self.mark {
+            mark.go_on(&self.vertical);
         }
     }
 
     /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
     /// is withdrawn.
     pub(crate) fn realign(&mut self, azimuth: Azimuth) -> Realigned {
-        if self.heading.is_some() {
-            self.restart_mark();
-        }
+        self.close_mark();
         let [.., gyro] = &self.setting.gyros;
         let realigned = match &mut self.heading {
             None => Realigned::Taken,
             Some(heading) => heading.realign(azimuth, gyro, &mut self.vertical),
         };
+        self.go_on_from_mark();
         match realigned {
             Realigned::Taken => self.hand_over(azimuth),
             Realigned::Fused { .. } => self.turn_frame(),
@@ -190,6 +204,11 @@ impl Keeper {
         self.vertical.is_at_rest()
     }
 
+    /// Whether body x may be upright, so that it has no azimuth.
+    pub(crate) fn is_upright(&self) -> bool {
+        is_upright(&self.vertical)
+    }
+
     /// Whether an azimuth is held.
     pub(crate) fn has_azimuth(&self) -> bool {
         self.heading.is_some()
@@ -228,7 +247,8 @@ impl Keeper {
     /// State to be saved against a loss of supply; only at rest, and with an azimuth.
     pub(crate) fn remember(&self) -> Option<Remembered> {
         let report = self.report();
-        let azimuth = report.azimuth.filter(|_| report.is_at_rest)?;
+        let is_known = |azimuth: &Azimuth| report.is_at_rest && azimuth.sigma <= NOWHERE;
+        let azimuth = report.azimuth.filter(is_known)?;
         Some(Remembered {
             azimuth: azimuth.angle,
             sigma: azimuth.sigma,

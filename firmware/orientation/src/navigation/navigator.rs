@@ -143,10 +143,10 @@ pub struct Navigator<'k> {
     /// Whether the azimuth is that from before the restart, whether it was known at the latest
     /// check, and whether a bias beyond its stated σ has been reported.
     is_recalled: bool,
-    /// Whether what was given from outside latest was impossible.
-    is_aiding_impossible: bool,
     has_azimuth: bool,
     is_bias_beyond_stated: bool,
+    /// Whether what was given from outside latest could not be used.
+    is_aiding_unusable: bool,
     /// Whether the body is at rest, since when it has been, and since when it has been in motion
     /// after that.
     pub is_at_rest: bool,
@@ -183,7 +183,7 @@ impl<'k> Navigator<'k> {
             found: None,
             state: None,
             is_recalled: false,
-            is_aiding_impossible: false,
+            is_aiding_unusable: false,
             has_azimuth: false,
             is_bias_beyond_stated: false,
             is_at_rest: false,
@@ -255,23 +255,24 @@ impl<'k> Navigator<'k> {
         outlet(Output::Progress(Progress::DownGyro(down)));
     }
 
-    /// Takes velocity and azimuth from outside. Numbers that are none are told, the first of them in a row, and not used.
+    /// Takes velocity and azimuth from outside. What is not finite, an azimuth whose σ is not above zero, and one of an
+    /// upright body x are reported, once in a row, and ignored.
     fn aid(
         &mut self,
         velocity: Option<[MetresPerSecond; 2]>,
         azimuth: Option<Azimuth>,
         outlet: Outlet,
     ) {
-        let is_velocity = |speeds: &[MetresPerSecond; 2]| speeds.iter().all(|it| it.0.is_finite());
-        let possible = (velocity.filter(is_velocity), azimuth.filter(Azimuth::is_possible));
-        let is_impossible =
-            possible.0.is_some() != velocity.is_some() || possible.1.is_some() != azimuth.is_some();
-        let was_impossible = core::mem::replace(&mut self.is_aiding_impossible, is_impossible);
-        if is_impossible && !was_impossible {
-            outlet(Output::Progress(Progress::AidingImpossible));
+        let speed = velocity.filter(|speeds| speeds.iter().all(|speed| speed.0.is_finite()));
+        let is_upright = self.keeper.is_upright();
+        let direction = azimuth.filter(|azimuth| azimuth.is_possible() && !is_upright);
+        let is_unusable = (speed, direction) != (velocity, azimuth);
+        let was_unusable = core::mem::replace(&mut self.is_aiding_unusable, is_unusable);
+        if is_unusable && !was_unusable {
+            outlet(Output::Progress(Progress::AidingUnusable));
         }
-        self.keeper.move_at(possible.0);
-        if let Some(azimuth) = possible.1 {
+        self.keeper.move_at(speed);
+        if let Some(azimuth) = direction {
             self.align(azimuth, outlet);
             self.spare(outlet);
         }

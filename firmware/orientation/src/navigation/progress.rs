@@ -27,8 +27,9 @@ pub enum Progress {
     Refused(Refusal),
     /// An azimuth is not taken, because increments of later times were taken before it was announced.
     TooLate,
-    /// An azimuth or a velocity from outside is not finite, or has no σ: it is not used.
-    AidingImpossible,
+    /// An azimuth or a velocity from outside is not used: it is not finite, its σ is not above zero, or body x is
+    /// upright.
+    AidingUnusable,
     /// The attitude keeper has changed its state.
     Keeping(State),
     /// No inertial samples arrive any more.
@@ -60,8 +61,8 @@ crate::words! { Progress:
         Rounded::<4>(angle.degrees()), Rounded::<4>(sigma.degrees()), Rounded::<1>(sigmas);
     Self::Refused(reason) => "no azimuth: {}", reason;
     Self::TooLate => "the azimuth comes too late to be kept: what was turned meanwhile is not known";
-    Self::AidingImpossible =>
-        "keeping: an azimuth or a velocity from outside is no number, or has no sigma: it is not used";
+    Self::AidingUnusable =>
+        "keeping: an azimuth or a velocity from outside is not used: not finite, no σ above zero, or the body is upright";
     Self::Keeping(state) => "keeping: {}", state;
     Self::NoMotion => "keeping: no motion is measured any more";
     Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";

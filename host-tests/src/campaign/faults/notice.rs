@@ -66,7 +66,7 @@ fn is_wrong(event: &Event) -> bool {
         | Event::Navigation(
             navigation::Progress::NoMotion
             | navigation::Progress::TooLate
-            | navigation::Progress::AidingImpossible
+            | navigation::Progress::AidingUnusable
             | navigation::Progress::AzimuthLost
             | navigation::Progress::BiasBeyondStated
             | navigation::Progress::RecallRefused(_)

@@ -1,6 +1,7 @@
-//! A vehicle that climbs a ramp quickly and then drives as vehicles do: what accelerates it is not taken for a tilt.
+//! A vehicle that climbs a ramp quickly, or drives over bumps, and then drives as vehicles do: what accelerates it is not
+//! taken for a tilt. What a change of pitch does to its speed is left out, 0.2 m/s² at most.
 
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 use orientation::attitude::{Gyro, Setting};
 use orientation::noise::model::GyroNoise;
@@ -59,11 +60,19 @@ fn of_a_vehicle() -> Body {
     Body { setting: Setting { gyros: [gyro; 3], ..body.setting }, ..body }
 }
 
+/// Attitude of a vehicle on bumps: 0.05 rad up and down, twice a second; and the bend.
+fn on_bumps(time: f64) -> [f64; 3] {
+    let [course, ..] = attitude(time);
+    let size = part(time, 59.0, 60.0) - part(time, 68.0, 69.0);
+    [course, 0.05 * size * (2.0 * TAU * time).sin(), 0.0]
+}
+
 #[test]
-fn a_vehicle_that_climbed_a_ramp_quickly_keeps_azimuth_and_level_within_their_sigma() {
-    for body in [precise(130.0), coarse(130.0), of_a_vehicle()] {
-        for seed in 1..=5 {
-            let body = Body { attitude, acceleration, handed: Some(HANDED), seed, ..body };
+fn a_vehicle_that_was_tilted_quickly_keeps_azimuth_and_level_within_their_sigma() {
+    let bodies = [precise(130.0), coarse(130.0), of_a_vehicle()];
+    for attitude in [attitude, on_bumps] {
+        for (body, seed) in bodies.iter().flat_map(|body| (1..=5).map(move |seed| (body, seed))) {
+            let body = Body { attitude, acceleration, handed: Some(HANDED), seed, ..*body };
             for known in keep(&body, |_, _| true).iter().filter(|it| it.time > HANDED + 1.0) {
                 let azimuth = known.report.azimuth.expect("it is held").sigma.0;
                 let error = known.azimuth.expect("it is held").abs() / azimuth;

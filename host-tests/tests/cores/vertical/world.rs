@@ -98,7 +98,16 @@ impl Known {
 }
 
 /// Keeps the attitude of the body; what was known ten times a second. Samples that `spoil` refuses are lost.
-pub fn keep(body: &Body, mut spoil: impl FnMut(f64, &mut InertialSample) -> bool) -> Vec<Known> {
+pub fn keep(body: &Body, spoil: impl FnMut(f64, &mut InertialSample) -> bool) -> Vec<Known> {
+    keep_acting(body, spoil, |_, _| ())
+}
+
+/// Keeps the attitude of the body, as [`keep`] does; before each sample `act` has the keeper.
+pub fn keep_acting(
+    body: &Body,
+    mut spoil: impl FnMut(f64, &mut InertialSample) -> bool,
+    mut act: impl FnMut(f64, &mut Keeper),
+) -> Vec<Known> {
     let mut keeper = Keeper::new(&body.setting);
     let mut sensors = Sensors::new(body);
     let period = body.setting.sample_seconds;
@@ -107,6 +116,7 @@ pub fn keep(body: &Body, mut spoil: impl FnMut(f64, &mut InertialSample) -> bool
     for place in 1..=(body.seconds / period.0).round() as u32 {
         let time = f64::from(place) * period.0;
         let mut sample = sensors.sample(time);
+        act(time, &mut keeper);
         if spoil(time, &mut sample) {
             keeper.push(&sample);
         }

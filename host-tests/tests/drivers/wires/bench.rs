@@ -68,7 +68,7 @@ pub fn byte_ns(hertz: u32) -> u64 {
 }
 
 /// One chip of a rig behind its select line, each of its transactions a run of bytes over the wires. Waits
-/// between select and clock are those of a controller of 80 MHz that takes 20 clocks.
+/// between select and clock are those of a controller of 64 MHz that takes 16 clocks.
 pub struct WirePort<'a, R> {
     pub rig: &'a RefCell<R>,
     pub wires: &'a RefCell<SpiWires>,

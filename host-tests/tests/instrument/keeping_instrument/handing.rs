@@ -161,29 +161,33 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
     assert_eq!(shown, [None, Some(true), Some(true), Some(false)]);
 }
 
-#[test]
-fn numbers_from_outside_that_are_none_are_told_once_and_not_used() {
+/// Inputs from outside that cannot be used, beside an azimuth of 100° that can.
+fn unusable() -> [Input; 7] {
     let (nan, infinite, zero) = (f64::NAN, f64::INFINITY, MetresPerSecond(0.0));
-    let impossible: [Input; 7] = [
-        Input::Aided(None, Some(azimuth(nan, 0.1))),
-        Input::Aided(None, Some(azimuth(infinite, 0.1))),
-        Input::Aided(None, Some(azimuth(100.0, nan))),
-        Input::Aided(None, Some(azimuth(100.0, 0.0))),
-        Input::Aided(None, Some(azimuth(100.0, -0.1))),
-        Input::Aided(Some([zero, MetresPerSecond(nan)]), None),
-        Input::Aided(Some([MetresPerSecond(infinite), zero]), None),
-    ];
-    for input in impossible {
+    let azimuths = [(nan, 0.1), (infinite, 0.1), (100.0, nan), (100.0, 0.0), (100.0, -0.1)];
+    let [a, b, c, d, e] =
+        azimuths.map(|(angle, sigma)| Input::Aided(None, Some(azimuth(angle, sigma))));
+    let good = Some(azimuth(100.0, 0.01));
+    let [f, g] =
+        [nan, infinite].map(|speed| Input::Aided(Some([zero, MetresPerSecond(speed)]), good));
+    [a, b, c, d, e, f, g]
+}
+
+#[test]
+fn what_is_not_finite_or_without_a_sigma_from_outside_is_told_once_and_not_used() {
+    for input in unusable() {
         let follows = [input, input].into_iter().chain((3001..=3200).map(|i| moved(i, 0.0)));
         let outputs = outputs(&policy(), follows);
-        let told = Output::Progress(navigation::Progress::AidingImpossible);
+        let told = Output::Progress(navigation::Progress::AidingUnusable);
         assert_eq!(outputs.iter().filter(|output| **output == told).count(), 1, "{input:?}");
-        let reports = outputs.iter().filter_map(|output| match output {
+        let last = outputs.iter().rev().find_map(|output| match output {
             Output::Report(report, _) => Some(report),
             _ => None,
         });
-        let last = reports.last().expect("a report a second");
-        assert_eq!(last.azimuth, None, "{input:?}");
+        let last = last.expect("a report a second");
+        let azimuth = last.azimuth.map(|azimuth| azimuth.angle.degrees().round());
+        let is_velocity = matches!(input, Input::Aided(Some(_), _));
+        assert_eq!(azimuth, is_velocity.then_some(100.0), "{input:?}");
         assert!(last.attitude.iter().all(|part| part.is_finite()), "{input:?}");
     }
 }

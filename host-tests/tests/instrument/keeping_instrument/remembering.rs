@@ -23,12 +23,27 @@ impl Observer for Reported {
     }
 }
 
-/// A store that keeps nothing and fails to forget so many times, and when it was asked to, s. It is empty, or cannot be
-/// read.
+/// A store that fails so many times, and what it was asked to do. It is empty, or cannot be read.
 struct Failing<'a> {
     failures: usize,
     is_readable: bool,
-    asked: &'a RefCell<Vec<u64>>,
+    asked: &'a RefCell<Vec<Asked>>,
+}
+
+/// What a store was asked to do, and when, s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Asked {
+    Save(u64),
+    Forget(u64),
+}
+
+impl Failing<'_> {
+    /// Notes what it is asked to do, which may fail.
+    fn fail(&self, asked: Asked) -> Result<(), Fault> {
+        self.asked.borrow_mut().push(asked);
+        let is_failing = self.asked.borrow().len() <= self.failures;
+        if is_failing { Err(Fault::NotReady) } else { Ok(()) }
+    }
 }
 
 impl Store for Failing<'_> {
@@ -37,13 +52,11 @@ impl Store for Failing<'_> {
     }
 
     async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
-        Err(Fault::NotReady)
+        self.fail(Asked::Save(Instant::now().as_secs()))
     }
 
     async fn forget(&mut self, _: u8) -> Result<(), Fault> {
-        self.asked.borrow_mut().push(Instant::now().as_secs());
-        let is_failing = self.asked.borrow().len() <= self.failures;
-        if is_failing { Err(Fault::NotReady) } else { Ok(()) }
+        self.fail(Asked::Forget(Instant::now().as_secs()))
     }
 }
 
@@ -54,9 +67,9 @@ fn heading() -> Remembered {
     Remembered { azimuth, sigma, pitch, roll, rates, rest }
 }
 
-/// When a store that fails to forget so many times is asked to, s, and how often that is reported, where it is given
-/// these items at these times, s, and can be read or not.
-fn asked((failures, is_readable): (usize, bool), given: &[(u64, Saving)]) -> (Vec<u64>, u32) {
+/// What a store that fails so many times is asked to do, and how often that is reported, where it is given these items at
+/// these times, s, and can be read or not.
+fn asked((failures, is_readable): (usize, bool), given: &[(u64, Saving)]) -> (Vec<Asked>, u32) {
     let (reported, asked) = (Reported::default(), RefCell::default());
     let shared = Shared::new(&reported);
     let mut store = Failing { failures, is_readable, asked: &asked };
@@ -78,24 +91,22 @@ fn asked((failures, is_readable): (usize, bool), given: &[(u64, Saving)]) -> (Ve
 #[test]
 fn a_heading_that_could_not_be_forgotten_is_forgotten_again_until_it_is() {
     let (asked, reported) = asked((3, true), &[(0, Saving::Nothing)]);
-    let waits: Vec<_> = asked.windows(2).map(|times| times[1] - times[0]).collect();
-    assert_eq!(waits, [10, 10, 10], "asked at {asked:?} s");
+    assert_eq!(asked, [0, 10, 20, 30].map(Asked::Forget));
     assert_eq!(reported, 1, "it is told once");
 }
 
-/// The heading of the next rest, which is not kept, does not make that of before the drive valid again.
+/// The heading of the next rest does not make that of before the drive valid again.
 #[test]
-fn a_heading_that_could_not_be_forgotten_is_forgotten_where_the_next_is_not_kept_either() {
+fn a_heading_that_could_not_be_forgotten_is_forgotten_before_the_next_is_kept() {
     let (asked, _) = asked((1, true), &[(0, Saving::Nothing), (5, Saving::Heading(heading()))]);
-    assert_eq!(asked, [0, 15], "s");
+    assert_eq!(asked, [Asked::Forget(0), Asked::Forget(5), Asked::Save(5)]);
 }
 
-/// A rest that ends before the store forgets is followed by another one, and the heading of that is not kept: that of before the
-/// first is not valid.
+/// What is stored then may be of before a drive whose end came before it was forgotten.
 #[test]
-fn a_heading_that_could_not_be_replaced_is_forgotten() {
-    let (asked, reported) = asked((0, true), &[(5, Saving::Heading(heading()))]);
-    assert_eq!(asked, [15], "s");
+fn a_heading_that_could_not_be_kept_is_kept_later_and_the_one_before_it_forgotten() {
+    let (asked, reported) = asked((1, true), &[(5, Saving::Heading(heading()))]);
+    assert_eq!(asked, [Asked::Save(5), Asked::Forget(15), Asked::Save(15)]);
     assert_eq!(reported, 1, "it is told once");
 }
 
@@ -103,6 +114,6 @@ fn a_heading_that_could_not_be_replaced_is_forgotten() {
 #[test]
 fn a_heading_that_cannot_be_read_is_forgotten() {
     let (asked, reported) = asked((1, false), &[]);
-    assert_eq!(asked, [10, 20], "s");
+    assert_eq!(asked, [10, 20].map(Asked::Forget));
     assert_eq!(reported, 1, "it is told once");
 }

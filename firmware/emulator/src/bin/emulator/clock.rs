@@ -23,7 +23,8 @@ impl Clock {
         critical_section::with(|section| work(&mut self.time.borrow_ref_mut(section)))
     }
 
-    /// The same on behalf of a task: on the board its own time driver does it, with a timer.
+    /// Runs work on the time on behalf of a task, and books its cost: on the board its own time driver does it, with a
+    /// timer.
     fn stand_in<T>(&self, work: impl FnOnce(&mut VirtualClock) -> T) -> T {
         match critical_section::with(|section| self.meter.borrow(section).get()) {
             Some(meter) => meter.stand_in(|| self.with(work)),

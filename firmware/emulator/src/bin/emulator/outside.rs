@@ -1,9 +1,9 @@
 //! The surroundings of the instrument in the emulator: metered ports of the simulated chips, the
 //! log, and a link that discards every line.
 //!
-//! The emulator counts the instructions of the instrument only. Whatever the simulation, its buses
-//! and the log execute is booked on a separate account (see [`Meter`]), so the counts can be
-//! compared with those of the board.
+//! The emulator counts the instructions of the instrument, with those of the time driver, which it
+//! tells beside them. Whatever the simulation, its buses and the log execute is booked on a separate
+//! account (see [`Meter`]), so the counts can be compared with those of the board.
 
 use core::convert::Infallible;
 use core::future::poll_fn;

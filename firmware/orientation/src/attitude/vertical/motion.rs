@@ -39,10 +39,15 @@ const EXPECTED: f32 = 1.0;
 const EXPLAINED: f32 = 2.0;
 /// Greatest mean square of a drift, in units of that of the swing.
 const GREATEST_DRIFT: f32 = 10.0;
-/// Mean square of the rate about level axes from which a body tumbles, rad²/s²: half a radian in a
-/// second, as wheels do not turn; a ramp at 3 m/s turns a vehicle by half as much.
+/// Mean square of the rate about level axes from which a body tumbles, rad²/s²: wheels do not turn
+/// so.
 const TUMBLING: f32 = 0.25;
-/// Time for which a body that turned so within a stretch counts as tumbling, s.
+/// Mean rate about a level axis, rad/s, from which a body that turns by as much as tumbling within a stretch counts as
+/// tumbling: wheels on a ramp turn it by no more than the one, and a bump by no more than the other.
+const QUICK_ROLL: f32 = 0.15;
+/// Averaging time of that rate, s.
+const ROLLING: f32 = 0.5;
+/// Time for which the body then counts as tumbling, s.
 const TUMBLED: f32 = 60.0;
 /// Greatest mean square of a tumbling body's swing, in units of that of the heave.
 const GREATEST_SWING: f32 = 4.0;
@@ -74,7 +79,9 @@ pub(super) struct Motion {
     greatest: f32,
     /// Mean square of the rate about level axes, rad²/s².
     tumbling: f32,
-    /// Time for which a body that turned suddenly still counts as tumbling, s.
+    /// Mean rates about north and east within half a second, rad/s, and time for which the body
+    /// still counts as tumbling, s.
+    rolling: [f32; 2],
     tumbled: f32,
 }
 
@@ -123,7 +130,13 @@ impl Motion {
         self.size = before + (size - before) * (seconds / BAND);
         self.heave.push([(size - self.size) * seconds], seconds, BAND, QUICK);
         self.tumbling += (stretch.level_rate_square() - self.tumbling) * (seconds / WATCH);
-        self.tumbled = if stretch.level_rate_square() > TUMBLING {
+        let [about_north, about_east] = stretch.level_turn();
+        for (rolling, turned) in self.rolling.iter_mut().zip([about_north, about_east]) {
+            *rolling += (turned - *rolling * seconds) * (1.0 / ROLLING);
+        }
+        let [a, b] = self.rolling;
+        let is_sudden = stretch.level_rate_square() > TUMBLING;
+        self.tumbled = if is_sudden && a * a + b * b > QUICK_ROLL * QUICK_ROLL {
             TUMBLED
         } else {
             (self.tumbled - seconds).max(0.0)

@@ -49,6 +49,12 @@ impl Stretch {
         scaled(&self.turned, 1.0 / self.seconds)
     }
 
+    /// Rotation about north and east, rad.
+    pub(super) fn level_turn(&self) -> [f32; 2] {
+        let part = 1.0 / self.seconds;
+        [dot(&self.attitude[0], &self.turned) * part, dot(&self.attitude[1], &self.turned) * part]
+    }
+
     /// Square of the mean rate about level axes, rad²/s².
     pub(super) fn level_rate_square(&self) -> f32 {
         let part = 1.0 / self.seconds;
