@@ -161,7 +161,7 @@ fn an_azimuth_that_was_shown_and_is_withdrawn_is_shown_as_unknown() {
     assert_eq!(shown, [None, Some(true), Some(true), Some(false)]);
 }
 
-/// Inputs from outside that cannot be used, beside an azimuth of 100° that can.
+/// Inputs from outside that cannot be used; with a velocity that cannot comes an azimuth of 100° that can.
 fn unusable() -> [Input; 7] {
     let (nan, infinite, zero) = (f64::NAN, f64::INFINITY, MetresPerSecond(0.0));
     let azimuths = [(nan, 0.1), (infinite, 0.1), (100.0, nan), (100.0, 0.0), (100.0, -0.1)];
@@ -192,7 +192,7 @@ fn what_is_not_finite_or_without_a_sigma_from_outside_is_told_once_and_not_used(
     }
 }
 
-/// A body whose precise gyro is replaced by one with another error of its scale, and which turns by ten turns then.
+/// A body whose precise gyro is replaced by one with another error of its scale, and which then turns once around.
 #[test]
 fn a_held_azimuth_has_the_errors_of_the_gyro_that_carries_it() {
     let coarse = Gyro { scale_sigma: 5e-3, ..gyro() };
