@@ -25,3 +25,6 @@ pub mod simulate;
 pub mod spectrum;
 pub mod unwritten;
 pub mod virtual_time;
+
+/// Name and version of the program.
+pub const VERSION: &str = concat!("meridian ", env!("CARGO_PKG_VERSION"));

@@ -10,7 +10,7 @@ use host::planning::suggestion;
 use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
 
-use super::{Answer, Failure, files};
+use super::{Answer, Failure, LOOK, files};
 
 /// The recording, and which of its columns is analysed.
 #[derive(Args)]
@@ -52,7 +52,7 @@ fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Resul
         schedule: found.and_then(|analysis| suggestion(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
-    let answer = Answer::of(refusal, as_json, &shown.object(), || shown.report().text())?;
+    let answer = Answer::of(refusal, as_json, &shown.object(), || shown.report().text(LOOK))?;
     Ok(answer.with_page(options.report.as_deref(), || shown.report()))
 }
 

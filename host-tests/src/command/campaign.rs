@@ -7,7 +7,7 @@ use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::output::progress::Progress;
 use simulated::fault::Platform;
 
-use super::{Answer, Failure, faults as of_run, files, registered, whole};
+use super::{Answer, Failure, LOOK, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -74,6 +74,6 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> 
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
     let refusal = refusal.map(str::to_owned);
-    let answer = Answer::of(refusal, as_json, &object, || report.text())?;
+    let answer = Answer::of(refusal, as_json, &object, || report.text(LOOK))?;
     Ok(answer.with_page(options.report.as_deref(), || report))
 }

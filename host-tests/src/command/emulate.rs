@@ -8,7 +8,7 @@ use host::emulate::emulate;
 use host::emulate::executed::{Executed, Options, execute};
 use host::output::{emulation, executed, say};
 
-use super::{Answer, Failure};
+use super::{Answer, Failure, LOOK};
 
 /// What to emulate.
 #[derive(Args)]
@@ -52,7 +52,7 @@ pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, Failure> {
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
-    Ok(Answer::of(refusal, as_json, &object, || emulation::report(&found).text())?)
+    Ok(Answer::of(refusal, as_json, &object, || emulation::report(&found).text(LOOK))?)
 }
 
 /// Executes the images of boards; whether no azimuth is wrong.
@@ -71,5 +71,5 @@ fn run_boards(
     let is_right = found.iter().flat_map(Executed::complaints).next().is_none();
     let refusal = (!is_right).then(|| "not all is as it must be".to_owned());
     let object = executed::object(&found);
-    Ok(Answer::of(refusal, as_json, &object, || executed::report(&found, &options).text())?)
+    Ok(Answer::of(refusal, as_json, &object, || executed::report(&found, &options).text(LOOK))?)
 }

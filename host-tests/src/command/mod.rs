@@ -17,7 +17,7 @@ use std::path::Path;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::outcome::{self, Finished, Outcome};
 use host::recording::{Body, Truth};
-use host::report::Report;
+use host::report::{Extent, Look, Report};
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use serde::Serialize;
@@ -51,6 +51,9 @@ pub struct Failure {
     /// Whether the options are to blame.
     pub is_misuse: bool,
 }
+
+/// How reports look on the terminal.
+const LOOK: Look = Look { extent: Extent::Usual, is_coloured: false };
 
 impl Failure {
     /// A failure because the options do not suit what was read.
@@ -161,7 +164,7 @@ impl Shown<'_> {
     ) -> Result<Answer, String> {
         let Self { name, finished, truth, body } = self;
         let made = |figures| outcome::report(name, outcome, &**finished, figures);
-        let text = || made(Vec::new()).text();
+        let text = || made(Vec::new()).text(LOOK);
         let answer = Answer::of(outcome.reason.clone(), as_json, outcome, text)?;
         Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }

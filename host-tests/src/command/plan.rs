@@ -10,7 +10,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use serde_json::json;
 
-use super::{Answer, Failure, files, latitude};
+use super::{Answer, Failure, LOOK, files, latitude};
 
 /// The gyro, the place, the stage, and what is asked.
 #[derive(Args)]
@@ -96,7 +96,7 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
         Err(why) => return Ok(refused(options, why.to_string(), as_json)?),
     };
     let object = Keys::default().with("status", "ok").with_all(Some(&planned));
-    let answer = Answer::of(None, as_json, &object, || plan::report(&request, &planned).text())?;
+    let answer = Answer::of(None, as_json, &object, || plan::report(&request, &planned).text(LOOK))?;
     Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 

@@ -4,9 +4,11 @@
 //! the JSON object, the text and the page; text and page are one [`Report`], whose figures only the page
 //! shows.
 
+mod figures;
 pub mod kept;
 pub mod keys;
 pub mod run;
+mod summary;
 
 use orientation::alignment::Azimuth;
 use orientation::alignment::budget::Budget;
@@ -15,13 +17,16 @@ use orientation::alignment::refusal::Refusal;
 use orientation::units::Radians;
 use serde::{Serialize, Serializer};
 
+pub(crate) use self::summary::of_site;
+pub use self::summary::report;
+
 use self::keys::Keys;
 use self::run::RunDetails;
 use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
-use crate::output::{azimuth_error, positive_zero};
+use crate::output::azimuth_error;
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Figure, Lines, Part as ReportPart, Report, Table};
+use crate::report::Part as ReportPart;
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;
@@ -36,9 +41,9 @@ pub trait Finished {
         ["True north found in", "No azimuth from"]
     }
 
-    /// Figures of the page. The truth is for errors alone; `body` holds the rows that were analysed, where
-    /// there are any.
-    fn figures(&self, _outcome: &Outcome, _truth: &Truth, _body: Option<&Body>) -> Vec<Figure> {
+    /// Figures and the timeline of the page. The truth is for errors alone; `body` holds the rows that were analysed,
+    /// where there are any.
+    fn figures(&self, _outcome: &Outcome, _truth: &Truth, _body: Option<&Body>) -> Vec<ReportPart> {
         Vec::new()
     }
 
@@ -109,6 +114,15 @@ pub struct Outcome {
     /// What the method adds: further keys.
     #[serde(flatten)]
     pub details: Keys,
+    /// What was found in words, quantity and value, of a method that looks for no azimuth; only with `ok`.
+    #[serde(skip)]
+    pub found: Option<[String; 2]>,
+    /// What else is said first of it: label and value.
+    #[serde(skip)]
+    pub facts: Vec<[String; 2]>,
+    /// Place, instrument and time in words: label and value.
+    #[serde(skip)]
+    pub circumstances: Vec<[String; 2]>,
     /// Lines and tables of the report beyond those that every method has.
     #[serde(skip)]
     pub parts: Vec<ReportPart>,
@@ -219,105 +233,9 @@ impl Outcome {
     }
 }
 
-/// The report on an outcome of what `name` names: its lines and tables, then the figures.
-pub fn report(
-    name: &str,
-    outcome: &Outcome,
-    finished: &dyn Finished,
-    figures: Vec<Figure>,
-) -> Report {
-    let mut parts = vec![headline(outcome).into()];
-    parts.extend(outcome.parts.iter().cloned());
-    let budget = outcome.fit.as_ref().and_then(|fit| fit.budget.as_ref());
-    parts.extend(budget.map(budget_table).map(ReportPart::from));
-    parts.push(assumed(outcome).into());
-    parts.extend(outcome.run.iter().flat_map(|run| run.parts.iter().cloned()));
-    parts.extend(figures.into_iter().map(ReportPart::from));
-    let [found, refused] = finished.titles();
-    Report::new(format!("{} {name}", if outcome.is_ok() { found } else { refused }), parts)
-}
-
-/// What every method says first: the result or the reason, the limit, the truth, the level.
-fn headline(outcome: &Outcome) -> Lines {
-    let found = outcome.azimuth_deg.zip(outcome.sigma_deg);
-    let azimuth = found.map(|(azimuth, sigma)| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
-    let lines = Lines::default()
-        .with_found("reason", outcome.reason.as_ref())
-        .with_found("azimuth of body x", azimuth)
-        .with_found("truth", found.zip(outcome.error_deg).map(error));
-    let Some(fit) = &outcome.fit else { return lines };
-    let left_out =
-        fit.excluded.iter().map(|Excluded { words, reason, .. }| format!("{words}{reason}"));
-    lines
-        .with_found("limit", limit(outcome))
-        .with("pitch, roll", level(outcome))
-        .with_found("Earth rate", earth_rate(fit))
-        .with_found("model", (!fit.model.is_empty()).then(|| fit.model.join(", ")))
-        .with_found("left out", left_out)
-}
-
-/// The true azimuth, and what one that was found with its 1σ is off, °.
-fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
-    let truth = (azimuth - error).rem_euclid(360.0);
-    format!("{truth:.4}°: the error is {error:+.4}°, {:+.2} σ", error / sigma)
-}
-
-fn limit(outcome: &Outcome) -> Option<String> {
-    match outcome.limit_deg {
-        Some(limit) => Some(format!("{limit:.4}° (Cramér–Rao for the stated noise)")),
-        None => outcome.is_ok().then(|| "none: the noise is estimated from the data".to_owned()),
-    }
-}
-
-fn level(outcome: &Outcome) -> String {
-    let Some(level) = outcome.pitch_deg.zip(outcome.roll_deg) else { return "not measured".into() };
-    let [pitch, roll] = [level.0, level.1].map(|angle| positive_zero(angle, 5e-5));
-    format!("{pitch:.4}°, {roll:.4}°")
-}
-
-fn earth_rate(fit: &FitDetails) -> Option<String> {
-    match fit.earth_rate_ratio.zip(fit.earth_rate_ratio_sigma) {
-        Some((ratio, sigma)) => Some(format!("{ratio:.4} ± {sigma:.4} of that expected")),
-        None => fit.budget.map(|_| "taken for granted: the data do not show it".to_owned()),
-    }
-}
-
-/// The parts of σ with each part's share of the variance.
-fn budget_table(details: &BudgetDetails) -> Table {
-    let budget = &details.0;
-    let sigma = budget.sigma();
-    let share = |part: f64| 100.0 * (part / sigma.0) * (part / sigma.0);
-    let sum =
-        vec!["root sum of squares".to_owned(), format!("{:.4}", sigma.degrees()), String::new()];
-    let dominant =
-        budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
-    let title = format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default());
-    Columns::of(&title, &details.shown().collect::<Vec<_>>())
-        .column("source", |(source, _)| source)
-        .fixed("part, °", 4, |(_, part)| part.degrees())
-        .fixed("share of the variance, %", 1, |(_, part)| share(part.0))
-        .table(Some(sum))
-}
-
-/// What helps against a part that dominates.
-fn remedy(source: Part) -> &'static str {
-    match source {
-        Part::GSensitivity => ": level the platform mechanically, or calibrate κ at two tilts",
-        Part::Accelerometer => ": turn a full circle, or calibrate the accelerometer",
-        Part::Scale => ": turn a longer arc, or calibrate the scale factor",
-        Part::Drift | Part::Temperature => ": let the gyro settle, or repeat the circle faster",
-        _ => "",
-    }
-}
-
 /// Biases of the gyros forward, right and down, and their 1σ, °/h, in words with so many decimal places.
 pub(crate) fn of_biases([biases, sigmas]: [[f64; 3]; 2], places: usize) -> String {
     let both = biases.iter().zip(sigmas);
     let each = both.map(|(bias, sigma)| format!("{bias:+.places$} ± {sigma:.places$}"));
     format!("{} °/h forward, right, down", each.collect::<Vec<_>>().join(", "))
-}
-
-fn assumed(outcome: &Outcome) -> Lines {
-    let all = &outcome.assumed;
-    Lines::default().with_found("assumed", (!all.is_empty()).then(|| all.join("; ")))
 }

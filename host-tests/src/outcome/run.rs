@@ -8,12 +8,13 @@ use firmware::remembered::Remembered;
 use orientation::attitude::Report;
 use serde::Serialize;
 
+use super::figures;
 use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::output::{degrees, positive_zero};
-use crate::report::{self, Figure, Lines, Part, Series, Style};
+use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
 #[derive(Clone, Debug, Serialize)]
@@ -21,9 +22,15 @@ pub struct RunDetails {
     /// Further keys of the outcome.
     #[serde(flatten)]
     keys: Keys,
+    /// What takes from the result, in words.
+    #[serde(skip)]
+    pub(super) degradations: Vec<String>,
     /// Lines of the report, and figures of what was kept over time.
     #[serde(skip)]
     pub(super) parts: Vec<Part>,
+    /// Rows of the timeline: what was kept how, and what went wrong.
+    #[serde(skip)]
+    pub(super) lanes: Vec<Lane>,
     /// What was kept at last, where anything was.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
@@ -82,7 +89,10 @@ impl RunDetails {
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
-        Self::with(keys, Some(board), &run.kept, realignments(run))
+        let this = Self::with(keys, Some(board), &run.kept, realignments(run));
+        let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
+        let lanes = [this.lanes, figures::faults(&run.events)].concat();
+        Self { degradations, lanes, ..this }
     }
 
     /// What was kept, and how later azimuths agreed with it.
@@ -94,15 +104,36 @@ impl RunDetails {
     /// What was kept, with further keys, and lines behind those of what was kept.
     fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: Realignments) -> Self {
         let (last, realigned) = (kept.last().copied(), later.fused);
-        let lines = last.iter().map(|last| in_words(kept, last, realigned)).chain(board);
+        let was_known = kept.with_azimuth().next().is_some();
+        let lines = last.iter().map(|last| Part::from(in_words(kept, last, realigned)));
+        let board = board.map(|board| Part::from(board).detail());
+        let is_lost = was_known && last.is_some_and(|last| last.report.azimuth.is_none());
+        let lost = "the azimuth is not known any more at the end of what was kept".to_owned();
         Self {
             keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
-            parts: lines.map(Part::from).chain(figures(kept).into_iter().map(Part::from)).collect(),
+            degradations: is_lost.then_some(lost).into_iter().collect(),
+            parts: lines.chain(figures::all(kept).into_iter().map(Part::from)).chain(board).collect(),
+            lanes: figures::lanes(kept),
             kept: last,
-            was_known: kept.with_azimuth().next().is_some(),
+            was_known,
             disagreement: later.disagreement,
         }
     }
+}
+
+/// What went wrong on the board, counted; nothing where nothing did.
+fn faults(health: &Health) -> Option<String> {
+    let sum = |counts: &[u16]| counts.iter().map(|count| u32::from(*count)).sum();
+    let all = [
+        (health.missing, "samples missing"),
+        (health.late, "samples late"),
+        (health.overflowed, "samples discarded"),
+        (sum(&health.lost), "readings lost"),
+        (sum(&health.restarts), "restarts of a device"),
+    ];
+    let there = all.into_iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = there.map(|(count, what)| format!("{count} {what}")).collect();
+    (!words.is_empty()).then(|| format!("faults on the way: {}", words.join(", ")))
 }
 
 /// How the board did.
@@ -187,41 +218,4 @@ fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
 /// RMS of the errors of pitch and roll on the way, rad.
 fn level_rms(kept: &Kept) -> [f64; 2] {
     [0, 1].map(|axis: usize| rms(kept.with_azimuth().map(|(point, _)| point.level_error()[axis])))
-}
-
-/// The figures: the azimuth's error against its σ, and pitch and roll; none where no truth is known.
-fn figures(kept: &Kept) -> Vec<Figure> {
-    if kept.with_azimuth().all(|(_, [error, _])| error.is_nan()) {
-        return Vec::new();
-    }
-    vec![heading(kept), level(kept)]
-}
-
-fn heading(kept: &Kept) -> Figure {
-    let all =
-        || kept.with_azimuth().map(|(point, [e, s])| (point.seconds(), degrees(e), degrees(s)));
-    let band =
-        |times: f64| all().map(move |(at, _, sigma)| report::Point::within(at, 0.0, times * sigma));
-    let series = [
-        Series::new("±3σ", Style::Band, band(3.0)),
-        Series::new("±1σ", Style::Band, band(1.0)),
-        Series::new("error", Style::Line, all().map(|(at, error, _)| (at, error))),
-    ];
-    let title = "Error of the kept azimuth, and its stated 1σ and 3σ";
-    Figure::new(title, ["time from power-on", "s"], ["error", "°"], series)
-}
-
-fn level(kept: &Kept) -> Figure {
-    let curve = |name: &str, of: &dyn Fn(&Point) -> f64| {
-        let points = kept.with_azimuth().map(|(point, _)| (point.seconds(), degrees(of(point))));
-        Series::new(name, Style::Line, points)
-    };
-    let series = [
-        curve("true pitch", &|point| point.truth.pitch_rad),
-        curve("true roll", &|point| point.truth.roll_rad),
-        curve("error of pitch", &|point| point.level_error()[0]),
-        curve("error of roll", &|point| point.level_error()[1]),
-    ];
-    let title = "Pitch and roll while the azimuth was kept";
-    Figure::new(title, ["time from power-on", "s"], ["angle", "°"], series)
 }

@@ -13,7 +13,7 @@ use crate::outcome::SCHEMA;
 use crate::outcome::keys::Keys;
 use crate::planning::Planned;
 use crate::recording::Gap;
-use crate::report::{Lines, Report};
+use crate::report::{Grade, Lines, Part, Report, Summary};
 
 /// χ² over its degrees of freedom beyond which the model does not fit.
 const MISFIT: f64 = 3.0;
@@ -95,20 +95,42 @@ impl Shown<'_> {
     /// The report for terminal and page: the record, the noise that it shows, and how both estimators did.
     pub fn report(&self) -> Report {
         let analysis = self.analysis.as_ref();
+        let parts = analysis.into_iter().flat_map(page::parts);
+        let beside = self.comparison.as_ref().map(speed).unwrap_or_default();
+        let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
+        let title = format!("{found} {} in {}", self.rest.column, self.name);
+        let parts = parts.chain([Part::from(beside).detail()]);
+        Report::new(title, parts).headed(self.summary())
+    }
+
+    /// The coefficients, the record that shows them, and the schedule that they suggest; or why there are none.
+    fn summary(&self) -> Summary {
+        let analysis = self.analysis.as_ref();
+        let coefficients = analysis.ok().map(|analysis| coefficients(&analysis.fit));
+        let mut all: Vec<[String; 2]> = coefficients
+            .iter()
+            .flatten()
+            .map(|coefficient| [coefficient.name.to_owned(), coefficient.text()])
+            .collect();
+        let is_found = |at: &Coefficient| matches!(at.estimate, Estimate::Found { .. });
+        let first = coefficients.iter().flatten().position(is_found);
+        let found = first.map(|first| all.remove(first));
         let residuals = |Analysis { fit: NoiseFit { chi_square, degrees, .. }, .. }: &Analysis| {
             format!("χ² {chi_square:.1} for {degrees} degrees of freedom")
         };
         let record = Lines::default()
-            .with_found("reason", analysis.err().map(ToString::to_string))
+            .with_found("schedule", self.schedule.as_ref().map(|(_, words)| words))
             .with("record", self.record())
             .with_found("noted", self.notes())
             .with_found("residuals", analysis.ok().map(residuals));
-        let parts = analysis.into_iter().flat_map(page::parts);
-        let beside = self.comparison.as_ref().map(speed).unwrap_or_default();
-        let beside = beside.with_found("schedule", self.schedule.as_ref().map(|(_, words)| words));
-        let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
-        let title = format!("{found} {} in {}", self.rest.column, self.name);
-        Report::new(title, [record.into()].into_iter().chain(parts).chain([beside.into()]))
+        all.extend(record.lines);
+        Summary {
+            grade: if analysis.is_ok() { Grade::Found } else { Grade::Refused },
+            reasons: analysis.err().map(ToString::to_string).into_iter().collect(),
+            found,
+            facts: all,
+            ..Summary::default()
+        }
     }
 
     /// What is to be known of the record, and of what the fit leaves open.

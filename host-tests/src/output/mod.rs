@@ -10,7 +10,8 @@ use std::io::{self, Write};
 
 use orientation::alignment::stepwise::fit::{Fit, Hypothesis};
 use orientation::math::regression::Column;
-use orientation::units::RadiansPerSecond;
+use orientation::noise::model::GyroNoise;
+use orientation::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, RadiansPerSecond};
 
 /// Writes a line to standard error. A line that has no reader is lost, which is no error.
 pub fn say(line: &str) {
@@ -71,4 +72,30 @@ fn of_hypothesis(hypothesis: Hypothesis) -> &'static [&'static str] {
         Hypothesis::Winding => &["t²", "t³"],
         Hypothesis::Stepped { .. } => &["step of the heading"],
     }
+}
+
+/// The coefficients of a gyro's noise in the field's units, those that are there; N where it is known.
+#[must_use]
+pub fn noise_in_words(noise: &GyroNoise, is_white_known: bool) -> String {
+    let walk = noise.angle_random_walk.0 / DEGREE_PER_SQRT_HOUR;
+    let white = if is_white_known {
+        format!("N {} °/√h", rounded(walk))
+    } else {
+        "N from the data".to_owned()
+    };
+    let others = [
+        ("B", noise.bias_instability.degrees_per_hour(), " °/h"),
+        ("K", noise.rate_random_walk.0 / DEGREE_PER_HOUR * 60.0, " °/h/√h"),
+        ("R", noise.rate_ramp.0 / DEGREE_PER_HOUR * 3600.0, " °/h²"),
+        ("Q", noise.quantisation.0 / ARCSECOND, "″"),
+    ];
+    let others = others.into_iter().filter(|(_, value, _)| *value > 0.0);
+    let others = others.map(|(name, value, unit)| format!("{name} {}{unit}", rounded(value)));
+    [white].into_iter().chain(others).collect::<Vec<_>>().join(", ")
+}
+
+/// Six digits are enough of what was typed in.
+fn rounded(value: f64) -> f64 {
+    let scale = 10.0_f64.powi(6 - value.abs().max(1e-12).log10().ceil() as i32);
+    (value * scale).round() / scale
 }

@@ -1,21 +1,26 @@
-//! Reports: figures and tables in one HTML file that needs nothing beside it, for `--report`.
+//! Reports: what a command says, as data, from which text for a terminal and a page for a browser are made.
 //!
-//! A [`Report`] is data; [`Report::write`] draws every figure as inline SVG, so that the file works
-//! in any browser without a network. A point that is not finite, or not above zero on a logarithmic
-//! axis, is left out; a figure without any point says so. Every axis names its unit.
+//! A [`Report`] is data. [`Report::text`] makes text of it; [`Report::write`], for `--report`, makes one HTML file that
+//! loads nothing: figures are inline SVG, and a script shows their values under the pointer. A point that is not finite,
+//! or not above zero on a logarithmic axis, is left out; a figure without any point says so. Every axis names its unit.
 
-mod chart;
 mod columns;
-mod html;
-mod span;
+mod convergence;
+mod figure;
+mod page;
+mod parts;
+mod summary;
 mod text;
 
-use std::io;
 use std::path::Path;
 
 use crate::unwritten;
 
 pub use self::columns::Columns;
+pub use self::convergence::{Milestone, convergence};
+pub use self::figure::{Axis, Figure, Note, POINTS, Point, Scale, Series, Shape, Style};
+pub use self::parts::{Kind, Lane, Lines, Share, Shares, Stretch, Table, Timeline};
+pub use self::summary::{Grade, Rose, Summary};
 
 /// A whole report.
 #[must_use]
@@ -25,6 +30,8 @@ pub struct Report {
     pub title: String,
     /// Lines below it: what was measured, with what, how.
     pub subtitle: Vec<String>,
+    /// What was found, where one thing was looked for.
+    pub summary: Option<Summary>,
     /// Figures and tables, in their order.
     pub parts: Vec<Part>,
 }
@@ -32,206 +39,74 @@ pub struct Report {
 /// A part of a report.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// Curves over an axis.
+    /// Curves over an axis; of a page alone.
     Figure(Figure),
     /// Rows of text.
     Table(Table),
     /// Labelled lines.
     Lines(Lines),
+    /// Shares of a whole.
+    Shares(Shares),
+    /// What was done when; of a page alone.
+    Timeline(Timeline),
+    /// What is shown where everything is asked for; a page folds it away.
+    Detail(Box<Part>),
 }
 
-/// Labelled lines under a heading.
-#[must_use]
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Lines {
-    /// The heading; empty for lines that follow the report's own.
-    pub title: String,
-    /// Label and value of each line.
-    pub lines: Vec<[String; 2]>,
-}
-
-impl Lines {
-    /// Lines under a heading, none yet.
-    pub fn new(title: &str) -> Self {
-        Self { title: title.to_owned(), lines: Vec::new() }
-    }
-
-    /// The lines with one more.
-    pub fn with(self, label: &str, value: impl Into<String>) -> Self {
-        self.with_found(label, [value])
-    }
-
-    /// The lines with one for each value that there is.
-    pub fn with_found<V: Into<String>>(
-        mut self,
-        label: &str,
-        values: impl IntoIterator<Item = V>,
-    ) -> Self {
-        self.lines.extend(values.into_iter().map(|value| [label.to_owned(), value.into()]));
-        self
-    }
-}
-
-/// Curves over common axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
-    /// The heading.
-    pub title: String,
-    /// The horizontal axis.
-    pub x: Axis,
-    /// The vertical axis.
-    pub y: Axis,
-    /// The curves; later ones are drawn over earlier ones.
-    pub series: Vec<Series>,
-}
-
-/// An axis of a figure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    /// The quantity.
-    pub label: String,
-    /// Unit of the axis; empty where it has none.
-    pub unit: String,
-    /// How values are laid along it.
-    pub scale: Scale,
-}
-
-/// How values are laid along an axis.
+/// How much of a report is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Equal differences are equally long.
-    Linear,
-    /// Equal ratios are equally long; values must be above zero.
-    Logarithmic,
+pub enum Extent {
+    /// What was found.
+    Result,
+    /// What a reader needs who does not look for a fault.
+    Usual,
+    /// Everything.
+    Whole,
 }
 
-/// A curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Series {
-    /// Name of the series in the legend.
-    pub name: String,
-    /// How it is drawn.
-    pub style: Style,
-    /// Points of the series, in the order in which a line joins them.
-    pub points: Vec<Point>,
-}
-
-/// How a curve is drawn. Limits are error bars, but in [`Style::Band`].
+/// How a report looks on a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    /// A line through the points.
-    Line,
-    /// A thin broken line through the points, for what only guides the eye.
-    Dashed,
-    /// Dots.
-    Points,
-    /// Dots with a line through them.
-    LineAndPoints,
-    /// The area between the limits; the points themselves are not drawn.
-    Band,
+pub struct Look {
+    /// How much of it is shown.
+    pub extent: Extent,
+    /// Whether colours show what came of it.
+    pub is_coloured: bool,
 }
 
-/// A point of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// On the horizontal axis.
-    pub x: f64,
-    /// On the vertical axis.
-    pub y: f64,
-    /// Lower and upper limit on the vertical axis; what leaves the figure is cut at its edge.
-    pub limits: Option<[f64; 2]>,
-}
-
-/// Rows of text under column names.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
-    /// The heading.
-    pub title: String,
-    /// The names of the columns, with units.
-    pub head: Vec<String>,
-    /// The rows.
-    pub rows: Vec<Vec<String>>,
-}
-
-impl Figure {
-    /// Curves over two axes.
-    pub fn new(
-        title: impl Into<String>,
-        x: impl Into<Axis>,
-        y: impl Into<Axis>,
-        series: impl IntoIterator<Item = Series>,
-    ) -> Self {
-        let series = series.into_iter().collect();
-        Self { title: title.into(), x: x.into(), y: y.into(), series }
-    }
-
-    /// Curves over the time in seconds.
-    pub fn over_time(
-        title: impl Into<String>,
-        y: impl Into<Axis>,
-        series: impl IntoIterator<Item = Series>,
-    ) -> Self {
-        Self::new(title, ["time", "s"], y, series)
-    }
-}
-
-impl From<[&str; 2]> for Axis {
-    /// An axis of a quantity and its unit, empty for a plain number, on which equal differences are equally long.
-    fn from([label, unit]: [&str; 2]) -> Self {
-        Self { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
-    }
-}
-
-impl Point {
-    /// A point with limits of one σ on either side.
+impl Look {
+    /// Without colours.
     #[must_use]
-    pub fn within(x: f64, y: f64, sigma: f64) -> Self {
-        Self { x, y, limits: Some([y - sigma, y + sigma]) }
+    pub fn plain(extent: Extent) -> Self {
+        Self { extent, is_coloured: false }
     }
 }
 
-impl Axis {
-    /// An axis on which equal ratios are equally long; `unit` is empty for a plain number.
+impl Part {
+    /// The part, as one that is shown only where everything is asked for.
     #[must_use]
-    pub fn logarithmic(label: &str, unit: &str) -> Self {
-        Self { scale: Scale::Logarithmic, ..[label, unit].into() }
+    pub fn detail(self) -> Self {
+        Self::Detail(Box::new(self))
     }
 
-    /// What stands beside the axis.
-    fn title(&self) -> String {
-        let Self { label, unit, .. } = self;
-        if unit.is_empty() { label.clone() } else { format!("{label}, {unit}") }
-    }
-}
-
-/// Most points of a curve of which more could not be distinguished.
-pub const POINTS: usize = 2000;
-
-impl Series {
-    /// A curve through (x, y).
-    pub fn new(
-        name: &str,
-        style: Style,
-        points: impl IntoIterator<Item = impl Into<Point>>,
-    ) -> Self {
-        let points = points.into_iter().map(Into::into).collect();
-        Self { name: name.to_owned(), style, points }
+    /// The heading of what a terminal shows.
+    fn title(&self) -> Option<&str> {
+        match self {
+            Self::Lines(lines) => Some(&lines.title),
+            Self::Table(table) => Some(&table.title),
+            Self::Shares(shares) => Some(&shares.title),
+            Self::Detail(part) => part.title(),
+            Self::Figure(_) | Self::Timeline(_) => None,
+        }
     }
 
-    /// A curve of as many points as can be distinguished, evenly taken from all.
-    pub fn thinned<T, P: Into<Point>>(
-        name: &str,
-        style: Style,
-        all: &[T],
-        of: impl FnMut(&T) -> P,
-    ) -> Self {
-        Self::new(name, style, all.iter().step_by(all.len().div_ceil(POINTS).max(1)).map(of))
-    }
-}
-
-impl From<(f64, f64)> for Point {
-    fn from((x, y): (f64, f64)) -> Self {
-        Self { x, y, limits: None }
+    /// Whether there is nothing in it.
+    fn is_empty(&self) -> bool {
+        match self {
+            Self::Lines(lines) => lines.lines.is_empty(),
+            Self::Timeline(timeline) => timeline.lanes.iter().all(|lane| lane.spans.is_empty()),
+            Self::Detail(part) => part.is_empty(),
+            Self::Figure(_) | Self::Table(_) | Self::Shares(_) => false,
+        }
     }
 }
 
@@ -253,12 +128,23 @@ impl From<Table> for Part {
     }
 }
 
+impl From<Shares> for Part {
+    fn from(shares: Shares) -> Self {
+        Self::Shares(shares)
+    }
+}
+
+impl From<Timeline> for Part {
+    fn from(timeline: Timeline) -> Self {
+        Self::Timeline(timeline)
+    }
+}
+
 impl Report {
     /// A report of these parts, without labelled lines of which there are none.
     pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
-        let is_there = |part: &Part| !matches!(part, Part::Lines(lines) if lines.lines.is_empty());
-        let parts = parts.into_iter().filter(is_there).collect();
-        Self { title: title.into(), subtitle: Vec::new(), parts }
+        let parts = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        Self { title: title.into(), parts, ..Self::default() }
     }
 
     /// This report with lines below its heading.
@@ -266,10 +152,15 @@ impl Report {
         Self { subtitle: subtitle.into_iter().map(Into::into).collect(), ..self }
     }
 
+    /// This report with what was found at its head.
+    pub fn headed(self, summary: Summary) -> Self {
+        Self { summary: Some(summary), ..self }
+    }
+
     /// The report for a terminal: its lines and tables; figures are for a page.
     #[must_use]
-    pub fn text(&self) -> String {
-        text::document(self)
+    pub fn text(&self, look: Look) -> String {
+        text::document(self, look)
     }
 
     /// Writes the report to a file, over one that is there.
@@ -277,8 +168,7 @@ impl Report {
     /// # Errors
     /// The file and what the system says.
     pub fn write(&self, path: &Path) -> Result<(), String> {
-        let page = html::document(self).map_err(io::Error::other);
-        page.and_then(|page| std::fs::write(path, page))
+        std::fs::write(path, page::document(self))
             .map_err(|error| unwritten::message("the report", path, &error))
     }
 }

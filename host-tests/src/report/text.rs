@@ -1,27 +1,102 @@
 //! A report as text for a terminal.
 
-use super::{Lines, Part, Report, Table};
+use super::{Extent, Grade, Lines, Look, Part, Report, Share, Shares, Summary, Table};
 
-/// Width of a label, characters.
+/// Least width of a label, characters.
 const LABEL: usize = 18;
 
-/// Heading, lines below it, labelled lines and tables; figures are left out.
-pub(super) fn document(report: &Report) -> String {
-    let mut text = format!("\n{}\n", report.title);
+/// Heading, what was found, lines below it, labelled lines and tables; figures are left out.
+pub(super) fn document(report: &Report, look: Look) -> String {
+    let grade = report.summary.as_ref().map(|summary| summary.grade);
+    let mut text = format!("\n{}\n", look.title(&report.title, grade));
     text.extend(report.subtitle.iter().flat_map(|line| [line.as_str(), "\n"]));
-    for part in &report.parts {
-        match part {
-            Part::Lines(lines) => text += &of_lines(lines),
-            Part::Table(table) => text += &of_table(table),
-            Part::Figure(_) => {}
-        }
+    text.extend(report.summary.iter().map(|summary| of_summary(summary, look)));
+    let is_enough = report.summary.is_some() && look.extent == Extent::Result;
+    for part in report.parts.iter().filter(|_| !is_enough) {
+        text += &of_part(part, look.extent);
+    }
+    if look.extent == Extent::Usual {
+        text += &unshown(&report.parts);
     }
     text.trim_end().to_owned()
 }
 
+/// What else there is.
+fn unshown(parts: &[Part]) -> String {
+    let title = |part: &Part| match part {
+        Part::Detail(part) => part.title().map(str::to_owned),
+        _ => None,
+    };
+    let titles: Vec<String> = parts.iter().filter_map(title).collect();
+    if titles.is_empty() { return String::new() }
+    format!("\n  --verbose adds     {}\n", titles.join("; "))
+}
+
+impl Look {
+    /// The heading, in the colour of what came of it.
+    fn title(self, title: &str, grade: Option<Grade>) -> String {
+        match grade {
+            Some(Grade::Found) => self.coloured(title, "1;32"),
+            Some(Grade::Degraded) => self.coloured(title, "1;33"),
+            Some(Grade::Refused) => self.coloured(title, "1;31"),
+            None => self.coloured(title, "1"),
+        }
+    }
+
+    /// A text in these colours of ECMA-48 (SGR), where there are to be colours.
+    fn coloured(self, text: &str, codes: &str) -> String {
+        if self.is_coloured { format!("\x1b[{codes}m{text}\x1b[0m") } else { text.to_owned() }
+    }
+}
+
+/// What was found, or why nothing was; of what it was found where everything is asked for.
+fn of_summary(summary: &Summary, look: Look) -> String {
+    let Summary { reasons, remarks, found, facts, circumstances, .. } = summary;
+    let named = |label: &'static str, all: &[String]| -> Vec<[String; 2]> {
+        all.iter().map(|words| [label.to_owned(), words.clone()]).collect()
+    };
+    let mut lines: Vec<[String; 2]> = Vec::new();
+    lines.extend(found.iter().map(|[what, is]| [what.clone(), look.coloured(is, "1")]));
+    lines.extend(named("reason", reasons));
+    lines.extend(named("noted", remarks));
+    if look.extent != Extent::Result {
+        lines.extend(facts.iter().cloned());
+    }
+    if look.extent == Extent::Whole {
+        lines.extend(circumstances.iter().cloned());
+    }
+    aligned(&lines)
+}
+
+/// A part, where it is to be shown.
+fn of_part(part: &Part, extent: Extent) -> String {
+    match part {
+        Part::Lines(lines) => of_lines(lines),
+        Part::Table(table) => of_table(table),
+        Part::Shares(shares) => of_table(&table(shares, extent)),
+        Part::Detail(part) if extent == Extent::Whole => of_part(part, extent),
+        Part::Detail(_) | Part::Figure(_) | Part::Timeline(_) => String::new(),
+    }
+}
+
+/// Labels and their values, one below the other.
+fn aligned(lines: &[[String; 2]]) -> String {
+    let widest = lines.iter().map(|[label, _]| label.chars().count()).max().unwrap_or(0);
+    let width = widest.max(LABEL);
+    lines.iter().map(|[label, value]| format!("  {label:<width$} {value}\n")).collect()
+}
+
 fn of_lines(Lines { title, lines }: &Lines) -> String {
-    let line = |[label, value]: &[String; 2]| format!("  {label:<LABEL$} {value}\n");
-    heading(title) + &lines.iter().map(line).collect::<String>()
+    heading(title) + &aligned(lines)
+}
+
+/// Shares as a table, those that round to nothing only where everything is asked for.
+fn table(Shares { title, head, rows, sum }: &Shares, extent: Extent) -> Table {
+    let shown = rows.iter().filter(|share| extent == Extent::Whole || share.is_seen());
+    let cells = |share: &Share| vec![share.name.clone(), share.value.clone(), share.in_percent()];
+    let [name, value] = sum.clone();
+    let rows = shown.map(cells).chain([vec![name, value, String::new()]]).collect();
+    Table { title: title.clone(), head: head.to_vec(), rows }
 }
 
 /// A blank line and the heading, if there is one.
@@ -29,8 +104,12 @@ fn heading(title: &str) -> String {
     if title.is_empty() { "\n".to_owned() } else { format!("\n  {title}\n") }
 }
 
-/// Columns as wide as their widest cell: names and words to the left, numbers to the right.
+/// Columns as wide as their widest cell: names and words to the left, numbers to the right; nothing of a table without
+/// rows.
 fn of_table(Table { title, head, rows }: &Table) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
     let width = |column: usize| {
         let cells = rows.iter().chain([head]).filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)

@@ -1,6 +1,6 @@
 //! Every fault on every platform: recovered within 5 σ or refused with a reason, and noticed where it must be.
 
-mod notice;
+pub(crate) mod notice;
 pub(super) mod report;
 mod runs;
 

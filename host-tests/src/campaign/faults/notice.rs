@@ -42,7 +42,7 @@ fn blamed(event: &Event) -> Option<Device> {
 }
 
 /// Whether an event reports something wrong.
-fn is_wrong(event: &Event) -> bool {
+pub(crate) fn is_wrong(event: &Event) -> bool {
     match event {
         Event::Navigation(navigation::Progress::HandedOver(_, outcome)) => {
             matches!(outcome, Realigned::Disagrees { .. })

@@ -2,11 +2,11 @@
 
 use clap::Args;
 use host::instrument::Trial;
-use host::instrument::recorder::Recorded as _;
+use host::instrument::recorder::{Recorded as _, driven_rows};
 use host::methods::stops::{Replay, SIAP};
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
-use host::recording::GIVEN;
+use host::recording::{Body, GIVEN};
 use orientation::alignment::stops::session::Session;
 use simulated::fault::Fault;
 use simulated::hold::STOP_SECONDS;
@@ -77,6 +77,8 @@ impl Simulated for VehicleOptions {
         let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
         let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
         let (mut wanted, inputs) = self.common.wanted(scenario.given())?;
+        // Figures show them.
+        wanted.is_idle = self.common.report.is_none() && wanted.is_idle;
         let (run, wall) = Terminal::watching("stops", &inputs, |watch| {
             let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
             Trial::of(&scenario).fault(fault).record(recorder).watch(watch).run()
@@ -86,8 +88,10 @@ impl Simulated for VehicleOptions {
         let details =
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());
         let replay = Replay { session: run.replay, ..seen };
+        let period_s = replay.session.procedure.sample_seconds.0;
         let finished = finished(replay.session.conclusion().is_some(), replay);
-        let shown = Shown { name: "the simulated drive", finished, truth, body: None };
+        let body = Some(Body::Imu(driven_rows(&wanted.taken, period_s)));
+        let shown = Shown { name: "the simulated drive", finished, truth, body };
         Ok(Ran { shown, details, written })
     }
 }

@@ -20,6 +20,7 @@ use orientation::units::{AngleIncrement, AngularRate, DEGREE_PER_HOUR, Instant, 
 use simulated::scenario::Scenario;
 
 pub use turntable::{given_by, turning_rows};
+pub use vehicle::driven_rows;
 
 use super::Carrier;
 use super::kept::Kept;

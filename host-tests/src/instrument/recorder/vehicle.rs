@@ -10,7 +10,7 @@ use crate::instrument::VehicleRun;
 use crate::instrument::kept::Kept;
 use crate::output::degrees;
 use crate::recording::inputs::{Carrier, Given};
-use crate::recording::{self, GREATEST_BODY_RATE, Kind, Truth};
+use crate::recording::{self, GREATEST_BODY_RATE, ImuRow, ImuSample, Kind, Truth};
 
 const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,force_is_new";
 
@@ -34,15 +34,9 @@ impl Recorded for VehicleScenario {
         writeln!(to, "# truth_azimuth_deg: {azimuth}")?;
         writeln!(to, "# truth_start_azimuth_deg: {}", self.base.azimuth_deg)?;
         writeln!(to, "{COLUMNS}")?;
-        let mut force = [0.0; 3];
-        of.iter().try_for_each(|sample| {
-            force = sample.force.map_or(force, forces);
-            let ([x, y, z], [ahead, right, down]) = (
-                sample.turned.map(|turned| mean_rate(turned, period_s.0, GREATEST_BODY_RATE)),
-                force,
-            );
-            let is_new = f64::from(sample.force.is_some());
-            row(to, &[seconds(sample.time), x, y, z, ahead, right, down, is_new])
+        driven_rows(of, period_s.0).iter().try_for_each(|it| {
+            let ([x, y, z], [ahead, right, down]) = (it.sample.rates_rad_s, it.sample.force_m_s2);
+            row(to, &[it.time_s, x, y, z, ahead, right, down, f64::from(it.force_is_new)])
         })
     }
 
@@ -59,6 +53,20 @@ impl Recorded for VehicleScenario {
         };
         (&run.kept, truth)
     }
+}
+
+/// The rows of a recording of these samples, a period apart: mean rates, and the latest force.
+#[must_use]
+pub fn driven_rows(samples: &[InertialSample], period_s: f64) -> Vec<ImuRow> {
+    let mut force_m_s2 = [0.0; 3];
+    let row = |(line, sample): (u64, &InertialSample)| {
+        let rate = |turned| mean_rate(turned, period_s, GREATEST_BODY_RATE);
+        force_m_s2 = sample.force.map_or(force_m_s2, forces);
+        let body = ImuSample { rates_rad_s: sample.turned.map(rate), force_m_s2 };
+        let (time_s, force_is_new) = (seconds(sample.time), sample.force.is_some());
+        ImuRow { line, time_s, sample: body, force_is_new }
+    };
+    (1..).zip(samples).map(row).collect()
 }
 
 /// Writes where the vehicle stood, and what the board was given of how far from the first stop that was.

@@ -37,13 +37,16 @@ pub struct Replay {
     pub zero_s: f64,
     /// What had to be assumed.
     pub assumed: Vec<String>,
+    /// Whether the session followed a recording; else it commanded the platform.
+    pub is_followed: bool,
 }
 
 impl Replay {
     /// The replay of a session that its run, or another replay, has given its samples.
     #[must_use]
     pub fn of_run(session: Session) -> Self {
-        Self { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] }
+        let assumed = vec![GIVEN.to_owned()];
+        Self { session, zero_s: 0.0, assumed, is_followed: false }
     }
 
     /// The parts of the recording that the session made of it: what came before the first even turn, then
@@ -64,7 +67,7 @@ impl Replay {
 }
 
 /// When a stretch's first turn began and its last one ended, s.
-fn span(stretch: &Stretch) -> Option<(f64, f64)> {
+pub(crate) fn span(stretch: &Stretch) -> Option<(f64, f64)> {
     let [first, last] = [stretch.turns.first()?, stretch.turns.last()?];
     let since = stretch.since as f64 * 1e-6;
     let begin = f64::from(first.middle) - 0.5 * f64::from(first.seconds);
@@ -94,7 +97,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let session = follow(setting, rows, 1.0 / rate)?;
     assumed.extend(assumptions::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
-    Ok(Replay { session, zero_s, assumed })
+    Ok(Replay { session, zero_s, assumed, is_followed: true })
 }
 
 /// Replays a run by giving its session what the board's was given.
@@ -109,12 +112,29 @@ fn again(
     let Given { mut setting, procedure, ended } = given;
     asked.change(&mut setting.site);
     let mut session = Session::new(setting, procedure)?;
+    feed(&mut session, rows);
+    session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
+    Ok(Replay::of_run(session))
+}
+
+/// Gives a session the rows of a run as its board had them.
+fn feed(session: &mut Session, rows: &[RotatingRow]) {
     for row in rows {
         let rate = recording::rate(row.rate_rad_s);
         session.feed(Input::Sample(&Sample { rate, ..sample(row, 0.0) }));
     }
-    session.feed(ended.as_ref().map_or(Input::End, Input::Failed));
-    Ok(Replay::of_run(session))
+}
+
+/// The session of a replay once more, of its first rows alone; none where it cannot begin.
+pub(crate) fn again_until(replay: &Replay, rows: &[RotatingRow]) -> Option<Session> {
+    let Session { setting, procedure, .. } = &replay.session;
+    if replay.is_followed {
+        return follow(setting.clone(), rows, procedure.sample_seconds.0).ok();
+    }
+    let mut session = Session::new(setting.clone(), procedure.clone()).ok()?;
+    feed(&mut session, rows);
+    session.feed(Input::End);
+    Some(session)
 }
 
 /// Part of the power of what rounding adds that is the first harmonic of its staircase, 6/π².

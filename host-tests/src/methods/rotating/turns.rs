@@ -29,7 +29,7 @@ fn first_turns(rows: &[RotatingRow], turns: usize) -> &[RotatingRow] {
 }
 
 /// The rows of each whole turn.
-fn each_turn(rows: &[RotatingRow]) -> impl Iterator<Item = &[RotatingRow]> {
+pub(super) fn each_turn(rows: &[RotatingRow]) -> impl Iterator<Item = &[RotatingRow]> {
     let edge = |turns| first_turns(rows, turns).len();
     (0..whole_turns(rows)).map(move |turn| &rows[edge(turn)..edge(turn + 1)])
 }

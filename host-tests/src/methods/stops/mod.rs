@@ -16,7 +16,7 @@ use heapless::Vec as Few;
 use orientation::alignment::site::Site;
 use orientation::alignment::stops::Setting;
 use orientation::alignment::stops::session::{Procedure, Session};
-use orientation::alignment::stops::stop::STOPS;
+use orientation::alignment::stops::stop::{STOPS, Stop};
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::alignment::{Input, Method as _};
 use orientation::earth::EARTH_RATE;
@@ -24,11 +24,11 @@ use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{
     DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN, ForceNoise, Metres,
-    RadiansPerRootSecond, RadiansPerSecond, Seconds,
+    Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds,
 };
 
 use self::noise::White;
-use self::way::{Leg, Slip};
+use self::way::{Driven, Leg, Slip};
 use crate::assumptions;
 use crate::median::{extremes, median};
 use crate::methods::asked::{Asked, Question};
@@ -72,6 +72,33 @@ impl Replay {
         {
             self.criteria.push((sample.time.seconds(), criteria, limits));
         }
+    }
+
+    /// The drives from stop to stop, from the azimuth at the first one.
+    pub(crate) fn drives(&self, rows: &[ImuRow], azimuth: Radians) -> Vec<Driven> {
+        let period_s = self.session.procedure.sample_seconds.0;
+        let (stops, site) = (self.session.stops(), &self.session.setting.site);
+        way::drives(rows, self.zero_s, period_s, stops, site, azimuth.0)
+    }
+
+    /// The session once more, until a time since its zero, with the stops that it has found until then.
+    pub(crate) fn until(&self, rows: &[ImuRow], end: Seconds) -> Option<Session> {
+        let (setting, procedure) = (self.session.setting, self.session.procedure.clone());
+        let until = |stop: &&Stop| stop.to.0 <= end.0;
+        let stops = self.session.stops().iter().filter(until);
+        let rests = match procedure.rests {
+            Rests::Whole => Rests::Whole,
+            _ => Rests::Stated(stops.clone().map(|stop| [stop.from, stop.to]).collect()),
+        };
+        let displacements = stops.map_while(|stop| stop.displacement).collect();
+        let period_s = procedure.sample_seconds;
+        let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
+        let mut session = Session::new(setting, procedure).ok()?;
+        let count = rows.partition_point(|row| row.time_s <= self.zero_s + end.0);
+        let samples = samples::since(self.zero_s, &rows[..count], period_s.0);
+        samples.for_each(|sample| _ = session.feed(Input::Sample(&sample)));
+        session.feed(Input::End);
+        Some(session)
     }
 
     /// The replay after all samples and their end.
@@ -140,10 +167,8 @@ fn again(
 fn check_way(of: &Question, mut replay: Replay) -> Result<Replay, ReplayError> {
     let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(of.body), found) else { return Ok(replay) };
-    let period_s = period_s(of.header.rate_hz, &rows, |row| row.time_s);
-    let site = &replay.session.setting.site;
-    let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
-    let legs = way::legs(&rows, zero_s, period_s, stops, site, found.start.angle.0);
+    let drives = replay.drives(&rows, found.start.angle);
+    let legs: Vec<Leg> = drives.iter().map(|driven| driven.leg).collect();
     if let Some(leg) = legs.iter().position(|leg| !leg.is_as_stated()) {
         let (Leg { stated_m, driven_m, .. }, slip) = (legs[leg], Slip::of(&legs));
         return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });

@@ -74,7 +74,16 @@ impl Converter {
 
 /// The samples of rows; their time counts from when the first one began.
 pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
-    within(limits::of_channels(rows, channels), begin(rows, period_s), rows, period_s)
+    since(begin(rows, period_s), rows, period_s)
+}
+
+/// The samples of rows; their time counts from a time on the recording's clock, s.
+pub(crate) fn since(
+    begin: f64,
+    rows: &[ImuRow],
+    period_s: f64,
+) -> impl Iterator<Item = InertialSample> + '_ {
+    within(limits::of_channels(rows, channels), begin, rows, period_s)
 }
 
 /// The samples of a run, as its board had them.

@@ -104,18 +104,26 @@ impl Leg {
     }
 }
 
+/// A drive and the way that it took, as the forces have it.
+pub(crate) struct Driven {
+    /// How far it came.
+    pub leg: Leg,
+    /// Places from its beginning on, north and east, m, fitted to where it ended as stated.
+    pub path_m: Vec<[f64; 2]>,
+}
+
 /// The drives between stops whose displacements are stated, from the azimuth at the first one, rad. Times of
 /// stops count from `zero_s` on the recording's clock.
-pub(crate) fn legs(
+pub(crate) fn drives(
     rows: &[ImuRow],
     zero_s: f64,
     period_s: f64,
     stops: &[Stop],
     site: &Site,
     azimuth: f64,
-) -> Vec<Leg> {
+) -> Vec<Driven> {
     let mut azimuth = azimuth;
-    let mut legs = Vec::new();
+    let mut drives = Vec::new();
     for pair in stops.windows(2) {
         let [begin, end] = [&pair[0], &pair[1]];
         let [Some(from), Some(to)] = [begin.displacement, end.displacement] else { break };
@@ -127,14 +135,30 @@ pub(crate) fn legs(
         let way = between(begin.to.0 - MARGIN_S, end.from.0 + MARGIN_S);
         let rest = between(end.from.0 + MARGIN_S, end.to.0 - MARGIN_S);
         let mut drive = Drive::from(begin, site, azimuth, period_s);
+        let stated_m = [to[0].0 - from[0].0, to[1].0 - from[1].0];
+        let mut path_m = Vec::with_capacity(way.len());
         for row in way {
             drive.push(row);
+            path_m.push([drive.way[0], drive.way[1]]);
         }
+        fit(&mut path_m, stated_m);
         let (driven_m, off_m) = drive.ended(rest);
         azimuth = drive.azimuth();
-        legs.push(Leg { driven_m, off_m, stated_m: [to[0].0 - from[0].0, to[1].0 - from[1].0] });
+        drives.push(Driven { leg: Leg { driven_m, off_m, stated_m }, path_m });
     }
-    legs
+    drives
+}
+
+/// Takes off a path what its end is beside the stated one, as an even acceleration lets it grow.
+fn fit(path_m: &mut [[f64; 2]], stated_m: [f64; 2]) {
+    let Some(end) = path_m.last().copied() else { return };
+    let count = path_m.len() as f64;
+    for (index, place) in path_m.iter_mut().enumerate() {
+        let part = (index + 1) as f64 / count;
+        for axis in 0..2 {
+            place[axis] += (stated_m[axis] - end[axis]) * part * part;
+        }
+    }
 }
 
 /// A drive in progress: north, east, down.

@@ -28,14 +28,15 @@ impl Finished for Replay {
         let states = Columns::of("States that were met", &self.states)
             .column("state", |met| met.state)
             .fixed("time, s", 2, |met| met.seconds);
-        let lines = [Some(self.lines(biases)), errors.as_ref().map(of_errors)];
-        let parts = lines.into_iter().flatten().map(Part::from).chain([states.into()]).collect();
+        let parts = errors.as_ref().map(of_errors).into_iter().map(Part::from).chain([Part::from(states).detail()]).collect();
         Outcome {
             sigma_deg: is_found.then(|| last.level_sigma.degrees()),
             pitch_deg: is_found.then(|| last.pitch.degrees()),
             roll_deg: is_found.then(|| last.roll.degrees()),
             seconds: self.seconds,
             assumed: self.assumed.clone(),
+            facts: self.lines(biases).lines,
+            found: is_found.then(|| self.level()),
             ..Outcome::new("vertical", details, parts)
         }
         .settled(self.refusal.clone())
@@ -45,13 +46,13 @@ impl Finished for Replay {
         ["Pitch and roll kept in", "No pitch and roll from"]
     }
 
-    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Figure> {
+    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Part> {
         let mut page = match Errors::of(&self.moments, &truth.attitude) {
             Some(errors) => vec![inclination(&errors.off), heading(&errors.off)],
             None => vec![sigma(&self.moments)],
         };
         page.extend([level(&self.moments), biases(&self.moments)]);
-        page
+        page.into_iter().map(Part::from).collect()
     }
 
     fn attitude(&self) -> Option<&[Moment]> {
@@ -64,15 +65,20 @@ impl Finished for Replay {
 }
 
 impl Replay {
+    /// Pitch and roll at the end, in words.
+    fn level(&self) -> [String; 2] {
+        let [pitch, roll] =
+            [self.last.pitch, self.last.roll].map(|angle| positive_zero(angle.degrees(), 5e-5));
+        let sigma = self.last.level_sigma.degrees();
+        let words = format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)");
+        ["pitch, roll".to_owned(), words]
+    }
+
     fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
-        let (last, is_found) = (&self.last, self.refusal.is_none());
-        let [pitch, roll, turned] = [last.pitch.0, last.roll.0, self.turned]
-            .map(|angle| positive_zero(degrees(angle), 5e-5));
-        let sigma = last.level_sigma.degrees();
-        let level = is_found.then(|| format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
+        let last = &self.last;
+        let turned = positive_zero(degrees(self.turned), 5e-5);
         let beyond = "five of the 1σ stated or assumed, which are not believed any more";
         Lines::default()
-            .with_found("pitch, roll", level)
             .with("turned", format!("{turned:+.4}° about the vertical since the beginning"))
             .with("gyro biases", of_biases(biases_dph, 1))
             .with_found("  beyond", last.is_bias_beyond_stated.then_some(beyond))

@@ -6,35 +6,49 @@ use orientation::noise::fit::Estimate;
 use super::super::degrees_per_hour;
 use super::{Coefficient, coefficients, short};
 use crate::allan::analysis::{Analysis, Confident};
-use crate::report::{Axis, Columns, Figure, Part, Point, Series, Style};
+use crate::report::{Axis, Columns, Figure, Note, Part, Point, Series, Style};
 
 /// Beyond so many times the least and the greatest deviation no asymptote is drawn.
 const HEADROOM: f64 = 2.0;
 /// Places along a curve.
 const PLACES: u32 = 100;
 
-/// The curve, then all numbers.
-pub(super) fn parts(analysis: &Analysis) -> [Part; 3] {
-    [figure(analysis).into(), coefficient_table(analysis), point_table(analysis)]
+/// Degrees of freedom below which a point says little.
+const FEW_DEGREES: f64 = 8.0;
+
+/// The curve; all its numbers where everything is asked for.
+pub(super) fn parts(analysis: &Analysis) -> [Part; 2] {
+    [figure(analysis).into(), point_table(analysis).detail()]
 }
 
 fn figure(analysis: &Analysis) -> Figure {
-    let points = || analysis.points.iter();
-    let measured = || points().map(|point| (point.seconds, degrees_per_hour(point.deviation)));
-    let limits = points().map(|point| point.limits.map(degrees_per_hour));
-    let band = measured().zip(limits).map(|((x, y), limits)| Point { x, y, limits: Some(limits) });
     let noise = analysis.fit.noise();
     let fitted = times(analysis).map(|tau| (tau, degrees_per_hour(variance(&noise, tau).sqrt())));
     let mut series = vec![
-        Series::new("limits of 68.3 %", Style::Band, band),
-        Series::new("overlapping Allan deviation", Style::Points, measured()),
+        Series::new("limits of 68.3 %", Style::Band, analysis.points.iter().map(point)),
+        Series::new("overlapping Allan deviation", Style::Points, known(analysis, true)),
+        Series::new("fewer than 8 degrees of freedom", Style::Pale, known(analysis, false)),
         Series::new("fit", Style::Line, fitted),
     ];
-    series.extend(asymptotes(analysis));
-    let title = "Allan deviation";
+    series.retain(|series| !series.points.is_empty());
+    let asymptotes: Vec<Asymptote> = asymptotes(analysis).collect();
+    series.extend(asymptotes.iter().map(Asymptote::series));
+    let notes = asymptotes.iter().filter_map(Asymptote::note);
     let (x, y) =
         (Axis::logarithmic("averaging time τ", "s"), Axis::logarithmic("Allan deviation σ", "°/h"));
-    Figure::new(title, x, y, series)
+    Figure::new("Allan deviation", x, y, series).noted(notes)
+}
+
+/// A point with its limits, °/h.
+fn point(point: &Confident) -> Point {
+    let limits = Some(point.limits.map(degrees_per_hour));
+    Point { x: point.seconds, y: degrees_per_hour(point.deviation), limits }
+}
+
+/// The points that are well known, or the others.
+fn known(analysis: &Analysis, is_well: bool) -> impl Iterator<Item = (f64, f64)> {
+    let chosen = analysis.points.iter().filter(move |at| (at.degrees >= FEW_DEGREES) == is_well);
+    chosen.map(|at| (at.seconds, degrees_per_hour(at.deviation)))
 }
 
 /// Averaging times, equally far apart in ratio, over all of the record.
@@ -44,8 +58,36 @@ fn times(analysis: &Analysis) -> impl Iterator<Item = f64> {
     (0..=PLACES).map(move |i| first * (last / first).powf(f64::from(i) / f64::from(PLACES)))
 }
 
-/// What each coefficient alone would give, within the figure.
-fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
+/// What a coefficient alone would give, within the figure.
+struct Asymptote {
+    coefficient: Coefficient,
+    curve: Vec<(f64, f64)>,
+}
+
+/// Slopes of Q, N, B, K and R in both logarithms (IEEE Std 952-1997, annex C).
+const SLOPES: [&str; 5] = ["−1", "−½", "0", "+½", "+1"];
+
+impl Asymptote {
+    /// Broken where the record shows the coefficient, dotted where it is only an upper limit.
+    fn series(&self) -> Series {
+        let is_found = matches!(self.coefficient.si, Estimate::Found { .. });
+        let style = if is_found { Style::Dashed } else { Style::Dotted };
+        let name = format!("{}: {}", self.coefficient.name, self.coefficient.text());
+        Series::new(&name, style, self.curve.iter().copied())
+    }
+
+    /// The coefficient's letter and its slope at a place of the line.
+    fn note(&self) -> Option<Note> {
+        let letter = self.coefficient.name.chars().next()?;
+        let slope = SLOPES[["Q", "N", "B", "K", "R"].iter().position(|it| it.starts_with(letter))?];
+        let place = if letter == 'N' || letter == 'Q' { 1 } else { self.curve.len() * 4 / 5 };
+        let (x, y) = *self.curve.get(place)?;
+        let most = if matches!(self.coefficient.si, Estimate::Found { .. }) { "" } else { " at most" };
+        Some(Note { x, y, text: format!("{letter}{most}, slope {slope}") })
+    }
+}
+
+fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Asymptote> {
     let deviations = analysis.points.iter().map(|point| degrees_per_hour(point.deviation));
     let low = deviations.clone().fold(f64::INFINITY, f64::min) / HEADROOM;
     let high = deviations.fold(0.0, f64::max) * HEADROOM;
@@ -54,17 +96,10 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
             coefficient.si;
         let curve = times(analysis)
             .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
-            .filter(|(_, deviation)| (low..high).contains(deviation));
-        let name = format!("{}: {}", coefficient.name, coefficient.text());
-        Series::new(&name, Style::Dashed, curve)
+            .filter(|(_, deviation)| (low..high).contains(deviation))
+            .collect();
+        Asymptote { coefficient, curve }
     })
-}
-
-fn coefficient_table(analysis: &Analysis) -> Part {
-    Columns::of("Coefficients (± 1σ)", &coefficients(&analysis.fit))
-        .column("coefficient", |coefficient| coefficient.name)
-        .column("value", Coefficient::text)
-        .into()
 }
 
 fn point_table(analysis: &Analysis) -> Part {

@@ -3,9 +3,8 @@
 pub mod page;
 
 use orientation::planner::FEWEST;
-use orientation::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
-use super::degrees;
+use super::{degrees, noise_in_words};
 use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
 use crate::report::{Lines, Part, Report};
 
@@ -59,28 +58,13 @@ fn optimum(planned: &Planned) -> Lines {
 }
 
 fn asked(request: &Request) -> Lines {
-    let noise = &request.noise;
-    let [n, b, k, r, q] = [
-        noise.angle_random_walk.0 / DEGREE_PER_SQRT_HOUR,
-        noise.bias_instability.degrees_per_hour(),
-        noise.rate_random_walk.0 / DEGREE_PER_HOUR * 60.0,
-        noise.rate_ramp.0 / DEGREE_PER_HOUR * 3600.0,
-        noise.quantisation.0 / ARCSECOND,
-    ]
-    .map(rounded);
     let wanted = match request.wanted {
         Wanted::Seconds(seconds) => format!("the best in {seconds} s"),
         Wanted::Sigma(sigma) => format!("the least time for {:.4}° (1σ)", degrees(sigma)),
     };
     Lines::default()
-        .with("gyro", format!("N {n} °/√h, B {b} °/h, K {k} °/h/√h, R {r} °/h², Q {q}″"))
+        .with("gyro", noise_in_words(&request.noise, true))
         .with("latitude", format!("{:.4}°", degrees(request.latitude.rad())))
         .with("rotation", format!("{} s", request.rotation))
         .with("wanted", wanted)
-}
-
-/// Six digits are enough of what was typed in.
-fn rounded(value: f64) -> f64 {
-    let scale = 10.0_f64.powi(6 - value.abs().max(1e-12).log10().ceil() as i32);
-    (value * scale).round() / scale
 }

@@ -8,7 +8,7 @@
 use heapless::Vec;
 
 use super::criterion::{self, Criterion};
-use super::fit::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
+use super::fit::{FEW_DEGREES, Fit, Found, HeadingStep, Prediction, Problem, Residual};
 use super::quality::{self, Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::tilt::Tilt;
@@ -344,6 +344,14 @@ impl Conclusion {
         let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
         let problem = self.problem(setting, &kept);
         [problem.slow_turn(fit), problem.slow_tilting(fit)]
+    }
+
+    /// Passes to `each` what the fit predicts of each dwell that took part, in their order; nothing
+    /// without a fit.
+    pub fn predictions(&self, setting: &Setting, dwells: &[Dwell], each: impl FnMut(Prediction)) {
+        let Some(fit) = &self.fit else { return };
+        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).collect();
+        self.problem(setting, &kept).predictions(fit, each);
     }
 
     /// Azimuth by the chosen criterion, within the required σ.

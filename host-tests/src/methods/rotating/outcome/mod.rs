@@ -1,6 +1,8 @@
 //! Continuous rotation: what an alignment on a platform that turns all the time found.
 
 pub(crate) mod figures;
+mod fold;
+mod progress;
 
 use std::f64::consts::TAU;
 
@@ -17,10 +19,10 @@ use crate::methods::asked::Question;
 use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::recording::{Body, RotatingRow, Truth};
-use crate::report::{Columns, Figure, Lines, Part};
+use crate::report::{Columns, Lines, Part};
 
 /// A turn of the platform, with what the mean of its stretch leaves of it.
 #[derive(Clone, Debug, Serialize)]
@@ -239,12 +241,14 @@ impl Finished for Replay {
         let left_out = averages(conclusion).filter(|average| average.left_out > 0);
         let stages = fit.map(table_of_stages);
         let parts = [self.lines(conclusion).into()].into_iter().chain(stages);
-        let parts = parts.chain([table_of_stretches(conclusion)]).collect();
+        let parts = parts.chain([table_of_stretches(conclusion)]).map(Part::detail).collect();
+        let seconds = averages(conclusion).map(|average| average.seconds).sum();
+        let time = format!("{seconds:.1} s in {turns} turns");
         Outcome {
             limit_deg: self.limits_deg(conclusion).map(|[limit, _]| limit),
             pitch_deg: attitude.map(|[pitch, _]| pitch),
             roll_deg: attitude.map(|[_, roll]| roll),
-            seconds: averages(conclusion).map(|average| average.seconds).sum(),
+            seconds,
             fit: Some(FitDetails {
                 earth_rate_ratio: flat.map(|fit| fit.ratio),
                 earth_rate_ratio_sigma: flat.map(|fit| fit.ratio_sigma),
@@ -253,14 +257,17 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
             }),
             assumed: self.assumed.clone(),
+            circumstances: of_site(&self.session.setting.site).with("time", time).lines,
             ..Outcome::new("rotating", self.details(conclusion), parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn figures(&self, _: &Outcome, _: &Truth, body: Option<&Body>) -> Vec<Figure> {
+    fn figures(&self, _: &Outcome, truth: &Truth, body: Option<&Body>) -> Vec<Part> {
         match (self.session.conclusion(), body) {
-            (Some(conclusion), Some(Body::Rotating(rows))) => figures(self, conclusion, rows),
+            (Some(conclusion), Some(Body::Rotating(rows))) => {
+                figures(self, conclusion, rows, truth.azimuth_deg)
+            }
             _ => Vec::new(),
         }
     }
@@ -316,22 +323,23 @@ fn table_of_stretches(conclusion: &Conclusion) -> Part {
         .into()
 }
 
-/// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
-fn figures(replay: &Replay, conclusion: &Conclusion, rows: &[RotatingRow]) -> Vec<Figure> {
+/// The fold with what the solution leaves, how the azimuth came to stand, what was done when; then spectra of every part
+/// as it came and freed of the axis misalignment, and the phasors of its turns.
+fn figures(replay: &Replay, conclusion: &Conclusion, rows: &[RotatingRow], truth_deg: Option<f64>) -> Vec<Part> {
     let without = match conclusion.misalignments.first() {
         Some(found) => freed(rows, found.sine, found.quadrature.0),
         None => rows.to_vec(),
     };
     let (parts, freed) = (replay.parts(rows), replay.parts(&without));
-    let mut page = Vec::new();
+    let mut page: Vec<Part> = fold::figures(conclusion, &freed).map(Part::from).into();
+    page.extend(progress::convergence(replay, rows, truth_deg).into_iter().map(Part::from));
+    page.push(progress::timeline(replay).into());
     for (part, freed) in parts.iter().zip(&freed) {
-        if !part.is_even {
-            page.push(figures::profile(part));
-        }
-        page.push(figures::spectra(part, freed));
+        let profile = (!part.is_even).then(|| figures::profile(part).into());
+        page.extend(profile.into_iter().chain([figures::spectra(part, freed).into()]));
     }
-    page.push(figures::platform(&parts));
-    page.push(figures::plane(&freed));
-    page.push(figures::residuals(&replay.turns(conclusion)));
+    let turns = replay.turns(conclusion);
+    let last = [figures::platform(&parts), figures::plane(&freed), figures::residuals(&turns)];
+    page.extend(last.map(Part::from));
     page
 }

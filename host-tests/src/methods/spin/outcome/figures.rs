@@ -1,14 +1,19 @@
 //! Figures of a spinning body over the time.
 
+use orientation::roll::{Condition, State};
+
 use crate::methods::spin::errors::Errors;
 use crate::methods::spin::track::{Point, Track};
 use crate::methods::spin::{Replay, name};
 use crate::output::degrees;
 use crate::recording::Truth;
-use crate::report::{self, Axis, Figure, Series, Style};
+use crate::report::{self, Axis, Figure, Kind, Lane, Series, Stretch, Style, Timeline};
 
 /// Length of the fragment between corrections, s: the paper's Fig. 8.
 const FRAGMENT_S: f64 = 0.03;
+
+/// What a lock takes to settle, s: errors before are not counted.
+const SETTLED_S: f64 = 0.1;
 
 /// Roll errors of the methods over the time, then a fragment at the end; none without the truth.
 pub(crate) fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
@@ -17,10 +22,30 @@ pub(crate) fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
     let fragment = figure(
         replay,
         truth,
-        "The same between corrections (Fig. 8)",
+        "The same between corrections (Nekrasova 2017, Fig. 8)",
         (end_s - FRAGMENT_S).max(0.0),
     );
     [whole, fragment].into_iter().flatten().collect()
+}
+
+/// Error of the answer within its σ, after the first tenth of a second; none without the truth.
+pub(crate) fn error(replay: &Replay, truth: &Truth) -> Option<Figure> {
+    let answer = replay.answer();
+    let errors = Errors::of(answer, &truth.roll_rad)?;
+    let all: Vec<(f64, f64, f64)> = answer
+        .over_time(&errors.wrapped_rad)
+        .into_iter()
+        .zip(&answer.sigmas_rad)
+        .map(|((time_s, error), sigma)| (time_s, error, degrees(*sigma)))
+        .filter(|(time_s, _, sigma)| *time_s >= SETTLED_S && sigma.is_finite())
+        .collect();
+    let band = |(time_s, _, sigma): &(f64, f64, f64)| report::Point::within(*time_s, 0.0, *sigma);
+    let series = [
+        Series::thinned("±1σ", Style::Band, &all, band),
+        Series::thinned("error", Style::Line, &all, |(time_s, error, _)| (*time_s, *error)),
+    ];
+    let title = "Error of the roll by phase lock, and its stated 1σ";
+    Some(Figure::over_time(title, ["roll error", "°"], series))
 }
 
 fn figure(replay: &Replay, truth: &Truth, title: &str, from_s: f64) -> Option<Figure> {
@@ -76,4 +101,26 @@ pub(crate) fn scale(replay: &Replay) -> Figure {
     ];
     let title = "Scale error of the gyro, after the first twentieth";
     Figure::over_time(title, ["gyro/true − 1", ""], series)
+}
+
+/// What the phase lock did when.
+pub(crate) fn timeline(answer: &Track) -> Timeline {
+    let ends = answer.states.iter().skip(1).map(|(from_s, _)| *from_s);
+    let ends = ends.chain([answer.end.time_s]);
+    let stretch = |((from_s, state), to_s): (&(f64, State), f64)| Stretch {
+        from_s: *from_s,
+        to_s,
+        kind: kind(state.condition),
+        words: state.to_string(),
+    };
+    let spans = answer.states.iter().zip(ends).map(stretch);
+    Timeline::of(vec![Lane::new("phase lock", spans)])
+}
+
+fn kind(condition: Condition) -> Kind {
+    match condition {
+        Condition::Locked => Kind::Used,
+        Condition::Searching | Condition::Holding | Condition::NotSpinning => Kind::Between,
+        _ => Kind::Wrong,
+    }
 }

@@ -13,7 +13,7 @@ use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome};
 use crate::output::degrees;
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Figure, Lines, Part, Table};
+use crate::report::{Columns, Lines, Part, Table};
 
 /// A method on the samples.
 #[derive(Clone, Debug, Serialize)]
@@ -91,20 +91,24 @@ impl Finished for Replay {
             ..Outcome::new("spin", self.details(&methods, is_ok), Vec::new())
         };
         let parts = vec![
-            lines(self, &outcome).into(),
-            table(&methods, self.limit_rms_deg()).into(),
-            states(answer),
+            Part::from(table(&methods, self.limit_rms_deg())).detail(),
+            states(answer).detail(),
         ];
-        Outcome { parts, ..outcome }.settled(reason)
+        let found = at_end(self, outcome.sigma_deg);
+        let facts = facts(self, &outcome).lines;
+        Outcome { parts, found, facts, ..outcome }.settled(reason)
     }
 
     fn titles(&self) -> [&'static str; 2] {
         ["Roll of the spinning body in", "No roll at the end of"]
     }
 
-    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Figure> {
-        let mut page = figures::errors(self, truth);
-        page.extend([figures::sigmas(self, truth), figures::lift(self), figures::scale(self)]);
+    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Part> {
+        let answer = figures::error(self, truth).into_iter().chain([figures::sigmas(self, truth)]);
+        let mut page: Vec<Part> = answer.map(Part::from).collect();
+        page.push(figures::timeline(self.answer()).into());
+        let others = [figures::scale(self), figures::lift(self)].into_iter();
+        page.extend(others.chain(figures::errors(self, truth)).map(Part::from));
         page
     }
 }
@@ -116,26 +120,31 @@ fn states(answer: &Track) -> Part {
         .into()
 }
 
-fn lines(replay: &Replay, outcome: &Outcome) -> Lines {
+/// The roll at the last sample, in words; none where there is none.
+fn at_end(replay: &Replay, sigma_deg: Option<f64>) -> Option<[String; 2]> {
+    let angle = degrees(replay.answer().end.roll_rad.rem_euclid(TURN));
+    let words = |sigma: f64| format!("{angle:.5}° ± {sigma:.5}° (1σ)");
+    sigma_deg.map(|sigma| ["roll at the end".to_owned(), words(sigma)])
+}
+
+/// What else is said first.
+fn facts(replay: &Replay, outcome: &Outcome) -> Lines {
     let (end, noise) = (&replay.answer().end, replay.noise.force);
-    let (roll, turns) = (end.roll_rad, (end.roll_rad / TURN).floor());
-    let angle = degrees(roll - turns * TURN);
-    let at_end = outcome
-        .sigma_deg
-        .map(|sigma| format!("{turns} turns and {angle:.5}° ± {sigma:.5}° (1σ); {roll:.6} rad"));
     let truth = outcome
         .sigma_deg
         .zip(outcome.error_deg)
         .map(|(sigma, error)| format!("the error is {error:+.5}°, {:+.2} σ", error / sigma));
+    let whole = (end.roll_rad / TURN).floor();
+    let turns = format!("{whole} since the beginning: {:.6} rad in all", end.roll_rad);
     let scale = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
     Lines::default()
-        .with_found("roll at the end", at_end)
+        .with_found("turns", outcome.sigma_deg.map(|_| turns))
         .with_found("truth", truth)
         .with_found("limit", outcome.limit_deg.map(|limit| format!("{limit:.5}° (Cramér–Rao)")))
         .with("state", end.state.to_string())
         .with_found("lift", end.lift.map(|lift| format!("{lift:.3} m/s²")))
         .with_found("gyro's scale error", end.scale.map(scale))
-        .with("force noise", format!("{noise:.2e} m/s² a sample, as the turns show it"))
+        .with("force noise", format!("{noise:.4} m/s² a sample, as the turns show it"))
 }
 
 fn table(methods: &[MethodDetails], limit_rms_deg: Option<f64>) -> Table {

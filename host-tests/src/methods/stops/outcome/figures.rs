@@ -1,16 +1,13 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
 //! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
 
-use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::plain::Plain;
 use orientation::earth::Latitude;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{Seconds, wrapped};
 
-use super::plain_azimuths;
 use crate::methods::stops::Replay;
-use crate::outcome::Outcome;
-use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::output::{degrees, degrees_per_hour};
 use crate::report::{Axis, Figure, Point, Series, Style};
 
 /// Places along a curve.
@@ -18,20 +15,6 @@ const PLACES: i32 = 240;
 /// How far around the minimum the narrow figure of U reaches, in σ of the paper's method, and at least, °.
 const REACH_SIGMAS: f64 = 4.0;
 const LEAST_REACH_DEG: f64 = 0.02;
-
-/// The azimuths at the end by both methods; none where there is neither.
-pub(crate) fn azimuths(outcome: &Outcome, found: Option<&Found>) -> Option<Figure> {
-    let full = outcome.azimuth_deg.zip(outcome.sigma_deg);
-    let plain = found.map(|found| (plain_azimuths(found)[0], found.plain.sigma.degrees()));
-    let (near, _) = full.or(plain)?;
-    let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
-    let series = series.into_iter().filter_map(|(name, at, found)| {
-        let (angle, sigma) = found?;
-        let point = Point::within(at, near + azimuth_error(angle, near), sigma);
-        Some(Series::new(name, Style::Points, [point]))
-    });
-    Some(Figure::new("Azimuth at the end, with 1σ", ["method", ""], ["azimuth", "°"], series))
-}
 
 /// U over the whole circle, and near its minimum.
 pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
@@ -41,7 +24,7 @@ pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
     let near: Vec<f64> = (-PLACES..=PLACES).map(|i| minimum + reach * part(i)).collect();
     let circle: Vec<f64> = (0..=PLACES).map(|i| 360.0 * part(i)).collect();
     [
-        inclination(plain, "U over the azimuth at the start (Fig. 9)", &circle),
+        inclination(plain, "U over the azimuth at the start (Szymanowski 2003, Fig. 9)", &circle),
         inclination(plain, "U near its minimum", &near),
     ]
 }
@@ -71,8 +54,8 @@ pub(crate) fn criteria(replay: &Replay) -> Vec<Figure> {
     };
     let force = |criteria: &Criteria, limits: &Limits| [criteria.force.0, limits.force.0];
     vec![
-        criterion(replay, ["Kryt1 = Ω − |ω| (Fig. 6)", "|Kryt1|", "°/h"], rate),
-        criterion(replay, ["Kryt2 = g − |f| (Fig. 7)", "|Kryt2|", "m/s²"], force),
+        criterion(replay, ["Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)", "|Kryt1|", "°/h"], rate),
+        criterion(replay, ["Kryt2 = g − |f| (Szymanowski 2003, Fig. 7)", "|Kryt2|", "m/s²"], force),
     ]
 }
 
@@ -91,12 +74,8 @@ fn criterion(
     let sizes = || values.iter().map(|(_, [size, _])| *size).filter(|size| *size > 0.0);
     let [low, high] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)];
     let mut series = vec![
-        Series::new(label, Style::Line, values.iter().map(|(time, [size, _])| (*time, *size))),
-        Series::new(
-            "threshold",
-            Style::Dashed,
-            values.iter().map(|(time, [_, limit])| (*time, *limit)),
-        ),
+        Series::thinned(label, Style::Line, &values, |(time, [size, _])| (*time, *size)),
+        Series::thinned("threshold", Style::Dashed, &values, |(time, [_, limit])| (*time, *limit)),
     ];
     series.extend(replay.session.stops().iter().enumerate().map(|(index, stop)| {
         let edge =
@@ -126,6 +105,6 @@ pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) ->
         let of = |error: f64| degrees_per_hour(at(error) / seconds);
         Series::new("U of this drive over its time", Style::Dashed, over(&of))
     }));
-    let title = "Rate errors and W over the heading error δ (Figs. 4 and 5)";
+    let title = "Rate errors and W over the heading error δ (Szymanowski 2003, Figs. 4 and 5)";
     Figure::new(title, ["heading error δ", "°"], ["rate", "°/h"], series)
 }

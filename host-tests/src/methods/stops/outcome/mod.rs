@@ -1,6 +1,7 @@
 //! Static initial azimuth update from the stops of a vehicle, and inertial-frame alignment of one that stands.
 
 pub(crate) mod figures;
+mod progress;
 
 use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::inclination::pitch_and_roll;
@@ -11,9 +12,9 @@ use serde::Serialize;
 
 use crate::cause;
 use crate::methods::asked::Question;
-use crate::methods::stops::Replay;
+use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site};
 use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
@@ -172,12 +173,14 @@ impl Finished for Replay {
         let stops = self.session.stops();
         let (details, lines) = self.details(found, conclusion.verdict.is_ok(), truth);
         let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
-        let parts = lines.chain([table(&self.stops())]).collect();
+        let parts = lines.chain([table(&self.stops())]).map(Part::detail).collect();
+        let seconds = stops.iter().map(|stop| stop.seconds().0).sum();
+        let time = format!("{seconds:.1} s in {} stops", stops.len());
         Outcome {
             limit_deg: found.filter(|_| is_noise_known).map(|found| found.limit.degrees()),
             pitch_deg: found.map(|found| found.level[0].degrees()),
             roll_deg: found.map(|found| found.level[1].degrees()),
-            seconds: stops.iter().map(|stop| stop.seconds().0).sum(),
+            seconds,
             fit: Some(FitDetails {
                 earth_rate_ratio: found.map(|found| found.plain.ratio),
                 earth_rate_ratio_sigma: found.map(|found| found.plain.ratio_sigma),
@@ -186,14 +189,38 @@ impl Finished for Replay {
                 ..FitDetails::of(found.map(|found| &found.budget), stops.len())
             }),
             assumed: self.assumed.clone(),
+            circumstances: of_site(&self.session.setting.site).with("time", time).lines,
             ..Outcome::new(self.method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Figure> {
+    fn figures(&self, _: &Outcome, truth: &Truth, body: Option<&Body>) -> Vec<Part> {
         let found = self.session.conclusion().and_then(|conclusion| conclusion.found.as_ref());
-        let mut page = Vec::from_iter(figures::azimuths(outcome, found));
+        let rows = body.and_then(samples::rows);
+        let rows = rows.as_deref().unwrap_or_default();
+        let mut page = Vec::new();
+        if let Some(found) = found {
+            page.extend(progress::track(self, rows, found).into_iter().map(Part::from));
+            page.extend(progress::residuals(self, &self.stops()).map(Part::from));
+            let convergence = progress::convergence(self, rows, found, truth.azimuth_deg);
+            page.extend(convergence.into_iter().map(Part::from));
+        }
+        page.push(progress::timeline(self).into());
+        page.extend(self.paper(found).into_iter().map(Part::from));
+        page
+    }
+
+    fn cause(&self, of: &Question) -> Option<String> {
+        let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
+        cause::of_vehicle(of, refusal)
+    }
+}
+
+impl Replay {
+    /// The figures of Szymanowski 2003.
+    fn paper(&self, found: Option<&Found>) -> Vec<Figure> {
+        let mut page = Vec::new();
         if let Some(Found { plain, .. }) = found {
             page.extend(figures::inclinations(plain));
             let latitude = self.session.setting.site.latitude;
@@ -202,11 +229,6 @@ impl Finished for Replay {
         }
         page.extend(figures::criteria(self));
         page
-    }
-
-    fn cause(&self, of: &Question) -> Option<String> {
-        let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
-        cause::of_vehicle(of, refusal)
     }
 }
 

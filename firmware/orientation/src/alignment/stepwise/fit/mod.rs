@@ -134,6 +134,17 @@ pub struct Residual {
     pub studentised: f64,
 }
 
+/// What a fit and the dwells before say of one dwell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// Rate that the whole model gives: Earth rate, tilt, constant, trends, and the drift that the
+    /// dwells before show.
+    pub rate: RadiansPerSecond,
+    /// Standard deviation of the dwell's own noise about it, 1σ: white noise, and drift that no
+    /// dwell before shows.
+    pub sigma: RadiansPerSecond,
+}
+
 /// Dwells of an alignment with everything that their fit needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
@@ -261,6 +272,36 @@ impl Problem<'_> {
             let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
             each(Residual { rate: RadiansPerSecond(rate), normalised, studentised });
         });
+    }
+
+    /// Passes to `each` what the fit predicts of each dwell, in their order.
+    pub(super) fn predictions(&self, fit: &Fit, mut each: impl FnMut(Prediction)) {
+        let horizontal = self.setting.site.latitude.horizontal_rate();
+        let model = self.setting.site.noise.model();
+        let bent = fit.bent(fit.model.hypothesis);
+        let mut dwells = self.dwells.iter();
+        // A filter that has only seen zeros predicts zero, so what it makes of a one is the weight.
+        let mut quiet = self.whitener(model);
+        self.whiten(model, taper_of, &bent, &mut |_, white| {
+            let Some(dwell) = dwells.next() else { return };
+            let weight = self.weight(&mut quiet, dwell);
+            let sigma = horizontal.0 / weight;
+            let innovation = remainder(white, &fit.coefficients) * sigma;
+            let rate = RadiansPerSecond(dwell.rate.0 - innovation);
+            each(Prediction { rate, sigma: RadiansPerSecond(sigma) });
+        });
+    }
+
+    /// Weight of a dwell in the whitened rows, in units of 1/`Ω_h`, by a filter that takes nothing
+    /// but zeros.
+    fn weight(&self, quiet: &mut Whitener<{ COLUMNS + 1 }>, dwell: &Dwell) -> f64 {
+        let rate = self.setting.site.latitude.horizontal_rate();
+        let white = self.own_variance(dwell) * taper_of(dwell) / (rate.0 * rate.0);
+        let (start, end) = (dwell.start().0, dwell.end().0);
+        let mut one = [1.0; COLUMNS + 1];
+        quiet.clone().whiten(start, end, white, &mut one);
+        quiet.whiten(start, end, white, &mut [0.0; COLUMNS + 1]);
+        one[0]
     }
 
     /// Row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and the

@@ -3,17 +3,16 @@
 //! A *place* is a value on a linear axis and its decimal logarithm on a logarithmic one, so that
 //! places are drawn alike.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
-use super::Scale;
+use crate::report::{Axis, Scale};
 
 /// The part of its reach that an axis leaves free at each end.
 const MARGIN: f64 = 0.03;
 
 /// Ticks that an axis bears at most.
 const TICKS: f64 = 8.0;
+
+/// Ticks that a logarithmic axis bears at least.
+const FEWEST_TICKS: usize = 3;
 
 /// Decades over which the lines between powers of ten can still be distinguished.
 const FINE_DECADES: f64 = 7.0;
@@ -29,11 +28,13 @@ pub(super) struct Span {
     /// Greatest value of the axis.
     pub high: f64,
     /// Where a tick with its number stands.
-    major: Vec<f64>,
+    pub major: Vec<f64>,
     /// Where a faint line stands.
-    minor: Vec<f64>,
+    pub minor: Vec<f64>,
     scale: Scale,
     step: f64,
+    /// Whether the ticks of a logarithmic axis are multiples of powers of ten.
+    is_in_powers: bool,
 }
 
 /// The place of a value: minus infinity for what a logarithmic axis cannot show, being too low.
@@ -46,36 +47,80 @@ pub(super) fn place(scale: Scale, value: f64) -> f64 {
 }
 
 impl Span {
-    /// An axis for these places; `None` where none is finite.
-    pub fn new(scale: Scale, places: impl Iterator<Item = f64>) -> Option<Self> {
+    /// An axis for these places, or as far as it is told to reach; `None` where no place is finite.
+    pub fn of(axis: &Axis, places: impl Iterator<Item = f64>) -> Option<Self> {
         let finite = places.filter(|place| place.is_finite());
         let reach = |[low, high]: [f64; 2], place| [f64::min(low, place), f64::max(high, place)];
         let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], reach);
         if low > high {
             return None;
         }
+        if let Some(reach) = axis.reach {
+            let [low, high] = reach.map(|value| place(axis.scale, value));
+            return Some(Self::between(axis.scale, low, high));
+        }
         let width = high - low;
-        let margin = if width > 0.0 { MARGIN * width } else { half_width(scale, low) };
-        Some(Self::between(scale, low - margin, high + margin))
+        let margin = if width > 0.0 { MARGIN * width } else { half_width(axis.scale, low) };
+        Some(Self::between(axis.scale, low - margin, high + margin))
+    }
+
+    /// Widens the shorter of two axes about its middle until a unit is as long on both, in a square.
+    pub fn match_units(x: &mut Self, y: &mut Self) {
+        let width = (x.high - x.low).max(y.high - y.low);
+        for span in [x, y] {
+            let middle = 0.5 * (span.low + span.high);
+            *span = Self::between(span.scale, middle - 0.5 * width, middle + 0.5 * width);
+        }
+    }
+
+    /// Where a place lies between the ends, from 0 to 1.
+    pub fn part(&self, place: f64) -> f64 {
+        (place - self.low) / (self.high - self.low)
+    }
+
+    /// Whether zero lies inside a linear axis.
+    pub fn crosses_zero(&self) -> bool {
+        self.scale == Scale::Linear && self.low < 0.0 && self.high > 0.0
+    }
+
+    /// The number at a tick.
+    pub fn label(&self, place: f64) -> String {
+        match self.scale {
+            Scale::Linear => self.linear_label(place),
+            Scale::Logarithmic if self.is_in_powers => logarithmic_label(place),
+            Scale::Logarithmic => self.linear_label(10_f64.powf(place)),
+        }
     }
 
     /// An axis that reaches so far.
     fn between(scale: Scale, low: f64, high: f64) -> Self {
         let step = round_step((high - low) / TICKS);
-        let mut span = Self { low, high, major: Vec::new(), minor: Vec::new(), scale, step };
-        let is_wide = high.floor() > low.ceil();
-        if scale == Scale::Logarithmic && is_wide {
-            span.step = span.step.max(1.0).ceil();
+        let (major, minor) = (Vec::new(), Vec::new());
+        let span = Self { low, high, major, minor, scale, step, is_in_powers: false };
+        match scale {
+            Scale::Linear => Self { major: ticks(low, high, step), ..span },
+            Scale::Logarithmic => span.logarithmic(),
         }
-        span.major = if scale == Scale::Logarithmic && !is_wide {
-            span.multiples(&[1.0, 2.0, 5.0])
-        } else {
-            ticks(low, high, span.step)
-        };
-        if scale == Scale::Logarithmic && high - low <= FINE_DECADES {
-            span.minor = span.multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+    }
+
+    /// A logarithmic axis with its ticks: at powers of ten, at round multiples of them where it is short, at equal
+    /// differences where it is shorter.
+    fn logarithmic(mut self) -> Self {
+        if self.high - self.low <= FINE_DECADES {
+            self.minor = self.multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
         }
-        span
+        self.is_in_powers = true;
+        self.major = self.multiples(&[1.0, 2.0, 5.0]);
+        if self.high.floor() > self.low.ceil() {
+            self.step = self.step.max(1.0).ceil();
+            self.major = ticks(self.low, self.high, self.step);
+        } else if self.major.len() < FEWEST_TICKS {
+            let [low, high] = [self.low, self.high].map(|place| 10_f64.powf(place));
+            self.step = round_step((high - low) / TICKS);
+            self.is_in_powers = false;
+            self.major = ticks(low, high, self.step).into_iter().map(f64::log10).collect();
+        }
+        self
     }
 
     /// The places of these multiples of the powers of ten.
@@ -87,7 +132,7 @@ impl Span {
 
     /// As many decimal places as the step has.
     fn linear_label(&self, value: f64) -> String {
-        let largest = self.low.abs().max(self.high.abs());
+        let largest = value.abs().max(self.low.abs()).max(self.high.abs());
         let decimals = (-self.step.log10().floor()).max(0.0) as usize;
         // A tick at zero is often a rounding error away from it.
         let value = if value.abs() < self.step / 2.0 { 0.0 } else { value };
@@ -96,34 +141,6 @@ impl Span {
         }
         let digits = (largest / self.step).log10().ceil().max(0.0) as usize;
         format!("{value:.digits$e}")
-    }
-}
-
-impl Ranged for Span {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, place: &f64, (first, last): (i32, i32)) -> i32 {
-        let part = (place - self.low) / (self.high - self.low);
-        first + (f64::from(last - first) * part).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        let is_minor = hint.weight().allow_light_points();
-        if is_minor { self.minor.clone() } else { self.major.clone() }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for Span {
-    fn format_ext(&self, place: &f64) -> String {
-        match self.scale {
-            Scale::Linear => self.linear_label(*place),
-            Scale::Logarithmic => logarithmic_label(*place),
-        }
     }
 }
 

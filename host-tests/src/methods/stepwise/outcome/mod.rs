@@ -1,5 +1,7 @@
 //! Stepwise gyrocompassing and autocompensated positions: what an alignment at standstills found.
 
+mod figures;
+
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::fit::Fit;
 use orientation::alignment::stepwise::session::Session;
@@ -11,10 +13,10 @@ use crate::methods::asked::Question;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
 use crate::output::{columns, degrees, degrees_per_hour};
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
+use crate::report::{Columns, Lines, Part};
 
 /// A dwell, with what the fit leaves of it.
 #[derive(Clone, Debug, Serialize)]
@@ -99,6 +101,13 @@ impl Replay {
         }
     }
 
+    /// Place, gyro, and the time that took part.
+    fn circumstances(&self, kept: &[&Dwell]) -> Vec<[String; 2]> {
+        let seconds: f64 = kept.iter().map(|dwell| dwell.seconds.0).sum();
+        let time = format!("{seconds:.1} s in {} dwells", kept.len());
+        of_site(&self.session.setting.site).with("time", time).lines
+    }
+
     fn details(&self, conclusion: &Conclusion, dwells: &[DwellDetails]) -> Keys {
         let fit = conclusion.fit.as_ref();
         Keys::default()
@@ -160,7 +169,7 @@ impl Finished for Replay {
         let seen = fit.filter(|fit| !fit.model.is_single_axis);
         let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
         let details = DwellDetails::all(&self.session, conclusion);
-        let parts = vec![self.lines(conclusion).into(), table(&details)];
+        let parts = vec![Part::from(self.lines(conclusion)).detail(), table(&details).detail()];
         let dwells = self.session.dwells().iter().zip(&conclusion.disturbances);
         let kept: Vec<&Dwell> =
             dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
@@ -177,15 +186,22 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
+            circumstances: self.circumstances(&kept),
             ..Outcome::new(self.method, self.details(conclusion, &details), parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
-    fn figures(&self, _: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Figure> {
-        let conclusion = self.session.conclusion().filter(|conclusion| conclusion.fit.is_some());
-        let dwells = conclusion.map(|conclusion| DwellDetails::all(&self.session, conclusion));
-        dwells.map_or_else(Vec::new, |dwells| vec![rates(&dwells), residuals(&dwells)])
+    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Part> {
+        let Some(conclusion) = self.session.conclusion() else { return Vec::new() };
+        let timeline = figures::timeline(&self.session, conclusion).into();
+        let Some(fit) = &conclusion.fit else { return vec![timeline] };
+        let mut all: Vec<Part> =
+            figures::fit(&self.session, conclusion, fit).map(Part::from).into();
+        let convergence = figures::convergence(&self.session, truth.azimuth_deg);
+        all.extend(convergence.into_iter().map(Part::from));
+        all.push(timeline);
+        all
     }
 
     fn cause(&self, of: &Question) -> Option<String> {
@@ -203,35 +219,4 @@ fn positions(lines: Lines, found: &Autocompensation) -> Lines {
         format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth")
     });
     lines.with("positions", list.join(", ")).with_found("without weights", plain)
-}
-
-/// The rates over the stage angle, with what the whole model of the fit makes of each.
-fn rates(dwells: &[DwellDetails]) -> Figure {
-    let at = |dwell: &DwellDetails| (dwell.stage_deg, dwell.rate_deg_h);
-    let fitted =
-        |dwell: &DwellDetails| Some((dwell.stage_deg, dwell.rate_deg_h - dwell.residual_deg_h?));
-    let (kept, left_out): (Vec<_>, Vec<_>) =
-        dwells.iter().partition(|dwell| dwell.excluded.is_none());
-    let mut model: Vec<(f64, f64)> = kept.iter().filter_map(|dwell| fitted(dwell)).collect();
-    model.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut series = vec![
-        Series::new("the fit", Style::Line, model),
-        Series::new("dwells", Style::Points, kept.into_iter().map(at)),
-    ];
-    if !left_out.is_empty() {
-        series.push(Series::new("left out", Style::Points, left_out.into_iter().map(at)));
-    }
-    Figure::new("Mean rate of each dwell", ["stage angle", "°"], ["rate", "°/h"], series)
-}
-
-/// What the fit leaves of each dwell over time, with the 1σ that white noise gives the dwell.
-fn residuals(dwells: &[DwellDetails]) -> Figure {
-    let points = dwells.iter().filter_map(|dwell| {
-        let (residual, sigma) = (dwell.residual_deg_h?, dwell.sigma_deg_h);
-        let middle = dwell.from_s + 0.5 * dwell.seconds;
-        Some(Point::within(middle, residual, sigma))
-    });
-    let series = [Series::new("measured less fitted", Style::LineAndPoints, points)];
-    let title = "Residuals, drift included, with the 1σ of each dwell";
-    Figure::over_time(title, ["residual", "°/h"], series)
 }

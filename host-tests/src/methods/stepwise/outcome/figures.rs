@@ -1,0 +1,193 @@
+//! Figures of an alignment at standstills: the fit with all that it knows, what it leaves, and how the azimuth came to
+//! stand.
+
+use orientation::alignment::stepwise::conclusion::Conclusion;
+use orientation::alignment::stepwise::fit::{Fit, Prediction};
+use orientation::alignment::stepwise::session::Session;
+use orientation::signal::dwell::Dwell;
+use orientation::units::Radians;
+
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::report::{
+    Axis, Figure, Kind, Lane, Milestone, Point, Series, Shape, Stretch, Style, Timeline,
+    convergence as figures,
+};
+
+/// A dwell as figures show it.
+struct Shown<'a> {
+    dwell: &'a Dwell,
+    /// What the fit says of it; none of a dwell that was left out.
+    prediction: Option<Prediction>,
+    /// Where the axis of the figures begins, °.
+    zero_deg: f64,
+}
+
+impl Shown<'_> {
+    /// The stage angle on the figures' axis, °.
+    fn stage_deg(&self) -> f64 {
+        around(self.zero_deg, degrees(self.dwell.stage.rad()))
+    }
+
+    /// The mean rate with the 1σ of its own noise, as it is where the dwell was left out, °/h.
+    fn measured(&self) -> Point {
+        let (x, y) = (self.stage_deg(), degrees_per_hour(self.dwell.rate.0));
+        match self.prediction {
+            Some(prediction) => Point::within(x, y, degrees_per_hour(prediction.sigma.0)),
+            None => (x, y).into(),
+        }
+    }
+
+    /// What the fit leaves of the rate, with its 1σ, °/h.
+    fn residual(&self) -> Option<Point> {
+        let Prediction { rate, sigma } = self.prediction?;
+        let left = degrees_per_hour(self.dwell.rate.0 - rate.0);
+        Some(Point::within(self.stage_deg(), left, degrees_per_hour(sigma.0)))
+    }
+}
+
+/// The fit over the stage angle, and what it leaves of each dwell.
+pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Figure; 2] {
+    let dwells = shown(session, conclusion);
+    let kept = || dwells.iter().filter(|shown| shown.prediction.is_some());
+    let left_out: Vec<Point> =
+        dwells.iter().filter(|shown| shown.prediction.is_none()).map(Shown::measured).collect();
+    let path = path(&kept().collect::<Vec<_>>(), zero_deg(session), |angle| {
+        let direction = &fit.direction;
+        let latitude = session.setting.site.latitude;
+        let rate = latitude.horizontal_rate().0 * direction.amplitude;
+        degrees_per_hour(rate * (direction.azimuth + angle.to_radians()).cos())
+    });
+    let mut series = vec![
+        Series::new("the whole model", Style::Line, path),
+        Series::new("dwells, each with its 1σ", Style::Points, kept().map(Shown::measured)),
+    ];
+    if !left_out.is_empty() {
+        series.push(Series::new("left out", Style::Hollow, left_out));
+    }
+    let residuals = kept().filter_map(Shown::residual);
+    let left = [Series::new("measured less the whole model", Style::Points, residuals)];
+    let angle = || axis(&dwells);
+    [
+        Figure::new("Mean rate of each dwell, and the fit", angle(), ["rate", "°/h"], series),
+        Figure::new("What the fit leaves", angle(), ["residual", "°/h"], left).shaped(Shape::Low),
+    ]
+}
+
+/// The dwells with what the fit says of each.
+fn shown<'a>(session: &'a Session, conclusion: &Conclusion) -> Vec<Shown<'a>> {
+    let mut predictions = Vec::new();
+    conclusion
+        .predictions(&session.setting, session.dwells(), |prediction| predictions.push(prediction));
+    let (mut predictions, zero_deg) = (predictions.into_iter(), zero_deg(session));
+    let both = session.dwells().iter().zip(&conclusion.disturbances);
+    let shown = both.map(|(dwell, why)| {
+        let prediction = if why.is_none() { predictions.next() } else { None };
+        Shown { dwell, prediction, zero_deg }
+    });
+    shown.collect()
+}
+
+/// Angles between neighbours of a curve at most, °.
+const STEP: f64 = 2.0;
+/// An arc without dwells of this length makes the others one arc instead of a circle, °.
+const OPEN: f64 = 100.0;
+/// What the axis of a circle shows beyond its ends, °.
+const BEYOND: f64 = 4.0;
+
+/// An angle from `zero` on, within a turn, °.
+fn around(zero: f64, angle: f64) -> f64 {
+    zero + (angle - zero).rem_euclid(360.0)
+}
+
+/// Where the axis of the stage angle begins, °: behind the longest arc without dwells, or at zero of a circle.
+fn zero_deg(session: &Session) -> f64 {
+    let angles = session.dwells().iter().map(|dwell| degrees(dwell.stage.rad()).rem_euclid(360.0));
+    let mut angles: Vec<f64> = angles.collect();
+    angles.sort_unstable_by(f64::total_cmp);
+    let following = angles.iter().skip(1).copied().chain(angles.first().map(|first| first + 360.0));
+    let gaps = angles.iter().zip(following).map(|(from, to)| (to - from, to));
+    let longest = gaps.max_by(|a, b| a.0.total_cmp(&b.0));
+    let end = longest.filter(|(length, _)| *length >= OPEN).map(|(_, end)| end.rem_euclid(360.0));
+    end.map_or(0.0, |end| if end > 180.0 { end - 360.0 } else { end })
+}
+
+/// The axis of the stage angle.
+fn axis(dwells: &[Shown]) -> Axis {
+    let angles = || dwells.iter().map(Shown::stage_deg);
+    let reach = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
+    let axis = Axis::from(["stage angle", "°"]);
+    if reach > 360.0 - OPEN { axis.between([-BEYOND, 360.0 + BEYOND]) } else { axis }
+}
+
+/// What the model gives along the way of the stage, °/h over °: the horizontal Earth rate of each angle, and all else
+/// as it changes evenly from dwell to dwell.
+fn path(dwells: &[&Shown], zero: f64, earth_rate: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let at = |shown: &Shown| Some((shown.stage_deg(), degrees_per_hour(shown.prediction?.rate.0)));
+    let all: Vec<(f64, f64)> = dwells.iter().filter_map(|shown| at(shown)).collect();
+    let mut path: Vec<(f64, f64)> = all.first().copied().into_iter().collect();
+    for pair in all.windows(2) {
+        let [(from, before), (to, after)] = [pair[0], pair[1]];
+        let way = azimuth_error(to, from);
+        let beside = [before - earth_rate(from), after - earth_rate(to)];
+        let steps = (way.abs() / STEP).ceil().max(1.0);
+        for step in 1..=steps as u32 {
+            let part = f64::from(step) / steps;
+            let angle = from + way * part;
+            let rate = earth_rate(angle) + beside[0] + (beside[1] - beside[0]) * part;
+            push_around(&mut path, (around(zero, angle), rate));
+        }
+    }
+    path
+}
+
+/// Adds a point to a path, which is interrupted where it goes over the end of the axis.
+fn push_around(path: &mut Vec<(f64, f64)>, point: (f64, f64)) {
+    if path.last().is_some_and(|last| (last.0 - point.0).abs() > 180.0) {
+        path.push((f64::NAN, f64::NAN));
+    }
+    path.push(point);
+}
+
+/// How many conclusions a figure of their convergence draws at most.
+const CONCLUSIONS: usize = 40;
+/// Fewest dwells of which one is drawn.
+const FEWEST: usize = 3;
+
+/// How azimuth, σ and limit went with each further dwell.
+pub(super) fn convergence(session: &Session, truth_deg: Option<f64>) -> Vec<Figure> {
+    figures("Azimuth", &milestones(session), truth_deg)
+}
+
+/// What the first dwells give, of as many numbers of them as are drawn.
+fn milestones(session: &Session) -> Vec<Milestone> {
+    let dwells = session.dwells();
+    let step = dwells.len().saturating_sub(FEWEST).div_ceil(CONCLUSIONS).max(1);
+    let mut numbers: Vec<usize> = (FEWEST..=dwells.len()).rev().step_by(step).collect();
+    numbers.reverse();
+    numbers.into_iter().filter_map(|number| milestone(session, &dwells[..number])).collect()
+}
+
+/// What these dwells give; none where they give no azimuth.
+fn milestone(session: &Session, dwells: &[Dwell]) -> Option<Milestone> {
+    let conclusion = Conclusion::of(&session.setting, dwells, session.procedure.criterion);
+    let (fit, found) = (conclusion.fit.as_ref()?, conclusion.verdict.as_ref().ok()?);
+    let [azimuth_deg, sigma_deg, limit_deg] =
+        [found.angle, found.sigma, fit.limit].map(Radians::degrees);
+    Some(Milestone { time_s: dwells.last()?.end().0, azimuth_deg, sigma_deg, limit_deg })
+}
+
+/// When the stage stood and when it turned.
+pub(super) fn timeline(session: &Session, conclusion: &Conclusion) -> Timeline {
+    let both = session.dwells().iter().zip(&conclusion.disturbances).enumerate();
+    let dwells = both.map(|(index, (dwell, why))| {
+        let (number, angle) = (index + 1, degrees(dwell.stage.rad()));
+        let rate = degrees_per_hour(dwell.rate.0);
+        let words = format!("dwell {number} at {angle:.2}°: {rate:.4} °/h");
+        let (kind, words) = match why {
+            None => (Kind::Used, words),
+            Some(why) => (Kind::LeftOut, format!("{words}, left out: {why}")),
+        };
+        Stretch { from_s: dwell.start().0.max(0.0), to_s: dwell.end().0, kind, words }
+    });
+    Timeline::of(vec![Lane::new("dwells", dwells)])
+}

@@ -1,0 +1,120 @@
+//! Where a vehicle went, what the solution leaves of its stops, how the azimuth came to stand, and what was done when.
+
+use orientation::alignment::stops::conclusion::Found;
+use orientation::alignment::stops::stop_detector::Rests;
+use orientation::units::{Radians, Seconds, wrapped};
+
+use super::StopDetails;
+use crate::methods::stops::Replay;
+use crate::output::degrees;
+use crate::recording::ImuRow;
+use crate::report::{
+    Axis, Figure, Kind, Lane, Milestone, Note, POINTS, Point, Series, Shape, Stretch, Style,
+    Timeline, convergence as figures,
+};
+
+/// How many conclusions are drawn of a vehicle that stands all the time.
+const CONCLUSIONS: usize = 16;
+
+/// The way as the forces have it, fitted to the stops; none where no place but the first is known.
+pub(super) fn track(replay: &Replay, rows: &[ImuRow], found: &Found) -> Option<Figure> {
+    let stops = replay.session.stops().iter().map_while(|stop| stop.displacement);
+    let stops: Vec<[f64; 2]> = stops.map(|place| place.map(|part| part.0)).collect();
+    if stops.len() < 2 {
+        return None;
+    }
+    let drives = replay.drives(rows, found.start.angle);
+    let path = drives.iter().zip(&stops).flat_map(|(driven, from)| {
+        let step = driven.path_m.len().div_ceil(POINTS).max(1);
+        let places = driven.path_m.iter().step_by(step).chain(driven.path_m.last());
+        places.map(|place| (from[1] + place[1], from[0] + place[0]))
+    });
+    let at = |place: &[f64; 2]| (place[1], place[0]);
+    let series = [
+        Series::new("way by the forces, fitted to the stops", Style::Line, path),
+        Series::new("stops", Style::Points, stops.iter().map(at)),
+    ];
+    let notes = stops.iter().enumerate().map(|(index, place)| Note {
+        x: place[1],
+        y: place[0],
+        text: format!("stop {}", index + 1),
+    });
+    let [east, north] = [["east", "m"], ["north", "m"]].map(Axis::from);
+    let figure = Figure::new("Where the vehicle went", east, north, series);
+    Some(figure.noted(notes).shaped(Shape::Map))
+}
+
+/// What the solution leaves of the vertical at each stop; none where it says nothing of any. The biases of the
+/// accelerometers tilt it, too.
+pub(super) fn residuals(replay: &Replay, stops: &[StopDetails]) -> Option<Figure> {
+    let site = &replay.session.setting.site;
+    let biased = degrees(site.accelerometer_bias_sigma.0 / site.latitude.gravity().0);
+    let of = |axis: usize| {
+        let points = stops.iter().filter_map(move |stop| {
+            let middle = 0.5 * (stop.from_s + stop.to_s);
+            let sigma = stop.residual_sigma_deg?.hypot(biased);
+            Some(Point::within(middle, stop.residual_deg?[axis], sigma))
+        });
+        points.collect::<Vec<_>>()
+    };
+    let series = [("north", 0), ("east", 1)]
+        .map(|(name, axis)| Series::new(name, Style::Points, of(axis)));
+    let title = "What the solution leaves of the vertical at each stop, with 1σ of noise and accelerometers";
+    let is_there = !of(0).is_empty();
+    is_there.then(|| Figure::over_time(title, ["tilt", "°"], series).shaped(Shape::Low))
+}
+
+/// The azimuth at the end as each further stop, or more and more of a single one, shows it.
+pub(super) fn convergence(
+    replay: &Replay,
+    rows: &[ImuRow],
+    found: &Found,
+    truth_deg: Option<f64>,
+) -> Vec<Figure> {
+    let stops = replay.session.stops();
+    let ends: Vec<Seconds> = match (&replay.session.procedure.rests, stops) {
+        (Rests::Whole, [stop]) => {
+            let part = |part: usize| part as f64 / CONCLUSIONS as f64;
+            (1..=CONCLUSIONS)
+                .map(|index| Seconds(stop.from.0 + stop.seconds().0 * part(index)))
+                .collect()
+        }
+        _ => stops.iter().skip(1).map(|stop| stop.to).collect(),
+    };
+    let turned = found.azimuth.angle.0 - found.start.angle.0;
+    let milestone = |end: Seconds| milestone(replay, rows, end, turned);
+    let all: Vec<Milestone> = ends.into_iter().filter_map(milestone).collect();
+    figures("Azimuth at the end", &all, truth_deg)
+}
+
+/// What is known at a time, carried to the end by what the vehicle turned since the start, rad; none where that is nothing.
+fn milestone(replay: &Replay, rows: &[ImuRow], end: Seconds, turned: f64) -> Option<Milestone> {
+    let session = replay.until(rows, end)?;
+    let conclusion = session.conclusion()?;
+    let found = conclusion.found.as_ref().filter(|_| conclusion.verdict.is_ok())?;
+    let carried = Radians(wrapped(found.start.angle.0 + turned));
+    let [azimuth_deg, sigma_deg, limit_deg] =
+        [carried, found.azimuth.sigma, found.limit].map(Radians::degrees);
+    Some(Milestone { time_s: replay.zero_s + end.0, azimuth_deg, sigma_deg, limit_deg })
+}
+
+/// When the vehicle stood and when it drove.
+pub(super) fn timeline(replay: &Replay) -> Timeline {
+    let stops = replay.session.stops();
+    let at = |time: Seconds| replay.zero_s + time.0;
+    let stood = stops.iter().enumerate().map(|(index, stop)| Stretch {
+        from_s: at(stop.from),
+        to_s: at(stop.to),
+        kind: Kind::Used,
+        words: format!("stop {}: {:.0} s", index + 1, stop.seconds().0),
+    });
+    let drove = stops.windows(2).map(|pair| Stretch {
+        from_s: at(pair[0].to),
+        to_s: at(pair[1].from),
+        kind: Kind::Between,
+        words: format!("drive of {:.0} s", pair[1].from.0 - pair[0].to.0),
+    });
+    let mut spans: Vec<Stretch> = stood.chain(drove).collect();
+    spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+    Timeline::of(vec![Lane::new("vehicle", spans)])
+}

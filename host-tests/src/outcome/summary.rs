@@ -1,0 +1,181 @@
+//! The report on an outcome: what was found at its head, then its parts and figures.
+
+use orientation::alignment::budget::Source as Part;
+use orientation::alignment::site::Site;
+
+use super::{BudgetDetails, Excluded, Finished, FitDetails, Outcome};
+use crate::methods;
+use crate::output::{degrees, noise_in_words, positive_zero};
+use crate::report::{Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline};
+
+/// The report on an outcome of what `name` names: what was found, the figures, then lines and tables.
+pub fn report(
+    name: &str,
+    outcome: &Outcome,
+    finished: &dyn Finished,
+    figures: Vec<ReportPart>,
+) -> Report {
+    let budget = outcome.fit.as_ref().and_then(|fit| fit.budget.as_ref());
+    let mut parts = figures;
+    add_lanes(&mut parts, outcome);
+    parts.extend(budget.map(shares).map(ReportPart::from));
+    parts.extend(outcome.parts.iter().cloned());
+    parts.push(ReportPart::from(assumed(outcome)).detail());
+    parts.extend(outcome.run.iter().flat_map(|run| run.parts.iter().cloned()));
+    let [found, refused] = finished.titles();
+    let title = format!("{} {name}", if outcome.is_ok() { found } else { refused });
+    Report::new(title, parts).headed(summary(outcome))
+}
+
+/// Adds what only a run knows of the time to the method's timeline, or makes one of it.
+fn add_lanes(parts: &mut Vec<ReportPart>, outcome: &Outcome) {
+    let Some(run) = &outcome.run else { return };
+    let of_method = parts.iter_mut().find_map(|part| match part {
+        ReportPart::Timeline(timeline) => Some(timeline),
+        _ => None,
+    });
+    match of_method {
+        Some(timeline) => timeline.lanes.extend(run.lanes.iter().cloned()),
+        None => parts.push(Timeline::of(run.lanes.clone()).into()),
+    }
+}
+
+/// What is said first of an outcome.
+fn summary(outcome: &Outcome) -> Summary {
+    let remarks = degradations(outcome);
+    let grade = match (outcome.is_ok(), remarks.is_empty()) {
+        (false, _) => Grade::Refused,
+        (true, true) => Grade::Found,
+        (true, false) => Grade::Degraded,
+    };
+    Summary {
+        grade,
+        reasons: outcome.reason.iter().cloned().collect(),
+        remarks,
+        found: found(outcome),
+        facts: facts(outcome).lines.into_iter().chain(outcome.facts.iter().cloned()).collect(),
+        circumstances: circumstances(outcome).lines,
+        rose: rose(outcome),
+    }
+}
+
+/// What takes from a result: what was left out, and what the board reports.
+fn degradations(outcome: &Outcome) -> Vec<String> {
+    let excluded = outcome.fit.iter().flat_map(|fit| &fit.excluded);
+    let left_out =
+        excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
+    let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
+    left_out.chain(run).collect()
+}
+
+/// What was looked for, and what it is.
+fn found(outcome: &Outcome) -> Option<[String; 2]> {
+    let azimuth = outcome.azimuth_deg.zip(outcome.sigma_deg);
+    let azimuth = azimuth.map(|(azimuth, sigma)| {
+        ["azimuth of body x".to_owned(), format!("{azimuth:.4}° ± {sigma:.4}° (1σ)")]
+    });
+    azimuth.or_else(|| outcome.found.clone())
+}
+
+/// The azimuth for a compass.
+fn rose(outcome: &Outcome) -> Option<Rose> {
+    let (azimuth_deg, sigma_deg) = outcome.azimuth_deg.zip(outcome.sigma_deg)?;
+    let truth_deg = outcome.error_deg.map(|error| (azimuth_deg - error).rem_euclid(360.0));
+    Some(Rose { azimuth_deg, sigma_deg, limit_deg: outcome.limit_deg, truth_deg })
+}
+
+/// What every method says beside the result: the truth, the limit, the level.
+fn facts(outcome: &Outcome) -> Lines {
+    let found = outcome.azimuth_deg.zip(outcome.sigma_deg);
+    let lines = Lines::default().with_found("truth", found.zip(outcome.error_deg).map(error));
+    let Some(fit) = &outcome.fit else { return lines };
+    lines
+        .with_found("limit", limit(outcome))
+        .with_found("pitch, roll", level(outcome))
+        .with_found("Earth rate", earth_rate(fit))
+}
+
+/// Of what it was found: method, place, instrument, time, model.
+fn circumstances(outcome: &Outcome) -> Lines {
+    let method = methods::named(outcome.method).map(|method| method.meaning);
+    let model = outcome.fit.as_ref().map(|fit| fit.model.join(", "));
+    let mut lines = Lines::default().with_found("method", method);
+    lines.lines.extend(outcome.circumstances.iter().cloned());
+    lines.with_found("model", model.filter(|model| !model.is_empty()))
+}
+
+/// Place and gyro of a site.
+pub(crate) fn of_site(site: &Site) -> Lines {
+    let noise = noise_in_words(site.noise.model(), site.noise.is_white_known());
+    Lines::default()
+        .with("place", format!("latitude {:.4}°", degrees(site.latitude.rad())))
+        .with("gyro", noise)
+}
+
+/// The true azimuth, and what one that was found with its 1σ is off, °.
+fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
+    let truth = (azimuth - error).rem_euclid(360.0);
+    let error = positive_zero(error, 5e-5);
+    format!("{truth:.4}°: the error is {error:+.4}°, {:+.2} σ", positive_zero(error / sigma, 5e-3))
+}
+
+fn limit(outcome: &Outcome) -> Option<String> {
+    match outcome.limit_deg {
+        Some(limit) => Some(format!("{limit:.4}° (Cramér–Rao for the stated noise)")),
+        None => outcome.is_ok().then(|| "none: the noise is estimated from the data".to_owned()),
+    }
+}
+
+fn level(outcome: &Outcome) -> Option<String> {
+    let Some((pitch, roll)) = outcome.pitch_deg.zip(outcome.roll_deg) else {
+        return outcome.is_ok().then(|| "not measured".to_owned());
+    };
+    let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
+    Some(format!("{pitch:.4}°, {roll:.4}°"))
+}
+
+fn earth_rate(fit: &FitDetails) -> Option<String> {
+    match fit.earth_rate_ratio.zip(fit.earth_rate_ratio_sigma) {
+        Some((ratio, sigma)) => Some(format!("{ratio:.4} ± {sigma:.4} of that expected")),
+        None => fit.budget.map(|_| "taken for granted: the data do not show it".to_owned()),
+    }
+}
+
+/// What was assumed, one thing a line.
+fn assumed(outcome: &Outcome) -> Lines {
+    let all = outcome.assumed.iter().enumerate();
+    let number = |index: usize| (index + 1).to_string();
+    all.fold(Lines::new("What was assumed where nothing states it"), |lines, (index, what)| {
+        lines.with(&number(index), what.clone())
+    })
+}
+
+/// The parts of σ with each part's share of the variance.
+fn shares(details: &BudgetDetails) -> Shares {
+    let budget = &details.0;
+    let sigma = budget.sigma();
+    let share = |(source, part): (Part, orientation::units::Radians)| Share {
+        name: source.to_string(),
+        value: format!("{:.4}", part.degrees()),
+        percent: 100.0 * (part.0 / sigma.0) * (part.0 / sigma.0),
+    };
+    let dominant =
+        budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
+    Shares {
+        title: format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default()),
+        head: ["source", "part, °", "share of the variance, %"].map(str::to_owned),
+        rows: details.shown().map(share).collect(),
+        sum: ["root sum of squares".to_owned(), format!("{:.4}", sigma.degrees())],
+    }
+}
+
+/// What helps against a part that dominates.
+fn remedy(source: Part) -> &'static str {
+    match source {
+        Part::GSensitivity => ": level the platform mechanically, or calibrate κ at two tilts",
+        Part::Accelerometer => ": turn a full circle, or calibrate the accelerometer",
+        Part::Scale => ": turn a longer arc, or calibrate the scale factor",
+        Part::Drift | Part::Temperature => ": let the gyro settle, or repeat the circle faster",
+        _ => "",
+    }
+}
