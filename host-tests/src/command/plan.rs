@@ -96,7 +96,8 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
         Err(why) => return Ok(refused(options, why.to_string(), as_json)?),
     };
     let object = Keys::default().with("status", "ok").with_all(Some(&planned));
-    let answer = Answer::of(None, as_json, &object, || plan::report(&request, &planned).text(LOOK))?;
+    let answer =
+        Answer::of(None, as_json, &object, || plan::report(&request, &planned).text(LOOK))?;
     Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 

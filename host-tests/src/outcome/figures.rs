@@ -16,8 +16,11 @@ type Moment<'a> = (&'a Point, f64, [f64; 3]);
 
 /// The azimuth within its σ and its error, pitch and roll; errors only where the truth is known.
 pub(super) fn all(kept: &Kept) -> Vec<Figure> {
-    let moments: Vec<Moment<'_>> =
-        kept.points.iter().filter_map(|point| Some((point, point.seconds(), point.azimuth_deg()?))).collect();
+    let moments: Vec<Moment<'_>> = kept
+        .points
+        .iter()
+        .filter_map(|point| Some((point, point.seconds(), point.azimuth_deg()?)))
+        .collect();
     if moments.is_empty() {
         return Vec::new();
     }
@@ -94,9 +97,8 @@ fn level(moments: &[Moment<'_>], is_true: bool) -> Figure {
 }
 
 fn level_errors(moments: &[Moment<'_>]) -> Figure {
-    let off = |axis: usize| {
-        move |&(point, at, _): &Moment<'_>| (at, degrees(point.level_error()[axis]))
-    };
+    let off =
+        |axis: usize| move |&(point, at, _): &Moment<'_>| (at, degrees(point.level_error()[axis]));
     let band = |&(point, at, _): &Moment<'_>| {
         report::Point::within(at, 0.0, point.report.level_sigma.degrees())
     };
@@ -141,7 +143,12 @@ pub(super) fn faults(events: &[(Instant, Event)]) -> Vec<Lane> {
     let wrong = events.iter().filter(|(_, event)| notice::is_wrong(event));
     let mark = |(at, event): &(Instant, Event)| {
         let at_s = at.as_micros() as f64 * 1e-6;
-        Stretch { from_s: at_s, to_s: at_s, kind: Kind::Wrong, words: format!("{at_s:.3} s: {event}") }
+        Stretch {
+            from_s: at_s,
+            to_s: at_s,
+            kind: Kind::Wrong,
+            words: format!("{at_s:.3} s: {event}"),
+        }
     };
     let spans: Vec<Stretch> = wrong.take(report::POINTS).map(mark).collect();
     if spans.is_empty() { Vec::new() } else { vec![Lane::new("faults", spans)] }

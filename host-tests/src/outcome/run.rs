@@ -112,7 +112,10 @@ impl RunDetails {
         Self {
             keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
             degradations: is_lost.then_some(lost).into_iter().collect(),
-            parts: lines.chain(figures::all(kept).into_iter().map(Part::from)).chain(board).collect(),
+            parts: lines
+                .chain(figures::all(kept).into_iter().map(Part::from))
+                .chain(board)
+                .collect(),
             lanes: figures::lanes(kept),
             kept: last,
             was_known,

@@ -6,7 +6,9 @@ use orientation::alignment::site::Site;
 use super::{BudgetDetails, Excluded, Finished, FitDetails, Outcome};
 use crate::methods;
 use crate::output::{degrees, noise_in_words, positive_zero};
-use crate::report::{Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline};
+use crate::report::{
+    Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
+};
 
 /// The report on an outcome of what `name` names: what was found, the figures, then lines and tables.
 pub fn report(

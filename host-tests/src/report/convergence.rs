@@ -28,9 +28,8 @@ fn azimuths(what: &str, all: &[Milestone], last: &Milestone, truth_deg: Option<f
     let shown = || all.iter().filter(|at| at.sigma_deg <= SHOWN * last.sigma_deg);
     let near = |azimuth: f64| last.azimuth_deg + short(azimuth - last.azimuth_deg);
     let band = shown().map(|at| Point::within(at.time_s, near(at.azimuth_deg), at.sigma_deg));
-    let limit = |sign: f64| {
-        shown().map(move |at| (at.time_s, last.azimuth_deg + sign * at.limit_deg))
-    };
+    let limit =
+        |sign: f64| shown().map(move |at| (at.time_s, last.azimuth_deg + sign * at.limit_deg));
     let limits = limit(1.0).chain([(f64::NAN, f64::NAN)]).chain(limit(-1.0));
     let curve = shown().map(|at| (at.time_s, near(at.azimuth_deg)));
     let ends = [shown().next().map_or(0.0, |at| at.time_s), last.time_s];
@@ -39,9 +38,10 @@ fn azimuths(what: &str, all: &[Milestone], last: &Milestone, truth_deg: Option<f
         Series::new("what is known by then", Style::LineAndPoints, curve),
         Series::new("the last one ± the limit", Style::Dotted, limits),
     ];
-    series.extend(truth_deg.map(|truth| {
-        Series::new("truth", Style::Dashed, ends.map(|time| (time, near(truth))))
-    }));
+    series
+        .extend(truth_deg.map(|truth| {
+            Series::new("truth", Style::Dashed, ends.map(|time| (time, near(truth))))
+        }));
     Figure::over_time(format!("{what} as it came to stand"), ["azimuth", "°"], series)
 }
 

@@ -28,7 +28,9 @@ fn unshown(parts: &[Part]) -> String {
         _ => None,
     };
     let titles: Vec<String> = parts.iter().filter_map(title).collect();
-    if titles.is_empty() { return String::new() }
+    if titles.is_empty() {
+        return String::new();
+    }
     format!("\n  --verbose adds     {}\n", titles.join("; "))
 }
 

@@ -1,86 +1,41 @@
-//! The HTML report: a page that any browser reads, with every point where it belongs.
+//! Pages: a report that any browser reads, with every point where it belongs, and nothing loaded.
 
 use std::path::{Path, PathBuf};
 
-use host::report::{Axis, Figure, Part, Point, Report, Series, Style, Table};
+use host::report::{
+    Axis, Figure, Grade, Kind, Lane, Note, Part, Point, Report, Rose, Series, Share, Shares,
+    Stretch, Style, Summary, Table, Timeline,
+};
 
 use crate::support::files::Scratch;
+use crate::support::pages::{assert_well_formed, corners, dots, figures, paths};
 
 /// A page written and read back.
-fn page(name: &str, parts: Vec<Part>) -> String {
+fn written(name: &str, report: &Report) -> String {
     let scratch = Scratch::new("report");
-    let path = PathBuf::from(scratch.path(name));
-    let subtitle = vec!["first line".to_owned(), "rate < 10 Hz & \"quoted\"".to_owned()];
-    let report = Report { title: "A & B <i>".to_owned(), subtitle, parts };
-    report.write(&path).expect("the folder is ours");
+    report.write(&PathBuf::from(scratch.path(name))).expect("the folder is ours");
     scratch.read(name)
 }
 
-/// A figure over these axes.
-fn figure(x: Axis, y: Axis, series: Vec<Series>) -> Figure {
-    Figure { title: "Rate".to_owned(), x, y, series }
+/// A page of these parts.
+fn page(name: &str, parts: Vec<Part>) -> String {
+    written(name, &Report::new("A page", parts))
 }
 
 fn linear(series: Vec<Series>) -> Figure {
-    figure(["time", "s"].into(), ["rate", "°/h"].into(), series)
+    Figure::new("Rate", ["time", "s"], ["rate", "°/h"], series)
 }
 
 fn logarithmic(series: Vec<Series>) -> Figure {
     let x = Axis::logarithmic("averaging time", "s");
-    figure(x, Axis::logarithmic("deviation", "°/h"), series)
+    Figure::new("Deviation", x, Axis::logarithmic("deviation", "°/h"), series)
 }
 
-/// The values of an attribute, over all elements of this name that hold `with`.
-fn attributes(text: &str, element: &str, with: &str, name: &str) -> Vec<String> {
-    let start = format!("<{element} ");
-    let elements = text.split(&start).skip(1).map(|rest| rest.split('>').next().unwrap_or(""));
-    let key = format!(" {name}=\"");
-    let value = |tag: &str| {
-        let tag = format!(" {tag}");
-        tag.split(&key).nth(1).and_then(|rest| rest.split('"').next()).map(str::to_owned)
-    };
-    elements.filter(|tag| tag.contains(with)).filter_map(value).collect()
-}
-
-/// The first series' colour, as only its own elements have it.
-const FIRST: &str = "#0072B2";
-
-/// The corners of a list `x,y x,y …`.
-fn corners(points: &str) -> Vec<(f64, f64)> {
-    let pair = |text: &str| {
-        let (x, y) = text.split_once(',').expect("a pair");
-        (x.parse().expect("a number"), y.parse().expect("a number"))
-    };
-    points.split_whitespace().map(pair).collect()
-}
-
-/// The corners of the only line of the first series.
-fn line(text: &str) -> Vec<(f64, f64)> {
-    let lines = attributes(text, "polyline", FIRST, "points");
+/// The only line of the first figure.
+fn line(text: &str) -> Vec<[f64; 2]> {
+    let lines = corners(&paths(text, 0, "line").concat());
     assert_eq!(lines.len(), 1, "{lines:?}");
-    corners(&lines[0])
-}
-
-/// Panics unless every element is closed in order and every `&` starts an entity.
-fn assert_well_formed(text: &str) {
-    let mut open: Vec<&str> = Vec::new();
-    let body = text.strip_prefix("<!DOCTYPE html>").expect("it is HTML");
-    for piece in body.split('<').skip(1) {
-        let (tag, after) = piece.split_once('>').expect("a tag ends");
-        assert!(!after.contains('>'), "a stray > in {after}");
-        let name = tag.split_whitespace().next().expect("a tag has a name");
-        if let Some(name) = name.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name));
-        } else if !tag.ends_with('/') {
-            open.push(name);
-        }
-        assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
-    }
-    assert!(open.is_empty(), "{open:?}");
-    for entity in body.split('&').skip(1) {
-        let name = entity.split(';').next().unwrap_or("");
-        assert!(["lt", "gt", "amp", "quot", "apos"].contains(&name), "&{name}");
-    }
+    lines[0].clone()
 }
 
 /// A point with its limits.
@@ -88,51 +43,104 @@ fn bar((x, y, limits): (f64, f64, [f64; 2])) -> Point {
     Point { x, y, limits: Some(limits) }
 }
 
-#[test]
-fn a_page_with_everything_in_it_is_well_formed_and_needs_no_other_file() {
-    let styles = [Style::Line, Style::Dashed, Style::Points, Style::LineAndPoints, Style::Band];
-    let series = styles.map(|style| {
+const STYLES: [Style; 8] = [
+    Style::Line,
+    Style::Dashed,
+    Style::Dotted,
+    Style::Points,
+    Style::Hollow,
+    Style::Pale,
+    Style::LineAndPoints,
+    Style::Band,
+];
+
+/// A report with everything in it, in which every text holds what a browser could take for markup.
+fn everything() -> Report {
+    let series = STYLES.map(|style| {
         let points = (1..20).map(f64::from).map(|x| bar((x, x * x, [x, 2.0 * x * x])));
-        Series::new(&format!("<{style:?}> & \"more\""), style, points)
+        Series::new(&format!("<{style:?}> & \"more\" </script>"), style, points)
     });
     let table = Table {
         title: "N < K".to_owned(),
-        head: vec!["a & b".to_owned(), "°/√h".to_owned()],
-        rows: vec![vec!["<1>".to_owned(), "2".to_owned()]],
+        head: ["a & b", "°/√h", "c", "d", "e"].map(str::to_owned).to_vec(),
+        rows: vec![["<1>", "2", "3", "4", "5"].map(str::to_owned).to_vec()],
     };
+    let share = Share { name: "<noise>".to_owned(), value: "1 & 2".to_owned(), percent: 30.0 };
+    let head = ["a", "<b>", "c"].map(str::to_owned);
+    let sum = ["all".to_owned(), "3".to_owned()];
+    let shares = Shares { title: "Who & what".to_owned(), head, rows: vec![share], sum };
+    let stretch = |kind| Stretch { from_s: 1.0, to_s: 2.0, kind, words: "<here>".to_owned() };
+    let kinds = [Kind::Used, Kind::Between, Kind::LeftOut, Kind::Wrong];
+    let timeline = Timeline::of(vec![Lane::new("<lane>", kinds.map(stretch))]);
+    let note = Note { x: 5.0, y: 25.0, text: "<note>".to_owned() };
     let parts = vec![
-        linear(series.to_vec()).into(),
+        Part::from(linear(series.to_vec()).noted([note])),
         logarithmic(series.to_vec()).into(),
-        table.into(),
+        Part::from(table).detail(),
         Table::default().into(),
+        shares.into(),
+        timeline.into(),
     ];
-    let text = page("everything.html", parts);
+    let summary = Summary {
+        grade: Grade::Degraded,
+        reasons: vec!["<reason>".to_owned()],
+        remarks: vec!["a remark & more".to_owned()],
+        found: Some(["azimuth <A>".to_owned(), "1° & 2°".to_owned()]),
+        facts: vec![["limit".to_owned(), "<0.1°>".to_owned()]],
+        circumstances: vec![["place".to_owned(), "\"here\"".to_owned()]],
+        rose: Some(Rose {
+            azimuth_deg: 213.7,
+            sigma_deg: 0.04,
+            limit_deg: Some(0.03),
+            truth_deg: Some(213.6),
+        }),
+    };
+    Report::new("A & B <i>", parts)
+        .below(["first line", "rate < 10 Hz & \"quoted\""])
+        .headed(summary)
+}
+
+#[test]
+fn a_page_with_everything_in_it_is_well_formed_and_needs_no_other_file() {
+    let text = written("everything.html", &everything());
     assert_well_formed(&text);
-    let outside = text.replace("http://www.w3.org/2000/svg", "");
-    for reference in ["http", "src=", "href=", "url(", "@import"] {
-        assert!(!outside.contains(reference), "{reference}");
+    for reference in ["http", "src=", "href=", "url(", "@import", "fetch(", "import("] {
+        assert!(!text.contains(reference), "{reference}");
     }
-    for part in ["A &amp; B &lt;i&gt;", "rate &lt; 10 Hz", "&lt;1&gt;", "&lt;Band&gt; &amp;"] {
+    for part in [
+        "A &amp; B &lt;i&gt;",
+        "rate &lt; 10 Hz",
+        "&lt;1&gt;",
+        "&lt;Band&gt; &amp;",
+        "&lt;reason&gt;",
+        "a remark &amp; more",
+        "&lt;note&gt;",
+        "&lt;lane&gt;",
+        "&lt;noise&gt;",
+    ] {
         assert!(text.contains(part), "{part}");
     }
+    assert_eq!(figures(&text).len(), 2, "no name of a series ends its script");
 }
 
 #[test]
 fn each_style_draws_what_it_says() {
     let drawn = |style| {
         let points = [(0.0, 1.0), (1.0, 3.0), (2.0, 2.0), (3.0, 4.0)];
-        let text = page(
-            &format!("{style:?}.html"),
-            vec![linear(vec![Series::new("a", style, points)]).into()],
-        );
-        let count = |element| attributes(&text, element, FIRST, "opacity").len();
-        (count("polyline"), count("circle"))
+        let text = page("style.html", vec![linear(vec![Series::new("a", style, points)]).into()]);
+        let lines: usize = ["line", "line dashed", "line dotted"]
+            .map(|class| paths(&text, 0, class).len())
+            .iter()
+            .sum();
+        (lines, dots(&paths(&text, 0, "dots").concat()).len())
     };
-    assert_eq!(drawn(Style::Line), (1, 0));
-    assert_eq!(drawn(Style::Points), (0, 4));
+    for style in [Style::Line, Style::Dashed, Style::Dotted] {
+        assert_eq!(drawn(style), (1, 0), "{style:?}");
+    }
+    for style in [Style::Points, Style::Hollow, Style::Pale] {
+        assert_eq!(drawn(style), (0, 4), "{style:?}");
+    }
     assert_eq!(drawn(Style::LineAndPoints), (1, 4));
-    let (dashes, dots) = drawn(Style::Dashed);
-    assert!(dashes > 20 && dots == 0, "{dashes} dashes");
 }
 
 #[test]
@@ -141,29 +149,31 @@ fn a_linear_axis_keeps_differences_and_points_upward() {
     let text =
         page("linear.html", vec![linear(vec![Series::new("a", Style::Line, points)]).into()]);
     let [a, b, c] = line(&text).try_into().expect("three corners");
-    assert!(((c.0 - a.0) / (b.0 - a.0) - 3.0).abs() < 0.01);
-    assert!(((c.1 - a.1) / (b.1 - a.1) + 2.0).abs() < 0.01);
-    assert!(b.1 < a.1, "up is up");
+    assert!(((c[0] - a[0]) / (b[0] - a[0]) - 3.0).abs() < 0.01);
+    assert!(((c[1] - a[1]) / (b[1] - a[1]) + 2.0).abs() < 0.01);
+    assert!(b[1] < a[1], "up is up");
 }
 
 #[test]
 fn a_logarithmic_axis_keeps_ratios_and_leaves_out_what_is_not_above_zero() {
-    let points = [(0.1, 1e-3), (0.0, 1.0), (1.0, 1e-2), (2.0, 0.0), (3.0, -5.0), (100.0, 1e-3)];
+    let points = [(0.1, 1e-3), (1.0, 1e-2), (100.0, 1e-3), (0.0, 1.0), (2.0, 0.0), (3.0, -5.0)];
     let curve = Series::new("a", Style::Line, points);
     let text = page("logarithmic.html", vec![logarithmic(vec![curve]).into()]);
     let [a, b, c] = line(&text).try_into().expect("three corners");
-    assert!(((c.0 - a.0) / (b.0 - a.0) - 3.0).abs() < 0.01);
-    assert_eq!(a.1, c.1);
+    assert!(((c[0] - a[0]) / (b[0] - a[0]) - 3.0).abs() < 0.01);
+    assert_eq!(a[1], c[1]);
 }
 
 #[test]
-fn points_that_are_not_finite_are_left_out() {
+fn a_line_is_interrupted_where_a_point_is_not_finite() {
     let (nan, inf) = (f64::NAN, f64::INFINITY);
-    let points = [(0.0, 1.0), (nan, 2.0), (1.0, inf), (-inf, 3.0), (1.0, nan), (2.0, 5.0)];
+    let points =
+        [(0.0, 1.0), (0.5, 2.0), (nan, 2.0), (1.0, inf), (-inf, 3.0), (2.0, 5.0), (3.0, 1.0)];
     let text =
         page("finite.html", vec![linear(vec![Series::new("a", Style::Line, points)]).into()]);
-    assert_eq!(line(&text).len(), 2);
-    assert!(!text.contains("NaN") && !text.contains("inf"));
+    let lines = corners(&paths(&text, 0, "line").concat());
+    assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
+    assert!(!text.contains("NaN") && !text.contains("inf,"));
 }
 
 #[test]
@@ -181,9 +191,8 @@ fn a_figure_without_points_says_so() {
 fn one_point_alone_stands_in_the_middle() {
     let text =
         page("one.html", vec![linear(vec![Series::new("a", Style::Points, [(7.0, 0.0)])]).into()]);
-    let [x, y] = ["cx", "cy"].map(|name| attributes(&text, "circle", FIRST, name)[0].clone());
-    let place = |text: String| text.parse::<f64>().expect("a number");
-    assert!((800.0..1200.0).contains(&place(x)) && (350.0..650.0).contains(&place(y)));
+    let [x, y] = dots(&paths(&text, 0, "dots").concat())[0];
+    assert!((4500.0..5500.0).contains(&x) && (4500.0..5500.0).contains(&y), "{x}, {y}");
 }
 
 #[test]
@@ -196,11 +205,17 @@ fn every_axis_names_its_unit_and_every_series_stands_in_the_legend() {
     }
 }
 
-/// The numbers beside the axes, in the order in which they are drawn.
+/// The numbers beside both axes of the first figure.
 fn numbers(text: &str) -> Vec<String> {
-    let texts = text.split("<text ").skip(1);
-    let inner = texts.filter_map(|rest| rest.split_once('>')?.1.split('<').next());
-    inner.map(|number| number.trim().to_owned()).collect()
+    let labels = ["<div class=\"y-labels\">", "<div class=\"x-labels\">"].map(|begin| {
+        let inner = text.split_once(begin).and_then(|(_, rest)| rest.split_once("</div>"));
+        inner.map_or("", |(inner, _)| inner)
+    });
+    let spans = labels.iter().flat_map(|inner| inner.split("<span").skip(1));
+    spans
+        .filter(|span| span.contains("style="))
+        .filter_map(|span| span.split_once('>')?.1.split('<').next().map(str::to_owned))
+        .collect()
 }
 
 #[test]
@@ -212,10 +227,33 @@ fn ticks_carry_round_numbers() {
     }
     let narrow = Series::new("a", Style::Line, [(1.5, 0.02), (6.0, 0.3)]);
     let found = numbers(&page("narrow.html", vec![logarithmic(vec![narrow.clone()]).into()]));
-    assert_eq!(found[2..], ["0.02", "0.05", "0.1", "0.2", "2", "5"], "{found:?}");
+    assert_eq!(found[..4], ["0.02", "0.05", "0.1", "0.2"], "{found:?}");
     let found = numbers(&page("decimals.html", vec![linear(vec![narrow]).into()]));
     for tick in ["2", "5", "0.05", "0.30"] {
         assert!(found.iter().any(|number| number == tick), "{tick} is not in {found:?}");
+    }
+}
+
+#[test]
+fn a_logarithmic_axis_bears_numbers_however_little_it_spans() {
+    for (low, high) in [(0.055, 0.084), (1.0, 1.001), (3.1, 4.9), (211.0, 213.0), (7e-6, 7.2e-6)] {
+        let curve = Series::new("a", Style::Line, [(1.0, low), (2.0, high)]);
+        let text = page("short.html", vec![logarithmic(vec![curve]).into()]);
+        let data = &figures(&text)[0];
+        let [low, high] =
+            ["low", "high"].map(|end| 10_f64.powf(data["y"][end].as_f64().expect("it")));
+        let labels = text.split_once("<div class=\"y-labels\">").expect("they are there").1;
+        let inner = labels.split_once("</div>").expect("they end").0;
+        let found: Vec<f64> = inner
+            .split("<span style")
+            .skip(1)
+            .filter_map(|span| span.split_once('>')?.1.split('<').next()?.parse().ok())
+            .collect();
+        assert!(found.len() >= 3, "{low} to {high}: {found:?}");
+        let is_inside = |value: &f64| *value >= 0.999 * low && *value <= 1.001 * high;
+        assert!(found.iter().all(is_inside), "{low} to {high}: {found:?}");
+        let differ = found.windows(2).all(|pair| pair[0] != pair[1]);
+        assert!(differ, "two ticks with the same number: {found:?}");
     }
 }
 
@@ -225,15 +263,18 @@ fn limits_become_bars_that_are_cut_at_the_edge() {
         [(1.0, 2.0, [1.0, 4.0]), (10.0, 3.0, [0.0, f64::INFINITY]), (20.0, 3.0, [f64::NAN, 5.0])];
     let bars = Series::new("a", Style::Points, points.map(bar));
     let text = page("bars.html", vec![logarithmic(vec![bars]).into()]);
-    let uprights: Vec<_> = attributes(&text, "polyline", FIRST, "points")
-        .iter()
-        .map(|points| corners(points))
-        .filter(|corners| corners[0].0 == corners[1].0)
+    let path = paths(&text, 0, "bars").concat();
+    let uprights: Vec<[f64; 2]> = path
+        .split('M')
+        .filter_map(|piece| {
+            let (from, to) = piece.split_once('V')?;
+            Some([from.split_once(' ')?.1.parse().ok()?, to.parse().ok()?])
+        })
         .collect();
     assert_eq!(uprights.len(), 2, "the third point has no limits");
-    let height = |bar: &[(f64, f64)]| bar[0].1 - bar[1].1;
-    assert!(height(&uprights[1]) > height(&uprights[0]));
-    assert!(uprights.iter().flatten().all(|(_, y)| (0.0..=1000.0).contains(y)));
+    let height = |bar: [f64; 2]| bar[0] - bar[1];
+    assert!(height(uprights[1]) > height(uprights[0]));
+    assert!(uprights.iter().flatten().all(|y| (0.0..=10_000.0).contains(y)));
 }
 
 #[test]
@@ -243,11 +284,62 @@ fn a_band_runs_along_its_lower_limits_and_back_along_the_upper_ones() {
         "band.html",
         vec![linear(vec![Series::new("a", Style::Band, points.map(bar))]).into()],
     );
-    let [a, b, c, d] = corners(&attributes(&text, "polygon", FIRST, "points")[0])
-        .try_into()
-        .expect("four corners");
-    assert_eq!((a.0, b.0), (d.0, c.0));
-    assert!(a.1 > b.1 && b.1 > c.1 && c.1 > d.1);
+    let [outline] = corners(&paths(&text, 0, "band").concat()).try_into().expect("one outline");
+    let [a, b, c, d] = outline.try_into().expect("four corners");
+    assert!(a[0] < b[0] && b[0] == c[0] && c[0] > d[0] && d[0] == a[0]);
+    assert!(a[1] > b[1] && b[1] > c[1] && c[1] > d[1]);
+}
+
+#[test]
+fn what_is_drawn_stands_where_the_numbers_under_the_pointer_say() {
+    let points = [(0.3, 4.2), (1.7, 5.1), (2.9, -3.3), (7.7, 0.01)];
+    let curves = [Style::Line, Style::Points].map(|style| Series::new("a", style, points));
+    let text = page("numbers.html", vec![linear(curves.to_vec()).into()]);
+    let data = &figures(&text)[0];
+    let end = |axis: &str, end: &str| data[axis][end].as_f64().expect("a number");
+    let part = |axis: &str, value: f64| {
+        (value - end(axis, "low")) / (end(axis, "high") - end(axis, "low"))
+    };
+    let drawn = [line(&text), dots(&paths(&text, 0, "dots").concat())];
+    for (series, drawn) in drawn.iter().enumerate() {
+        for (point, drawn) in
+            data["series"][series]["points"].as_array().expect("it").iter().zip(drawn)
+        {
+            let [x, y] = [0, 1].map(|at: usize| point[at].as_f64().expect("a number"));
+            let expected = [1e4 * part("x", x), 1e4 * (1.0 - part("y", y))];
+            let off = (drawn[0] - expected[0]).hypot(drawn[1] - expected[1]);
+            assert!(off < 2.0, "{point}: {drawn:?} is not {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn a_page_that_refuses_says_why_before_anything_else() {
+    let summary = Summary {
+        grade: Grade::Refused,
+        reasons: vec!["the gyro gives no data".to_owned()],
+        ..Summary::default()
+    };
+    let report = Report::new("No azimuth", [linear(vec![]).into()]).headed(summary);
+    let text = written("refused.html", &report);
+    let at = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words}"));
+    assert!(at(">refused</span>") < at("the gyro gives no data"));
+    assert!(at("the gyro gives no data") < at("<main>"));
+}
+
+#[test]
+fn a_wedge_is_drawn_wider_by_a_round_number_and_never_over_a_quarter_turn() {
+    for sigma_deg in [1e-6, 3e-4, 0.0393, 0.9, 1.7, 20.0, 60.0] {
+        let rose = Rose { azimuth_deg: 10.0, sigma_deg, limit_deg: None, truth_deg: None };
+        let summary = Summary { rose: Some(rose), ..Summary::default() };
+        let text = written("rose.html", &Report::new("A", []).headed(summary));
+        let times = text.split_once("drawn ").map_or(1.0, |(_, rest)| {
+            rest.split(' ').next().and_then(|word| word.parse().ok()).expect("a number")
+        });
+        let half: f64 = 3.0 * sigma_deg * times;
+        assert!(half <= 40.0 || times == 1.0, "{sigma_deg}: {times}");
+        assert!(half >= 5.0, "{sigma_deg}: {times} is too little to be seen");
+    }
 }
 
 #[test]

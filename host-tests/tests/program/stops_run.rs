@@ -53,7 +53,11 @@ fn a_vehicle_that_never_drives_is_refused_with_the_reason() {
 #[test]
 fn the_report_draws_the_stop_criteria_of_the_board() {
     let (_, page) = page(&[&["run"], &SHORT[..]].concat());
-    let titles = ["Kryt1 = Ω − |ω| (Fig. 6)", "U over the azimuth at the start (Fig. 9)", "stop 2"];
+    let titles = [
+        "Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)",
+        "U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
+        "stop 2",
+    ];
     assert_drawn(&page, &titles);
 }
 

@@ -8,6 +8,7 @@ mod support;
 mod allan_host;
 mod inputs;
 mod laser_gyro;
+mod pages;
 mod recording;
 mod replay;
 mod rotating_figures;

@@ -9,6 +9,7 @@
 pub mod campaign;
 pub mod files;
 pub mod inputs;
+pub mod pages;
 pub mod program;
 pub mod rig;
 

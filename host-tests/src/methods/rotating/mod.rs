@@ -7,7 +7,7 @@ pub mod turns;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 use orientation::alignment::rotating::session::{Procedure, Session};
-use orientation::alignment::rotating::turn::Stretch;
+use orientation::alignment::rotating::turn::{Stretch, Turn};
 use orientation::alignment::rotating::{Sensor, Setting};
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::site::Site;
@@ -54,7 +54,7 @@ impl Replay {
     #[must_use]
     pub fn parts<'a>(&self, rows: &'a [RotatingRow]) -> Vec<Part<'a>> {
         let mut spans: Vec<(f64, f64)> =
-            self.session.turn_accumulator.stretches.iter().filter_map(span).collect();
+            self.session.turn_accumulator.stretches.iter().filter_map(of_stretch).collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let begin = spans.first().map_or(f64::INFINITY, |span| span.0);
         let between = |from: f64, to: f64, is_even| {
@@ -67,9 +67,14 @@ impl Replay {
 }
 
 /// When a stretch's first turn began and its last one ended, s.
-pub(crate) fn span(stretch: &Stretch) -> Option<(f64, f64)> {
-    let [first, last] = [stretch.turns.first()?, stretch.turns.last()?];
-    let since = stretch.since as f64 * 1e-6;
+pub(crate) fn of_stretch(stretch: &Stretch) -> Option<(f64, f64)> {
+    span(&stretch.turns, stretch.since)
+}
+
+/// When the first of these turns began and the last one ended, s; their stretch began at `since` µs.
+pub(crate) fn span(turns: &[Turn], since: u64) -> Option<(f64, f64)> {
+    let [first, last] = [turns.first()?, turns.last()?];
+    let since = since as f64 * 1e-6;
     let begin = f64::from(first.middle) - 0.5 * f64::from(first.seconds);
     let end = f64::from(last.middle) + 0.5 * f64::from(last.seconds);
     Some((since + begin, since + end))

@@ -23,8 +23,8 @@ use orientation::earth::EARTH_RATE;
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{
-    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN, ForceNoise, Metres,
-    Radians, RadiansPerRootSecond, RadiansPerSecond, Seconds,
+    DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN, ForceNoise, Metres, Radians,
+    RadiansPerRootSecond, RadiansPerSecond, Seconds,
 };
 
 use self::noise::White;

@@ -28,7 +28,13 @@ impl Finished for Replay {
         let states = Columns::of("States that were met", &self.states)
             .column("state", |met| met.state)
             .fixed("time, s", 2, |met| met.seconds);
-        let parts = errors.as_ref().map(of_errors).into_iter().map(Part::from).chain([Part::from(states).detail()]).collect();
+        let parts = errors
+            .as_ref()
+            .map(of_errors)
+            .into_iter()
+            .map(Part::from)
+            .chain([Part::from(states).detail()])
+            .collect();
         Outcome {
             sigma_deg: is_found.then(|| last.level_sigma.degrees()),
             pitch_deg: is_found.then(|| last.pitch.degrees()),

@@ -79,10 +79,12 @@ impl Asymptote {
     /// The coefficient's letter and its slope at a place of the line.
     fn note(&self) -> Option<Note> {
         let letter = self.coefficient.name.chars().next()?;
-        let slope = SLOPES[["Q", "N", "B", "K", "R"].iter().position(|it| it.starts_with(letter))?];
+        let slope =
+            SLOPES[["Q", "N", "B", "K", "R"].iter().position(|it| it.starts_with(letter))?];
         let place = if letter == 'N' || letter == 'Q' { 1 } else { self.curve.len() * 4 / 5 };
         let (x, y) = *self.curve.get(place)?;
-        let most = if matches!(self.coefficient.si, Estimate::Found { .. }) { "" } else { " at most" };
+        let most =
+            if matches!(self.coefficient.si, Estimate::Found { .. }) { "" } else { " at most" };
         Some(Note { x, y, text: format!("{letter}{most}, slope {slope}") })
     }
 }

@@ -126,7 +126,9 @@ impl Frame {
             let class = if left > 70.0 { "note left" } else { "note" };
             let text = escaped(&note.text);
             is_inside.then(|| {
-                format!("<span class=\"{class}\" style=\"left:{left:.1}%;top:{top:.1}%\">{text}</span>")
+                format!(
+                    "<span class=\"{class}\" style=\"left:{left:.1}%;top:{top:.1}%\">{text}</span>"
+                )
             })
         });
         each.collect()
@@ -286,7 +288,9 @@ fn legend(figure: &Figure) -> String {
     let entry = |(index, series): (usize, &Series)| {
         let (class, name) = (class(index), escaped(&series.name));
         let sample = sample(series.style);
-        format!("<li><svg class=\"{class}\" viewBox=\"0 0 30 14\" aria-hidden=\"true\">{sample}</svg>{name}</li>\n")
+        format!(
+            "<li><svg class=\"{class}\" viewBox=\"0 0 30 14\" aria-hidden=\"true\">{sample}</svg>{name}</li>\n"
+        )
     };
     let entries: String = figure.series.iter().enumerate().map(entry).collect();
     format!("<ul class=\"legend\">\n{entries}</ul>\n")

@@ -139,9 +139,15 @@ fn of_table(Table { head, rows, .. }: &Table) -> String {
     let body: String = rows.iter().take(ROWS).map(|cells| row("td", cells, head)).collect();
     let none = if rows.is_empty() { row("td", &["none".to_owned()], head) } else { String::new() };
     let more = rows.len().saturating_sub(ROWS);
-    let more = if more > 0 { element("p", &format!("{more} more rows are not shown.")) } else { String::new() };
+    let more = if more > 0 {
+        element("p", &format!("{more} more rows are not shown."))
+    } else {
+        String::new()
+    };
     let head = row("th", head, head);
-    format!("<table{class}>\n<thead>\n{head}</thead>\n<tbody>\n{body}{none}</tbody>\n</table>\n{more}")
+    format!(
+        "<table{class}>\n<thead>\n{head}</thead>\n<tbody>\n{body}{none}</tbody>\n</table>\n{more}"
+    )
 }
 
 /// A row; each cell knows the name of its column, for where it stands without its head.

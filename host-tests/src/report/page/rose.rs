@@ -25,7 +25,8 @@ pub(super) fn rose(rose: &Rose) -> String {
         let half = sigmas * rose.sigma_deg;
         sector(class, [aside(-half), aside(half)])
     };
-    let limits = rose.limit_deg.map(|limit| ray("limit", aside(-limit)) + &ray("limit", aside(limit)));
+    let limits =
+        rose.limit_deg.map(|limit| ray("limit", aside(-limit)) + &ray("limit", aside(limit)));
     let truth = rose.truth_deg.map(|truth| ray("truth", aside(short(truth - azimuth))));
     let label = escaped(&format!("azimuth {azimuth:.2}°"));
     let mut svg = format!(
@@ -37,7 +38,10 @@ pub(super) fn rose(rose: &Rose) -> String {
     svg.extend(limits);
     svg.extend(truth);
     svg += &ray("needle", azimuth);
-    format!("<figure class=\"compass\">{svg}<circle class=\"hub\" r=\"4\"/>\n</svg>\n{}</figure>\n", words(rose, times))
+    format!(
+        "<figure class=\"compass\">{svg}<circle class=\"hub\" r=\"4\"/>\n</svg>\n{}</figure>\n",
+        words(rose, times)
+    )
 }
 
 /// What is drawn, in words.

@@ -51,7 +51,9 @@ fn of_stretch(stretch: &Stretch, span: &Span) -> String {
     let [left, right] = [stretch.from_s, stretch.to_s].map(|at| 100.0 * span.part(at));
     let (class, words) = (class(stretch.kind), escaped(&stretch.words));
     let width = (right - left).max(LEAST);
-    format!("<i class=\"{class}\" style=\"left:{left:.2}%;width:{width:.2}%\" title=\"{words}\"></i>")
+    format!(
+        "<i class=\"{class}\" style=\"left:{left:.2}%;width:{width:.2}%\" title=\"{words}\"></i>"
+    )
 }
 
 /// The times below the lanes; a phone leaves out every other one.

@@ -6,6 +6,7 @@ use hal_mock::noise::Generator;
 use serde_json::Value;
 
 use crate::support::files::{Scratch, stored};
+use crate::support::pages::{figure, series};
 use crate::support::program::{assert_drawn, assert_misuse, code, meridian, object, page, text};
 
 fn allan(arguments: &[&str]) -> Output {
@@ -111,7 +112,19 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
         "R rate ramp: not observable",
     ];
     assert_drawn(&html, &parts);
-    assert_eq!(html.matches("<circle cx").count(), 28 + 1, "every point, and one in the legend");
+    let curve = figure(&html, "Allan deviation");
+    let [known, pale] = ["overlapping", "fewer than 8"].map(|name| series(&curve, name).len());
+    assert_eq!(known + pale, 28, "every point");
+    assert!(pale > 0, "the longest times say little");
+    let styles = |letter: &str| {
+        let all = curve["series"].as_array().expect("it has series").iter();
+        let of =
+            all.filter(|series| series["name"].as_str().is_some_and(|it| it.starts_with(letter)));
+        of.map(|series| series["style"].as_str().expect("a style")).collect::<Vec<_>>()
+    };
+    assert_eq!([styles("Q "), styles("R ")].concat(), ["dotted"; 2], "upper limits alone");
+    assert_eq!([styles("N "), styles("B "), styles("K ")].concat(), ["dashed"; 3]);
+    assert!(html.contains(">N, slope −½</span>") && html.contains(">R at most, slope +1</span>"));
 }
 
 #[test]

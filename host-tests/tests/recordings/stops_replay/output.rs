@@ -97,14 +97,16 @@ fn the_block_prints_both_ends_the_paper_and_the_stops() {
 fn the_report_draws_the_papers_figures() {
     let (_, page) = page(&["replay", &stored(FOG)]);
     let titles = [
-        "U over the azimuth at the start (Fig. 9)",
+        "U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
         "U near its minimum",
-        "Kryt1 = Ω − |ω| (Fig. 6)",
-        "Kryt2 = g − |f| (Fig. 7)",
+        "Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)",
+        "Kryt2 = g − |f| (Szymanowski 2003, Fig. 7)",
         "threshold",
         "stop 2",
         "W = 2 Ω_h |sin(δ/2)|",
-        "Azimuth at the end, with 1σ",
+        "Where the vehicle went",
+        "What the solution leaves of the vertical at each stop",
+        "Azimuth at the end as it came to stand",
         "Error budget",
         "Stops",
     ];

@@ -5,9 +5,14 @@ use std::f64::consts::TAU;
 
 use orientation::alignment::rotating::average::Average;
 use orientation::alignment::rotating::conclusion::Conclusion;
+use orientation::alignment::rotating::misalignment::{self, AxisMisalignment};
+use orientation::alignment::rotating::turn::Stretch;
+
+use rustfft::num_complex::Complex;
 
 use crate::methods::rotating::part::Part;
-use crate::methods::rotating::turns::{each_turn, turn_hz};
+use crate::methods::rotating::turns::each_turn;
+use crate::methods::rotating::{Replay, span};
 use crate::output::degrees_per_hour;
 use crate::recording::RotatingRow;
 use crate::report::{Axis, Figure, Point, Series, Shape, Style};
@@ -17,28 +22,31 @@ const SECTORS: usize = 48;
 /// What the axis shows beyond a turn at either end, °.
 const BEYOND: f64 = 4.0;
 
-/// What the samples of a sector have in common.
-#[derive(Clone, Copy, Default)]
-struct Sector {
-    count: f64,
-    sum: f64,
-    squares: f64,
-}
+/// Mean rate of a sector in each turn that has samples there, rad/s: neighbouring samples of a slow sensor share their
+/// noise, those of different turns do not.
+#[derive(Clone, Default)]
+struct Sector(Vec<f64>);
 
 impl Sector {
-    fn take(&mut self, rate: f64) {
-        self.count += 1.0;
-        self.sum += rate;
-        self.squares += rate * rate;
+    fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
     }
 
-    /// Mean, and its 1σ by the scatter about it; none of fewer than two samples.
-    fn mean(&self) -> Option<[f64; 2]> {
-        let Self { count, sum, squares } = *self;
-        let mean = sum / count;
-        let variance = (squares / count - mean * mean).max(0.0) / (count - 1.0);
-        (count > 1.0).then(|| [mean, variance.sqrt()])
+    /// Sum of the squared distances from the mean, and its degrees of freedom.
+    fn scatter(&self) -> [f64; 2] {
+        let mean = self.mean();
+        let squares = self.0.iter().map(|rate| (rate - mean) * (rate - mean)).sum();
+        [squares, self.0.len().saturating_sub(1) as f64]
     }
+}
+
+/// Variance of a turn's mean in a sector, as all sectors show it, (rad/s)².
+fn variance(sectors: &[Sector]) -> f64 {
+    let [squares, degrees] = sectors
+        .iter()
+        .map(Sector::scatter)
+        .fold([0.0; 2], |sum, scatter| [sum[0] + scatter[0], sum[1] + scatter[1]]);
+    squares / f64::max(degrees, 1.0)
 }
 
 /// An even stretch, folded.
@@ -51,25 +59,27 @@ struct Folded<'a> {
 }
 
 impl<'a> Folded<'a> {
-    /// The rows of a part, each turn less its own mean, and less the drift within it.
+    /// The rows of a part without the platform's unevenness, each turn less its own mean, and less the drift within it.
     fn of(part: &Part<'_>, average: &'a Average) -> Option<Self> {
         let turns: Vec<&[RotatingRow]> = each_turn(part.rows).collect();
         let means: Vec<[f64; 2]> = turns.iter().map(|turn| mean(turn)).collect();
         let [[begin, first], [end, last]] = [*means.first()?, *means.last()?];
         let slope = if end > begin { (last - first) / (end - begin) } else { 0.0 };
-        let mut sectors = [Sector::default(); SECTORS];
+        let mut sectors = vec![Sector::default(); SECTORS];
         for (turn, [time_s, rate]) in turns.iter().zip(&means) {
-            for row in *turn {
-                let left = row.rate_rad_s - rate - slope * (row.time_s - time_s);
-                sectors[sector(row)].take(left);
+            for rows in turn.chunk_by(|a, b| sector(a) == sector(b)) {
+                let [middle_s, found] = mean(rows);
+                sectors[sector(&rows[0])].0.push(found - rate - slope * (middle_s - time_s));
             }
         }
+        let variance = variance(&sectors);
         let point = |(index, sector): (usize, &Sector)| {
-            let [mean, sigma] = sector.mean()?.map(degrees_per_hour);
-            Some(Point::within((index as f64 + 0.5) * 360.0 / SECTORS as f64, mean, sigma))
+            let sigma = (variance / sector.0.len() as f64).sqrt();
+            let [rate, sigma] = [sector.mean(), sigma].map(degrees_per_hour);
+            Point::within((index as f64 + 0.5) * 360.0 / SECTORS as f64, rate, sigma)
         };
-        let points = sectors.iter().enumerate().filter_map(point).collect();
-        Some(Self { name: part.to_string(), points, average })
+        let there = sectors.iter().enumerate().filter(|(_, sector)| !sector.0.is_empty());
+        Some(Self { name: part.to_string(), points: there.map(point).collect(), average })
     }
 
     /// What the solution makes of the rate at an angle, °: the mean over a sector of its phasor.
@@ -113,25 +123,70 @@ fn mean(rows: &[RotatingRow]) -> [f64; 2] {
     [sum(|row| row.time_s), sum(|row| row.rate_rad_s)]
 }
 
-/// The even parts folded with the solution, and what it leaves; `parts` are freed of the axis misalignment.
-pub(super) fn figures(conclusion: &Conclusion, parts: &[Part<'_>]) -> [Figure; 2] {
-    let even = parts.iter().filter(|part| part.is_even);
-    let folded: Vec<Folded> = even
-        .filter_map(|part| Folded::of(part, nearest(conclusion, part)?))
-        .collect();
+/// The even stretches folded with the solution, and what it leaves.
+pub(super) fn figures(
+    replay: &Replay,
+    conclusion: &Conclusion,
+    rows: &[RotatingRow],
+) -> [Figure; 2] {
+    let stretches = replay.session.turn_accumulator.stretches.iter();
+    let folded = |stretch: &Stretch| {
+        let average = nearest(conclusion, stretch)?;
+        let (from, to) = used(stretch, average)?;
+        let part = Part::between(rows, replay.zero_s + from, replay.zero_s + to, true);
+        let speed = stretch.sense.signed(stretch.speed());
+        let rows = &without_unevenness(&conclusion.misalignments, speed, part.rows);
+        Folded::of(&Part { rows, ..part }, average)
+    };
+    let folded: Vec<Folded> = stretches.filter_map(folded).collect();
     let angle = || Axis::from(["stage angle", "°"]).between([-BEYOND, 360.0 + BEYOND]);
     let fits = folded.iter().map(Folded::curve).chain(folded.iter().map(Folded::measured));
     let left = folded.iter().map(Folded::left);
+    let rate = ["rate less its mean", "°/h"];
     [
-        Figure::new("The rate folded over the stage angle", angle(), ["rate less its mean", "°/h"], fits),
+        Figure::new("The rate folded over the stage angle", angle(), rate, fits),
         Figure::new("What the solution leaves", angle(), ["residual", "°/h"], left)
             .shaped(Shape::Low),
     ]
 }
 
-/// The average of the stretch that turns as a part does.
-fn nearest<'a>(conclusion: &'a Conclusion, part: &Part<'_>) -> Option<&'a Average> {
-    let speed = TAU * turn_hz(part.rows);
+/// When the turns began and ended that took part, s: where a sensor settles, the first ones did not.
+fn used(stretch: &Stretch, average: &Average) -> Option<(f64, f64)> {
+    let [before, after] = average.ends.map(usize::from);
+    let turns = stretch.turns.get(before..stretch.turns.len().checked_sub(after)?)?;
+    span(turns, stretch.since)
+}
+
+/// Harmonics of the platform's unevenness that a sensor shows.
+const HARMONICS: u32 = 4;
+
+/// The rows of whole turns at a speed, rad/s, without what the sensor shows of the platform's unevenness: each harmonic of
+/// its rate passes the misalignment's response.
+fn without_unevenness(
+    all: &[AxisMisalignment],
+    speed: f64,
+    rows: &[RotatingRow],
+) -> Vec<RotatingRow> {
+    let mut left = rows.to_vec();
+    let Some(found) = misalignment::nearest(all, speed) else { return left };
+    let whole: Vec<&RotatingRow> = each_turn(rows).flatten().collect();
+    let (count, sum) = (whole.len().max(1) as f64, |row: &&RotatingRow| row.stage_rate_rad_s);
+    let (even, share) = (whole.iter().map(sum).sum::<f64>() / count, 2.0 / count);
+    for harmonic in 1..=HARMONICS {
+        let times = f64::from(harmonic);
+        let turned = |row: &RotatingRow| Complex::from_polar(1.0, times * row.stage_rad);
+        let part = |row: &&RotatingRow| turned(row).conj() * (row.stage_rate_rad_s - even);
+        let uneven: Complex<f64> = whole.iter().map(part).sum();
+        let response = found.response(times * speed);
+        let felt = Complex::new(response.re, response.im) * uneven * share;
+        left.iter_mut().for_each(|row| row.rate_rad_s -= (felt * turned(row)).re);
+    }
+    left
+}
+
+/// The average of a stretch.
+fn nearest<'a>(conclusion: &'a Conclusion, stretch: &Stretch) -> Option<&'a Average> {
+    let speed = stretch.sense.signed(stretch.speed());
     let off = |average: &Average| (average.sense.signed(average.speed) - speed).abs();
     super::averages(conclusion).min_by(|a, b| off(a).total_cmp(&off(b)))
 }

@@ -325,13 +325,18 @@ fn table_of_stretches(conclusion: &Conclusion) -> Part {
 
 /// The fold with what the solution leaves, how the azimuth came to stand, what was done when; then spectra of every part
 /// as it came and freed of the axis misalignment, and the phasors of its turns.
-fn figures(replay: &Replay, conclusion: &Conclusion, rows: &[RotatingRow], truth_deg: Option<f64>) -> Vec<Part> {
+fn figures(
+    replay: &Replay,
+    conclusion: &Conclusion,
+    rows: &[RotatingRow],
+    truth_deg: Option<f64>,
+) -> Vec<Part> {
     let without = match conclusion.misalignments.first() {
         Some(found) => freed(rows, found.sine, found.quadrature.0),
         None => rows.to_vec(),
     };
     let (parts, freed) = (replay.parts(rows), replay.parts(&without));
-    let mut page: Vec<Part> = fold::figures(conclusion, &freed).map(Part::from).into();
+    let mut page: Vec<Part> = fold::figures(replay, conclusion, rows).map(Part::from).into();
     page.extend(progress::convergence(replay, rows, truth_deg).into_iter().map(Part::from));
     page.push(progress::timeline(replay).into());
     for (part, freed) in parts.iter().zip(&freed) {

@@ -2,7 +2,7 @@
 
 use orientation::units::Radians;
 
-use crate::methods::rotating::{Replay, again_until, span};
+use crate::methods::rotating::{Replay, again_until, of_stretch};
 use crate::recording::RotatingRow;
 use crate::report::{Figure, Kind, Lane, Milestone, Stretch, Timeline, convergence as figures};
 
@@ -10,7 +10,11 @@ use crate::report::{Figure, Kind, Lane, Milestone, Stretch, Timeline, convergenc
 const CONCLUSIONS: usize = 24;
 
 /// The azimuth of more and more of the recording, from where the platform turns the other way for the first time.
-pub(super) fn convergence(replay: &Replay, rows: &[RotatingRow], truth_deg: Option<f64>) -> Vec<Figure> {
+pub(super) fn convergence(
+    replay: &Replay,
+    rows: &[RotatingRow],
+    truth_deg: Option<f64>,
+) -> Vec<Figure> {
     let begin = rows.len() / CONCLUSIONS;
     let ends = (1..=CONCLUSIONS).map(|part| begin.max(rows.len() * part / CONCLUSIONS));
     let all: Vec<Milestone> = ends.filter_map(|end| milestone(replay, &rows[..end])).collect();
@@ -31,7 +35,7 @@ fn milestone(replay: &Replay, rows: &[RotatingRow]) -> Option<Milestone> {
 pub(super) fn timeline(replay: &Replay) -> Timeline {
     let stretches = &replay.session.turn_accumulator.stretches;
     let spans = stretches.iter().filter_map(|stretch| {
-        let (from, to) = span(stretch)?;
+        let (from, to) = of_stretch(stretch)?;
         let hertz = stretch.speed().abs() / std::f64::consts::TAU;
         let words = format!("{} turns {} at {hertz:.4} Hz", stretch.count(), stretch.sense);
         let [from_s, to_s] = [from, to].map(|time| replay.zero_s + time);

@@ -57,8 +57,8 @@ pub(super) fn residuals(replay: &Replay, stops: &[StopDetails]) -> Option<Figure
         });
         points.collect::<Vec<_>>()
     };
-    let series = [("north", 0), ("east", 1)]
-        .map(|(name, axis)| Series::new(name, Style::Points, of(axis)));
+    let series =
+        [("north", 0), ("east", 1)].map(|(name, axis)| Series::new(name, Style::Points, of(axis)));
     let title = "What the solution leaves of the vertical at each stop, with 1σ of noise and accelerometers";
     let is_there = !of(0).is_empty();
     is_there.then(|| Figure::over_time(title, ["tilt", "°"], series).shaped(Shape::Low))

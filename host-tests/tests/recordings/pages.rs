@@ -1,0 +1,138 @@
+//! What the pages of recordings show: fits that lie within the error bars of what was measured, by the pages' own data.
+
+use crate::support::files::{recordings, stored};
+use crate::support::pages::{assert_well_formed, figure, figures, series};
+use crate::support::program::page;
+
+/// Most bytes of a page.
+const LARGEST: usize = 500_000;
+
+/// The names of the stored recordings that begin so.
+fn named(prefix: &str) -> Vec<String> {
+    let files = std::fs::read_dir(recordings()).expect("the folder is there");
+    let names = files.filter_map(|file| file.ok()?.file_name().into_string().ok());
+    let names = names.filter_map(|name| name.strip_suffix(".csv.gz").map(str::to_owned));
+    let mut names: Vec<String> = names.filter(|name| name.starts_with(prefix)).collect();
+    names.sort();
+    names
+}
+
+/// Residuals over their own 1σ, of points x, y, lower and upper limit.
+fn normalised(points: &[Vec<f64>]) -> Vec<f64> {
+    points.iter().map(|point| point[1] / (0.5 * (point[3] - point[2]))).collect()
+}
+
+/// Panics unless numbers could be a normal distribution's of variance one: their mean square lies within five of its
+/// standard deviations and what `unseen` parameters take of it, and none beyond 4.5.
+#[track_caller]
+fn assert_normal(name: &str, all: &[f64], parameters: usize) {
+    let count = all.len() as f64;
+    let square = all.iter().map(|z| z * z).sum::<f64>() / count;
+    let spread = 5.0 * (2.0 / count).sqrt();
+    let taken = parameters as f64 / count;
+    assert!(square < 1.0 + spread, "{name}: mean square {square} of {count}");
+    assert!(
+        square > (1.0 - taken - spread).min(0.5).max(0.02),
+        "{name}: mean square {square} of {count}"
+    );
+    assert!(all.iter().all(|z| z.abs() < 4.5), "{name}: {all:?}");
+}
+
+/// Distance of a point from a curve along the vertical axis, at the curve's point that is nearest along the horizontal one.
+fn off(curve: &[Vec<f64>], x: f64, y: f64) -> f64 {
+    let at = curve.iter().filter(|point| (point[0] - x).abs() < 1e-3);
+    at.map(|point| (point[1] - y).abs()).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn the_fitted_curve_lies_within_the_error_bars_of_the_dwells_on_every_recording_of_a_stage() {
+    let names = [named("stepwise"), named("positions")].concat();
+    assert!(names.len() >= 10, "{names:?}");
+    for name in &names {
+        let (_, page) = page(&["replay", &stored(name)]);
+        assert_well_formed(&page);
+        let fit = figure(&page, "Mean rate of each dwell");
+        let (curve, dwells) = (series(&fit, "the whole model"), series(&fit, "dwells"));
+        let residuals = series(&figure(&page, "What the fit leaves"), "measured less");
+        assert_eq!(dwells.len(), residuals.len(), "{name}");
+        for (dwell, residual) in dwells.iter().zip(&residuals) {
+            let sigma = 0.5 * (residual[3] - residual[2]);
+            let model = dwell[1] - residual[1];
+            // Six digits of the rate are shown.
+            let missed = off(&curve, dwell[0], model);
+            assert!(missed < 0.1 * sigma, "{name}: the curve passes {missed} beside {dwell:?}");
+        }
+        assert_normal(name, &normalised(&residuals), 4);
+    }
+}
+
+#[test]
+fn the_fold_of_a_turning_platform_lies_within_the_error_bars_of_its_sectors() {
+    for name in named("rotating") {
+        let (_, page) = page(&["replay", &stored(&name)]);
+        let left = figure(&page, "What the solution leaves");
+        for of in left["series"].as_array().expect("it has series") {
+            let stretch = of["name"].as_str().expect("a name");
+            let residuals = series(&left, stretch);
+            assert_eq!(residuals.len(), 48, "{name}, {stretch}");
+            assert_normal(&format!("{name}, {stretch}"), &normalised(&residuals), 4);
+        }
+    }
+}
+
+#[test]
+fn what_the_solution_leaves_of_a_vehicles_stops_lies_within_their_error_bars() {
+    for name in named("drive") {
+        let (_, page) = page(&["replay", &stored(&name)]);
+        let left = figure(&page, "What the solution leaves of the vertical");
+        let all = ["north", "east"].map(|axis| normalised(&series(&left, axis))).concat();
+        assert!(all.len() >= 4 && all.iter().all(|z| z.abs() < 4.5), "{name}: {all:?}");
+        let way = figure(&page, "Where the vehicle went");
+        let (path, stops) = (series(&way, "way"), series(&way, "stops"));
+        for stop in &stops {
+            let metres = |point: &Vec<f64>| (point[0] - stop[0]).hypot(point[1] - stop[1]);
+            let nearest = path.iter().map(metres).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1.0, "{name}: the way passes {nearest} m beside {stop:?}");
+        }
+    }
+}
+
+#[test]
+fn the_azimuth_comes_to_stand_at_the_result_with_its_sigma_over_the_limit() {
+    let names = ["stepwise-circle", "rotating-gyro", "drive-fog-three-stops", "parked-swaying"];
+    for name in names {
+        let (output, page) = page(&["replay", &stored(name)]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let line =
+            text.lines().find(|line| line.contains("azimuth of body x")).expect("it is there");
+        let found: f64 = line
+            .split_whitespace()
+            .find_map(|word| word.strip_suffix('°')?.parse().ok())
+            .expect("a number of degrees");
+        let sigmas = figure(&page, "σ and its limit");
+        let azimuths = figures(&page)
+            .into_iter()
+            .find(|figure| {
+                figure["title"].as_str().is_some_and(|it| it.contains("as it came to stand"))
+            })
+            .expect("it is drawn");
+        let last = series(&azimuths, "what is known").last().cloned().expect("a point");
+        assert!((last[1] - found).abs() < 0.01, "{name}: {last:?} is not {found}");
+        let (sigma, limit) = (series(&sigmas, "σ"), series(&sigmas, "limit"));
+        assert_eq!(sigma.len(), limit.len(), "{name}");
+        for (sigma, limit) in sigma.iter().zip(&limit) {
+            assert!(sigma[1] > 0.98 * limit[1], "{name}: σ {sigma:?} below the limit {limit:?}");
+        }
+        assert!(sigma[0][1] > sigma[sigma.len() - 1][1], "{name}: σ falls");
+    }
+}
+
+#[test]
+fn no_page_of_a_recording_is_too_large_to_be_sent_around() {
+    for name in named("") {
+        let command = if name.starts_with("static") { "allan" } else { "replay" };
+        let (_, page) = page(&[command, &stored(&name)]);
+        assert!(page.len() < LARGEST, "{name}: {} bytes", page.len());
+        assert_well_formed(&page);
+    }
+}
