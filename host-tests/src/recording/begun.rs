@@ -1,0 +1,145 @@
+//! A recording whose header is read and whose rows are not: what all kinds begin with.
+
+use std::io::Read;
+
+use super::error::{Fault, Place, ReadError};
+use super::header::{Collector, Header};
+use super::lines::{Lines, MAX_STREAMED_ROWS};
+use super::problem::Problem;
+use super::rows::{Rows, StaticRow};
+use super::warning::{MOST, Warning};
+use super::{Kind, stops};
+
+/// A header, the line of column names, and the input that stands before the first row.
+pub(super) struct Begun<'r> {
+    /// The lines behind the column names.
+    pub lines: Lines<'r>,
+    /// The header's lines.
+    pub entries: Collector,
+    /// The kind that it names.
+    pub kind: Kind,
+    /// What a solver may know.
+    pub header: Header,
+    /// The line of column names: its number and text.
+    pub names: (u64, String),
+    /// What was passed over so far.
+    pub warnings: Vec<Warning>,
+}
+
+impl<'r> Begun<'r> {
+    /// Reads the header and the line of column names.
+    pub fn new(mut lines: Lines<'r>) -> Result<Self, Fault> {
+        let (entries, names) = preamble(&mut lines)?;
+        let kind = kind(&entries)?;
+        let mut header = entries.header()?;
+        if kind == Kind::Imu {
+            stops::read(&entries, &mut header)?;
+        }
+        let names = names.ok_or_else(|| Fault::line(lines.number(), Problem::NoColumnNames))?;
+        let warnings = entries.warnings();
+        Ok(Self { lines, entries, kind, header, names, warnings })
+    }
+}
+
+/// The line of column names: its number and text.
+type Names = Option<(u64, String)>;
+
+/// Reads the header and the line of column names, which is the first that is no comment.
+fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
+    let mut entries = Collector::default();
+    let mut is_empty = true;
+    while let Some(line) = lines.next()? {
+        is_empty = false;
+        if line.text.starts_with('{') {
+            return Err(Fault::line(line.number, Problem::Inputs));
+        }
+        if !line.text.starts_with('#') {
+            return Ok((entries, Some((line.number, line.text.to_owned()))));
+        }
+        entries.add(line.number, line.text)?;
+    }
+    if is_empty { Err(Fault::new(Place::Whole, Problem::Empty)) } else { Ok((entries, None)) }
+}
+
+/// The kind that the header names.
+fn kind(entries: &Collector) -> Result<Kind, Fault> {
+    let missing = || match entries.resembling("kind") {
+        Some((line, name)) => Fault::key(line, name, Problem::NoKind),
+        None => Fault::new(Place::Whole, Problem::NoKind),
+    };
+    let (line, text) = entries.get("kind").ok_or_else(missing)?;
+    let unknown = || Fault::key(line, "kind", Problem::UnknownKind(text.to_owned()));
+    Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)
+}
+
+/// A recording of kind `static` that is read row by row, so that its length costs no memory.
+pub struct RestRows<'r> {
+    file: String,
+    lines: Lines<'r>,
+    rows: Rows<StaticRow>,
+    /// The header's lines; they are checked once more behind the last row.
+    entries: Collector,
+    /// Line of the column names.
+    line: u64,
+    /// What the header says.
+    pub header: Header,
+    /// What was passed over so far.
+    pub warnings: Vec<Warning>,
+}
+
+/// A recording that was asked for its rows at rest.
+pub enum Opened<'r> {
+    /// It is of kind `static`.
+    AtRest(Box<RestRows<'r>>),
+    /// It is of another kind; what was passed over in its header.
+    Other(Kind, Vec<Warning>),
+}
+
+impl<'r> RestRows<'r> {
+    /// Reads the header of a recording from any reader, plain or gzip-compressed; `name` stands in the errors.
+    ///
+    /// # Errors
+    /// As [`super::read`].
+    pub fn open(name: &str, reader: impl Read + 'r) -> Result<Opened<'r>, ReadError> {
+        let begun = Lines::within(reader, MAX_STREAMED_ROWS).and_then(Begun::new);
+        begun.and_then(|begun| Self::begin(name, begun)).map_err(|fault| fault.in_file(name))
+    }
+
+    fn begin(name: &str, begun: Begun<'r>) -> Result<Opened<'r>, Fault> {
+        let Begun { lines, entries, kind, header, names: (line, names), mut warnings } = begun;
+        if kind != Kind::Static {
+            return Ok(Opened::Other(kind, warnings));
+        }
+        let rows = Rows::new(line, &names, &mut warnings)?;
+        let file = name.to_owned();
+        let begun = Self { file, lines, rows, entries, line, header, warnings };
+        Ok(Opened::AtRest(Box::new(begun)))
+    }
+
+    /// Reads so many rows, or what is left of them, of which a recording has one at least; whether there may be more.
+    ///
+    /// # Errors
+    /// As [`super::read`].
+    pub fn read(&mut self, most: usize, take: impl FnMut(StaticRow)) -> Result<bool, ReadError> {
+        self.rows(most, take).map_err(|fault| fault.in_file(&self.file))
+    }
+
+    fn rows(&mut self, most: usize, mut take: impl FnMut(StaticRow)) -> Result<bool, Fault> {
+        for _ in 0..most {
+            match self.rows.next(&mut self.lines, &mut self.warnings)? {
+                Some(row) => take(row),
+                None => return self.end().map(|()| false),
+            }
+        }
+        Ok(true)
+    }
+
+    /// Checks what can be said only behind the last row.
+    fn end(&mut self) -> Result<(), Fault> {
+        if self.rows.is_empty() {
+            return Err(Fault::line(self.line, Problem::NoRows));
+        }
+        self.warnings.truncate(MOST);
+        std::mem::take(&mut self.entries).truth().map(drop)
+    }
+}
