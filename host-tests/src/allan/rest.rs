@@ -211,7 +211,9 @@ impl Gatherer {
     fn of(taken: &Receiver<Vec<Sample>>, emptied: &Sender<Vec<Sample>>) -> Self {
         let mut gatherer = Self::default();
         for mut batch in taken {
-            batch.drain(..).for_each(|sample| gatherer.take(sample));
+            for sample in batch.drain(..) {
+                gatherer.take(sample);
+            }
             // Once all is read nobody needs it again.
             let _ = emptied.send(batch);
         }
@@ -239,7 +241,9 @@ impl Gatherer {
         let first = std::mem::take(&mut self.first);
         self.spacer = Spacer::learnt(first.iter().map(|sample| sample.time_s));
         if self.spacer.is_some() {
-            first.into_iter().for_each(|sample| self.take(sample));
+            for sample in first {
+                self.take(sample);
+            }
         }
     }
 

@@ -153,19 +153,19 @@ impl Shown<'_> {
             .with("rate_hz", 1.0 / rest.spacing.period_s)
             .with("gaps", rest.spacing.gaps.iter().map(gap).collect::<Value>())
             .with("notes", self.notes())
-            .with_all(self.analysis.as_ref().ok().map(|analysis| self.found(analysis)).as_ref())
+            .with_all(self.analysis.as_ref().ok().map(found).as_ref())
             .with("schedule", self.schedule.as_ref().map(|(planned, _)| planned))
             .with("schedule_angles", "at the equator; times sec φ elsewhere")
     }
+}
 
-    /// The Allan deviations and what was fitted to them.
-    fn found(&self, analysis: &Analysis) -> Keys {
-        let coefficients = coefficients(&analysis.fit).into_iter();
-        coefficients
-            .fold(deviations(&analysis.points), |keys, it| it.add(keys))
-            .with("chi_square", analysis.fit.chi_square)
-            .with("fit_degrees", analysis.fit.degrees)
-    }
+/// The Allan deviations and what was fitted to them.
+fn found(analysis: &Analysis) -> Keys {
+    let coefficients = coefficients(&analysis.fit).into_iter();
+    coefficients
+        .fold(deviations(&analysis.points), |keys, it| it.add(keys))
+        .with("chi_square", analysis.fit.chi_square)
+        .with("fit_degrees", analysis.fit.degrees)
 }
 
 /// A number with six decimal places but without zeros at the end.

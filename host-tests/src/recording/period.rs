@@ -49,9 +49,9 @@ impl Steps {
     pub(crate) fn of<R>(rows: &[R], time_s: impl Fn(&R) -> f64) -> Option<Self> {
         let between = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
         let mut steps = Self::beside(median(between().collect())?);
-        between().for_each(|step| {
+        for step in between() {
             steps.add(step);
-        });
+        }
         Some(steps)
     }
 
