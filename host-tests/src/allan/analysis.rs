@@ -1,8 +1,8 @@
 //! What a recording at rest says about its gyro: Allan deviation with limits, and the coefficients.
 //!
-//! The fit is the board's own ([`orientation::noise::fit`]), from the points of [`super::Overlapping`]. A limit is that of 68.3 % (1σ of a normal distribution): the variance found times its
-//! degrees of freedom over the true one is distributed as chi-square, with the degrees of freedom
-//! that the fitted noise gives (NIST SP 1065, section 5.4).
+//! The fit is the board's own ([`orientation::noise::fit`]), from the points of [`super::Overlapping`]. A limit is that of
+//! 68.3 % (1σ of a normal distribution): the variance found times its degrees of freedom over the true one is distributed
+//! as chi-square, with the degrees of freedom that the fitted noise gives (NIST SP 1065, section 5.4).
 
 use orientation::noise::allan::Point;
 use orientation::noise::allan::covariance::degrees_of_freedom;

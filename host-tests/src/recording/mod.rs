@@ -10,6 +10,7 @@
 //! What a simulator knows goes to [`Truth`] while the file is read; [`Recording::into_parts`] takes
 //! it off, and a solver is given only a [`Header`] and a [`Body`], which cannot hold it.
 
+mod at_rest;
 mod begun;
 mod checksum;
 mod columns;
@@ -37,7 +38,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-pub use begun::{Opened, RestRows};
+pub use at_rest::{Opened, RestRows};
 pub use error::{Place, ReadError};
 pub(crate) use given::rate;
 pub use given::{GIVEN, Given};
