@@ -7,13 +7,13 @@ use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde_json::{Value, json};
 
 use super::degrees_per_hour;
-use crate::allan::analysis::{Analysis, Confident, Rest};
-use crate::allan::speed::Comparison;
+use crate::allan::analysis::{Analysis, Confident};
+use crate::allan::rest::Rest;
 use crate::outcome::SCHEMA;
 use crate::outcome::keys::Keys;
 use crate::planning::Planned;
 use crate::recording::Gap;
-use crate::report::{Grade, Lines, Part, Report, Summary};
+use crate::report::{Grade, Lines, Report, Summary};
 
 /// χ² over its degrees of freedom beyond which the model does not fit.
 const MISFIT: f64 = 3.0;
@@ -26,8 +26,6 @@ pub struct Shown<'a> {
     pub rest: &'a Rest,
     /// Noise that the record shows, or why it shows none.
     pub analysis: &'a Result<Analysis, FitError>,
-    /// How both estimators did, where it says something.
-    pub comparison: Option<Comparison>,
     /// The schedule that suits this noise, and in words, where one is planned.
     pub schedule: Option<(Planned, String)>,
 }
@@ -92,14 +90,12 @@ impl Coefficient {
 }
 
 impl Shown<'_> {
-    /// The report for terminal and page: the record, the noise that it shows, and how both estimators did.
+    /// The report for terminal and page: the record, the noise that it shows, and the schedule that suits it.
     pub fn report(&self) -> Report {
         let analysis = self.analysis.as_ref();
         let parts = analysis.into_iter().flat_map(page::parts);
-        let beside = self.comparison.as_ref().map(speed).unwrap_or_default();
         let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
         let title = format!("{found} {} in {}", self.rest.column, self.name);
-        let parts = parts.chain([Part::from(beside).detail()]);
         Report::new(title, parts).headed(self.summary())
     }
 
@@ -136,7 +132,7 @@ impl Shown<'_> {
     /// What is to be known of the record, and of what the fit leaves open.
     pub(crate) fn notes(&self) -> Vec<String> {
         let fit = self.analysis.as_ref().ok().map(|analysis| &analysis.fit);
-        let seconds = self.rest.rates.len() as f64 * self.rest.spacing.period_s;
+        let seconds = self.rest.samples as f64 * self.rest.spacing.period_s;
         let misfit = fit.filter(|fit| fit.chi_square > MISFIT * fit.degrees as f64).map(|_| {
             "the Allan variance does not follow the noise model: something else moves the rate, and the \
              coefficients say little"
@@ -152,8 +148,8 @@ impl Shown<'_> {
 
     /// How much there is of it.
     fn record(&self) -> String {
-        let (samples, period) = (self.rest.rates.len(), self.rest.spacing.period_s);
-        let segments = self.rest.spacing.gaps.len() + 1;
+        let (samples, period) = (self.rest.samples, self.rest.spacing.period_s);
+        let segments = self.rest.spacing.gap_count + 1;
         let plural = if segments == 1 { "" } else { "s" };
         let (rate, seconds) = (1.0 / period, samples as f64 * period);
         let rate = short(rate);
@@ -173,43 +169,28 @@ impl Shown<'_> {
             .with("status", status)
             .with_found("reason", reason)
             .with("column", rest.column)
-            .with("samples", rest.rates.len())
+            .with("samples", rest.samples)
             .with("rate_hz", 1.0 / rest.spacing.period_s)
             .with("gaps", rest.spacing.gaps.iter().map(gap).collect::<Value>())
             .with("notes", self.notes())
-            .with_all(self.analysis.as_ref().ok().map(|analysis| self.found(analysis)).as_ref())
+            .with_all(self.analysis.as_ref().ok().map(found).as_ref())
             .with("schedule", self.schedule.as_ref().map(|(planned, _)| planned))
             .with("schedule_angles", "at the equator; times sec φ elsewhere")
     }
+}
 
-    /// The Allan deviations and what was fitted to them.
-    fn found(&self, analysis: &Analysis) -> Keys {
-        let comparison = self.comparison.as_ref();
-        let coefficients = coefficients(&analysis.fit).into_iter();
-        coefficients
-            .fold(deviations(&analysis.points), |keys, it| it.add(keys))
-            .with("chi_square", analysis.fit.chi_square)
-            .with("fit_degrees", analysis.fit.degrees)
-            .with("streaming_samples_s", comparison.map(|both| both.streaming))
-            .with("batch_samples_s", comparison.map(|both| both.batch))
-            .with("streaming_difference", comparison.map(|both| both.difference))
-    }
+/// The Allan deviations and what was fitted to them.
+fn found(analysis: &Analysis) -> Keys {
+    let coefficients = coefficients(&analysis.fit).into_iter();
+    coefficients
+        .fold(deviations(&analysis.points), |keys, it| it.add(keys))
+        .with("chi_square", analysis.fit.chi_square)
+        .with("fit_degrees", analysis.fit.degrees)
 }
 
 /// A number with six decimal places but without zeros at the end.
 fn short(number: f64) -> String {
     format!("{number:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-fn speed(comparison: &Comparison) -> Lines {
-    let Comparison { streaming, batch, points, difference } = comparison;
-    let [streaming, batch] = [streaming, batch].map(|rate| rate / 1e6);
-    let text = format!("{streaming:.2} million samples/s, the board's estimator on this machine");
-    let what = "variances of the same windows differ by at most";
-    Lines::default()
-        .with("streaming", text)
-        .with("batch", format!("{batch:.2} million samples/s, every window"))
-        .with("agreement", format!("{what} {difference:.1e} at {points} τ"))
 }
 
 /// The curve as arrays.

@@ -6,6 +6,8 @@
 
 use std::collections::HashSet;
 
+use memchr::memchr_iter;
+
 use super::error::Fault;
 use super::lines::Line;
 use super::number::number;
@@ -58,6 +60,7 @@ pub(super) struct Layout {
 }
 
 /// The numbers of one row.
+#[derive(Default)]
 pub(super) struct Values {
     /// The row's line.
     pub line: u64,
@@ -111,6 +114,9 @@ impl Layout {
 
     /// Warns of the first field of each unknown truth that is no number.
     pub fn warn_of_truth(&mut self, line: &Line<'_>, warnings: &mut Vec<Warning>) {
+        if self.truths.is_empty() {
+            return;
+        }
         self.truths.retain(|(index, name)| {
             let field = line.text.split(',').nth(*index).unwrap_or_default().trim_ascii();
             let is_number = field.parse::<f64>().is_ok();
@@ -151,28 +157,28 @@ impl Layout {
         })
     }
 
-    /// Reads the numbers of a row.
-    pub fn values(&self, line: &Line<'_>) -> Result<Values, Fault> {
+    /// Reads the numbers of a row into those of the row before.
+    pub fn read(&self, line: &Line<'_>, values: &mut Values) -> Result<(), Fault> {
         self.check_count(line)?;
-        let (mut numbers, mut present) = ([0.0; MAX_COLUMNS], self.present);
-        for (field, place) in line.text.split(',').map(str::trim_ascii).zip(&self.fields) {
-            let Some(place) = *place else { continue };
+        *values = Values { line: line.number, present: self.present, ..*values };
+        for (field, place) in fields(line.text).zip(&self.fields) {
+            let (Some(place), field) = (*place, field.trim_ascii()) else { continue };
             let Column { name, need, range } = &self.columns[place];
             if field.is_empty() && *need == Need::Sometimes {
-                present[place] = false;
+                values.present[place] = false;
                 continue;
             }
-            numbers[place] = match number(field, range) {
+            values.numbers[place] = match number(field, range) {
                 Err(Problem::Nan(_)) if name.starts_with(TRUTH) => f64::NAN,
                 read => read.map_err(|problem| Fault::column(line.number, name, problem))?,
             };
         }
-        Ok(Values { line: line.number, numbers, present })
+        Ok(())
     }
 
     /// A wrong count is reported before a wrong number: a cut line has both.
     fn check_count(&self, line: &Line<'_>) -> Result<(), Fault> {
-        let found = 1 + line.text.bytes().filter(|&byte| byte == b',').count();
+        let found = 1 + memchr_iter(b',', line.text.as_bytes()).count();
         let columns = self.fields.len();
         if found == columns {
             return Ok(());
@@ -181,6 +187,16 @@ impl Layout {
         let problem = if cut { Problem::CutShort } else { Problem::FieldCount };
         Err(Fault::line(line.number, problem(found, columns)))
     }
+}
+
+/// What stands between the commas of a row.
+fn fields(text: &str) -> impl Iterator<Item = &str> {
+    let mut start = 0;
+    memchr_iter(b',', text.as_bytes()).chain([text.len()]).map(move |end| {
+        let field = &text[start..end];
+        start = end + 1;
+        field
+    })
 }
 
 /// Refuses a column without a name or with a name that another has.

@@ -10,6 +10,8 @@
 //! What a simulator knows goes to [`Truth`] while the file is read; [`Recording::into_parts`] takes
 //! it off, and a solver is given only a [`Header`] and a [`Body`], which cannot hold it.
 
+mod at_rest;
+mod begun;
 mod checksum;
 mod columns;
 mod error;
@@ -17,6 +19,7 @@ mod given;
 mod header;
 pub mod inputs;
 mod lines;
+mod metered;
 mod number;
 pub mod period;
 mod problem;
@@ -35,23 +38,26 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+pub use at_rest::{Opened, RestRows};
 pub use error::{Place, ReadError};
 pub(crate) use given::rate;
 pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
-pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
+pub use lines::{MAX_LINE_BYTES, MAX_ROWS, MAX_STREAMED_ROWS};
+pub use metered::Metered;
 pub use problem::Problem;
 pub use range::{Range, Short};
 pub use rows::{
     DwellRow, GREATEST_BODY_RATE, GREATEST_SPIN_RATE, ImuRow, ImuSample, RotatingRow, SpinRow,
     StageRow, StaticRow,
 };
-pub use spacing::{Gap, Spacing};
+pub(crate) use spacing::Spacer;
+pub use spacing::{Gap, MOST_GAPS, Spacing, Unsteady};
 pub use stops::displacements;
 pub use warning::{About, Warning};
 
+use begun::Begun;
 use error::Fault;
-use header::Collector;
 use lines::Lines;
 
 /// What a recording holds.
@@ -77,9 +83,15 @@ impl Recording {
     /// The warnings in words, a line each, of a recording in this file.
     #[must_use]
     pub fn warning_lines(&self, file: &Path) -> Vec<String> {
-        let file = quote::printable(&file.display().to_string());
-        self.warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
+        warning_lines(&self.warnings, file)
     }
+}
+
+/// Warnings in words, a line each, of what was read from this file.
+#[must_use]
+pub fn warning_lines(warnings: &[Warning], file: &Path) -> Vec<String> {
+    let file = quote::printable(&file.display().to_string());
+    warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
 }
 
 /// The rows of a recording, at least one, in the order of the file.
@@ -164,9 +176,16 @@ impl fmt::Display for Kind {
 /// # Errors
 /// [`ReadError`] names file, line, column and remedy in one line.
 pub fn read(path: &Path) -> Result<Recording, ReadError> {
+    read_from(&path.display().to_string(), open(path)?)
+}
+
+/// Opens a file to read a recording from.
+///
+/// # Errors
+/// [`ReadError`] that names it.
+pub fn open(path: &Path) -> Result<File, ReadError> {
     let name = path.display().to_string();
-    let refused = |error| lines::refused(Place::Whole, &error).in_file(&name);
-    read_from(&name, File::open(path).map_err(refused)?)
+    File::open(path).map_err(|error| lines::refused(Place::Whole, &error).in_file(&name))
 }
 
 /// Reads a recording from any reader; `name` stands in the errors. Reads no more than 32 KiB past
@@ -181,15 +200,8 @@ pub fn read_from(name: &str, reader: impl Read) -> Result<Recording, ReadError> 
 /// Reads a recording. A further kind is one of [`Kind`] and of [`Body`], with its row; the compiler names the
 /// places that tell them apart.
 fn parse(reader: impl Read) -> Result<Recording, Fault> {
-    let mut lines = Lines::new(reader)?;
-    let (entries, names) = preamble(&mut lines)?;
-    let kind = kind(&entries)?;
-    let mut header = entries.header()?;
-    if kind == Kind::Imu {
-        stops::read(&entries, &mut header)?;
-    }
-    let (line, names) = names.ok_or_else(|| Fault::line(lines.number(), Problem::NoColumnNames))?;
-    let mut warnings = entries.warnings();
+    let Begun { mut lines, entries, kind, header, names: (line, names), mut warnings } =
+        Begun::new(Lines::new(reader)?)?;
     let (body, Truth { roll_rad, attitude, .. }) =
         body(kind, &mut lines, line, &names, &mut warnings)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
@@ -236,37 +248,6 @@ fn body(
         }
     };
     Ok((body, truth))
-}
-
-/// The line of column names: its number and text.
-type Names = Option<(u64, String)>;
-
-/// Reads the header and the line of column names, which is the first that is no comment.
-fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
-    let mut entries = Collector::default();
-    let mut is_empty = true;
-    while let Some(line) = lines.next()? {
-        is_empty = false;
-        if line.text.starts_with('{') {
-            return Err(Fault::line(line.number, Problem::Inputs));
-        }
-        if !line.text.starts_with('#') {
-            return Ok((entries, Some((line.number, line.text.to_owned()))));
-        }
-        entries.add(line.number, line.text)?;
-    }
-    if is_empty { Err(Fault::new(Place::Whole, Problem::Empty)) } else { Ok((entries, None)) }
-}
-
-/// The kind that the header names.
-fn kind(entries: &Collector) -> Result<Kind, Fault> {
-    let missing = || match entries.resembling("kind") {
-        Some((line, name)) => Fault::key(line, name, Problem::NoKind),
-        None => Fault::new(Place::Whole, Problem::NoKind),
-    };
-    let (line, text) = entries.get("kind").ok_or_else(missing)?;
-    let unknown = || Fault::key(line, "kind", Problem::UnknownKind(text.to_owned()));
-    Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)
 }
 
 /// Refuses gaps and a rate (its line, and Hz) that the times contradict. Dwells have no rate; what

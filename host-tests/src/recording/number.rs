@@ -3,8 +3,16 @@
 use super::problem::Problem;
 use super::range::Range;
 
-/// Reads a number inside the range. `nan`, `inf` and what overflows a double are refused by name.
+/// Reads a number inside the range; what is none is looked at once more for what is wrong.
 pub(super) fn number(text: &str, range: &'static Range) -> Result<f64, Problem> {
+    match fast_float2::parse::<f64, _>(text) {
+        Ok(value) if range.contains(value) => Ok(value),
+        _ => explained(text, range),
+    }
+}
+
+/// As [`number`], by the standard library. `nan`, `inf` and what overflows a double are refused by name.
+fn explained(text: &str, range: &'static Range) -> Result<f64, Problem> {
     match text.parse::<f64>() {
         Ok(value) if range.contains(value) => Ok(value),
         Ok(value) if value.is_nan() => Err(Problem::Nan(text.to_owned())),

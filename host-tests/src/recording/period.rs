@@ -32,25 +32,49 @@ struct Total {
 }
 
 impl Total {
-    fn of(steps: impl Iterator<Item = f64>) -> Self {
-        let none = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };
-        steps.fold(none, |Self { sum_s, count, ends_s: [shortest, longest] }, step| Self {
-            sum_s: sum_s + step,
-            count: count + 1.0,
-            ends_s: [shortest.min(step), longest.max(step)],
-        })
+    /// No steps.
+    const NONE: Self = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };
+
+    /// Adds a step, s.
+    fn add(&mut self, step_s: f64) {
+        let [shortest, longest] = self.ends_s;
+        self.sum_s += step_s;
+        self.count += 1.0;
+        self.ends_s = [shortest.min(step_s), longest.max(step_s)];
     }
 }
 
 impl Steps {
     /// The steps between rows whose times, s, increase; `None` of fewer than two.
     pub(crate) fn of<R>(rows: &[R], time_s: impl Fn(&R) -> f64) -> Option<Self> {
-        let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
-        let mut sorted: Vec<f64> = steps().collect();
-        let middle = sorted.len().checked_sub(1)? / 2;
-        let median_s = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let unbroken = Total::of(steps().filter(|step| *step <= LONGEST_STEP * median_s));
-        Some(Self { median_s, all: Total::of(steps()), unbroken })
+        let between = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
+        let mut steps = Self::beside(median(between().collect())?);
+        for step in between() {
+            steps.add(step);
+        }
+        Some(steps)
+    }
+
+    /// No steps yet, of which this one, s, is usual.
+    pub(crate) const fn beside(median_s: f64) -> Self {
+        Self { median_s, all: Total::NONE, unbroken: Total::NONE }
+    }
+
+    /// Adds a step, s; whether no sample is missing in it.
+    pub(crate) fn add(&mut self, step_s: f64) -> bool {
+        let is_unbroken = self.is_unbroken(step_s);
+        self.all.add(step_s);
+        if is_unbroken {
+            self.unbroken.add(step_s);
+        }
+        is_unbroken
+    }
+
+    /// Whether the same steps were unbroken if another one were the usual: one of `usual_s`, s, from … to. `broken_s` is
+    /// the shortest that is not.
+    pub(crate) fn stand(&self, usual_s: [f64; 2], broken_s: f64) -> bool {
+        let [low, high] = usual_s.map(|usual| LONGEST_STEP * usual);
+        self.unbroken.ends_s[1] <= low && broken_s > high
     }
 
     /// Whether no sample is missing in a step, s.
@@ -88,6 +112,12 @@ impl Steps {
         let is_theirs = |stated: &f64| (sum_s - count * stated).abs() <= 0.5 * stated;
         rate_hz.map(|rate| 1.0 / rate).filter(is_theirs).unwrap_or_else(|| self.mean_s())
     }
+}
+
+/// The median of steps, the lower one of two; `None` of none.
+pub(crate) fn median(mut steps: Vec<f64>) -> Option<f64> {
+    let middle = steps.len().checked_sub(1)? / 2;
+    Some(*steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// The sample period of rows, s, with the header's rate, Hz, where it has one; of fewer than two rows the header's, or one

@@ -3,10 +3,12 @@
 //! Another kind is a row type here that names its columns as it reads them, and the arms that
 //! [`super::parse`] names.
 
+use std::marker::PhantomData;
+
 use super::columns::{Column, Layout, Need, TRUE_ATTITUDE, Values};
 use super::error::Fault;
 use super::header::check_late;
-use super::lines::{Lines, MAX_ROWS};
+use super::lines::{Line, Lines};
 use super::problem::Problem;
 use super::range::Range;
 use super::warning::Warning;
@@ -176,17 +178,21 @@ pub(super) trait Row: Sized {
     const TIME: &'static str = "t_s";
 
     /// The row, read column by column: always the same ones in the same order.
-    fn read(from: &mut Fields) -> Self;
+    fn read(from: &mut Fields<impl Next>) -> Self;
 }
 
 /// What a row is read from: the columns that its kind knows, one after the other, and their numbers.
-pub(super) struct Fields<'f> {
+pub(super) struct Fields<F> {
     line: u64,
-    /// The number in a column where it is there.
-    next: &'f mut dyn FnMut(Column) -> Option<f64>,
+    next: F,
 }
 
-impl Fields<'_> {
+/// Gives the number in the next column, where it is there.
+pub(super) trait Next: FnMut(Column) -> Option<f64> {}
+
+impl<F: FnMut(Column) -> Option<f64>> Next for F {}
+
+impl<F: Next> Fields<F> {
     /// A column that need not be there, and whose fields may be empty.
     fn sometimes(&mut self, name: &'static str, range: &'static Range) -> Option<f64> {
         (self.next)(Column { name, need: Need::Sometimes, range })
@@ -236,7 +242,7 @@ impl Fields<'_> {
 }
 
 impl Row for StageRow {
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         Self {
             line: from.line,
             time_s: from.always("t_s", &TIME),
@@ -252,7 +258,7 @@ impl Row for StageRow {
 }
 
 impl Row for RotatingRow {
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         Self {
             line: from.line,
             time_s: from.always("t_s", &TIME),
@@ -269,7 +275,7 @@ impl Row for RotatingRow {
 impl Row for DwellRow {
     const TIME: &'static str = "mid_s";
 
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         Self {
             stage_rad: from.always("stage_rad", &STAGE),
             rate_rad_s: from.always("rate_rad_s", &RATE),
@@ -286,7 +292,7 @@ type TrueAttitude = Option<[f64; 4]>;
 
 /// A sample, and the true attitude where the recording has that column; none within where it does not count.
 impl Row for (ImuRow, Option<TrueAttitude>) {
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         let (line, time_s) = (from.line, from.always("t_s", &TIME));
         let sample = from.imu(&IMU, Need::Always, &BODY_RATE).unwrap_or_default();
         let attitude = true_attitude(from);
@@ -295,7 +301,7 @@ impl Row for (ImuRow, Option<TrueAttitude>) {
 }
 
 /// The quaternion, where all of it is there.
-fn true_attitude(from: &mut Fields) -> Option<TrueAttitude> {
+fn true_attitude(from: &mut Fields<impl Next>) -> Option<TrueAttitude> {
     let [w, x, y, z] = TRUE_ATTITUDE.map(|name| from.optional(name, &QUATERNION));
     let counts = from.optional("moving", &FLAG).is_none_or(|moving| moving > 0.0);
     let parts = [w?, x?, y?, z?];
@@ -305,7 +311,7 @@ fn true_attitude(from: &mut Fields) -> Option<TrueAttitude> {
 
 /// A sample, and the true roll, rad, where the recording has it.
 impl Row for (SpinRow, Option<f64>) {
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         let (line, time_s) = (from.line, from.always("t_s", &TIME));
         let rate_rad_s = from.always("gx_rad_s", &SPIN_RATE);
         let force_m_s2 = ["ay_m_s2", "az_m_s2"].map(|name| from.always(name, &SPIN_FORCE));
@@ -316,7 +322,7 @@ impl Row for (SpinRow, Option<f64>) {
 }
 
 impl Row for StaticRow {
-    fn read(from: &mut Fields) -> Self {
+    fn read(from: &mut Fields<impl Next>) -> Self {
         Self {
             line: from.line,
             time_s: from.always("t_s", &TIME),
@@ -329,18 +335,85 @@ impl Row for StaticRow {
 /// The columns that a kind knows.
 fn columns<T: Row>() -> Vec<Column> {
     let mut columns = Vec::new();
-    let mut next = |column| {
+    let next = |column| {
         columns.push(column);
         None
     };
-    T::read(&mut Fields { line: 0, next: &mut next });
+    T::read(&mut Fields { line: 0, next });
     columns
 }
 
 /// The row that has these numbers.
 fn row<T: Row>(values: &Values) -> T {
     let mut places = 0..;
-    T::read(&mut Fields { line: values.line, next: &mut |_| values.optional(places.next()?) })
+    T::read(&mut Fields { line: values.line, next: |_| values.optional(places.next()?) })
+}
+
+/// The rows of a kind, read one after the other.
+pub(super) struct Rows<T> {
+    layout: Layout,
+    /// Place of the column whose numbers must increase.
+    time: Option<usize>,
+    before: Stamp,
+    /// The numbers of the latest row.
+    values: Values,
+    /// How many were read.
+    count: u64,
+    row: PhantomData<T>,
+}
+
+impl<T: Row> Rows<T> {
+    /// Begins below the column names, which stand in line `line`.
+    pub fn new(line: u64, names: &str, warnings: &mut Vec<Warning>) -> Result<Self, Fault> {
+        let layout = Layout::new(columns::<T>(), line, names)?;
+        let time = layout.place(T::TIME);
+        layout.warn(line, names, warnings);
+        Ok(Self {
+            layout,
+            time,
+            before: None,
+            values: Values::default(),
+            count: 0,
+            row: PhantomData,
+        })
+    }
+
+    /// The next row; none at the end.
+    pub fn next(
+        &mut self,
+        lines: &mut Lines<'_>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Option<T>, Fault> {
+        let most = lines.most_rows();
+        while let Some(line) = lines.next()? {
+            if line.text.starts_with('#') {
+                check_late(line.number, line.text)?;
+                continue;
+            }
+            if self.count == most {
+                return Err(Fault::line(line.number, Problem::TooMany(most, "rows")));
+            }
+            return self.read(&line, warnings).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// Whether none was read.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The row of a line.
+    fn read(&mut self, line: &Line<'_>, warnings: &mut Vec<Warning>) -> Result<T, Fault> {
+        self.layout.read(line, &mut self.values)?;
+        let stamp = self.time.and_then(|place| self.values.optional(place));
+        let stamp = stamp.map(|time| (line.number, time));
+        check_later(T::TIME, self.before, stamp)?;
+        self.before = stamp;
+        self.count += 1;
+        self.layout.warn_of_truth(line, warnings);
+        Ok(row(&self.values))
+    }
 }
 
 /// Reads all rows below the column names, which stand in line `line`.
@@ -350,27 +423,12 @@ pub(super) fn read<T: Row>(
     names: &str,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<T>, Fault> {
-    let mut layout = Layout::new(columns::<T>(), line, names)?;
-    let time = layout.place(T::TIME);
-    layout.warn(line, names, warnings);
+    let mut reading = Rows::new(line, names, warnings)?;
     let mut rows = Vec::new();
-    let mut before = None;
-    while let Some(line) = lines.next()? {
-        if line.text.starts_with('#') {
-            check_late(line.number, line.text)?;
-            continue;
-        }
-        if rows.len() as u64 == MAX_ROWS {
-            return Err(Fault::line(line.number, Problem::TooMany(MAX_ROWS, "rows")));
-        }
-        let values = layout.values(&line)?;
-        let stamp = time.and_then(|place| values.optional(place)).map(|time| (values.line, time));
-        check_later(T::TIME, before, stamp)?;
-        before = stamp;
-        rows.push(row(&values));
-        layout.warn_of_truth(&line, warnings);
+    while let Some(row) = reading.next(lines, warnings)? {
+        rows.push(row);
     }
-    if rows.is_empty() { Err(Fault::line(line, Problem::NoRows)) } else { Ok(rows) }
+    if reading.is_empty() { Err(Fault::line(line, Problem::NoRows)) } else { Ok(rows) }
 }
 
 /// The line and time of a row, s.

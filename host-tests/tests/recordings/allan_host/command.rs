@@ -1,13 +1,15 @@
 //! `meridian allan` as a user meets it: units, keys, the page, and clear words for bad input.
 
-use std::process::Output;
+use std::process::{Output, Stdio};
 
 use hal_mock::noise::Generator;
 use serde_json::Value;
 
 use crate::support::files::{Scratch, stored};
 use crate::support::pages::{figure, series};
-use crate::support::program::{assert_drawn, assert_misuse, code, meridian, object, page, text};
+use crate::support::program::{
+    assert_drawn, assert_misuse, code, command, meridian, object, page, text,
+};
 
 fn allan(arguments: &[&str]) -> Output {
     meridian(&[&["allan"], arguments].concat())
@@ -54,7 +56,6 @@ fn the_stored_hour_gives_the_noise_that_its_simulator_had() {
     for key in ["q_arcsec", "r_deg_h2"] {
         assert!(object[key].is_null() && number(&format!("{key}_at_most")) > 0.0, "{key}");
     }
-    assert!(number("streaming_difference") < 1e-9);
 }
 
 #[test]
@@ -70,16 +71,15 @@ fn the_curve_is_four_arrays_of_one_length_within_its_limits() {
     for i in 0..tau.len() {
         assert!(lower[i] < deviation[i] && deviation[i] < upper[i], "at {} s", tau[i]);
     }
-    // The overlapping Allan deviation of the file by its definition in numpy, °/h.
+    // The overlapping Allan deviation of the file by its definition in numpy, °/h. Beyond 256 samples not every window is
+    // used.
     for (seconds, expected) in
         [(0.1, 3.818_997_516), (1.2, 1.119_345_607), (51.2, 0.301_604_066), (614.4, 0.479_155_550)]
     {
         let index = tau.iter().position(|tau| (tau / seconds - 1.0).abs() < 1e-6).expect("there");
-        assert!(
-            (deviation[index] / expected - 1.0).abs() < 1e-6,
-            "{seconds}: {}",
-            deviation[index]
-        );
+        let within = if seconds < 25.6 { 1e-6 } else { 1e-3 };
+        let error = deviation[index] / expected - 1.0;
+        assert!(error.abs() < within, "{seconds}: {error}");
     }
 }
 
@@ -88,12 +88,10 @@ fn every_number_has_its_unit() {
     let output = allan(&[&hour()]);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
-    for unit in ["arcsec", "°/√h", "°/h", "°/h/√h", "°/h²", "τ, s", "Hz", "samples/s", "68.3 %"]
-    {
+    for unit in ["arcsec", "°/√h", "°/h", "°/h/√h", "°/h²", "τ, s", "Hz", "68.3 %"] {
         assert!(block.contains(unit), "{unit} is missing in {block}");
     }
     assert!(block.contains("not observable in this record (at most "), "{block}");
-    assert!(block.contains("variances of the same windows differ by at most"), "{block}");
 }
 
 #[test]
@@ -271,6 +269,40 @@ fn a_recording_of_another_kind_is_refused_both_ways() {
     assert!(refusal(&output).contains("dwells.csv: kind `dwells` is no record at rest"));
     let output = meridian(&["replay", &hour(), "--latitude", "50"]);
     assert!(refusal(&output).contains("kind `static` has no positions to align from"));
+}
+
+/// The most memory that a process has held so far, KiB.
+#[cfg(target_os = "linux")]
+fn most_memory(process: &std::process::Child) -> u64 {
+    let status =
+        std::fs::read_to_string(format!("/proc/{}/status", process.id())).expect("it runs");
+    let line = status.lines().find(|line| line.starts_with("VmHWM:")).expect("it is counted");
+    line.split_whitespace().nth(1).and_then(|number| number.parse().ok()).expect("a number")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn two_million_rows_are_read_in_less_memory_than_they_would_take() {
+    use std::io::{BufWriter, Write};
+    let mut process = command()
+        .args(["allan", "/dev/stdin"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut input = BufWriter::new(process.stdin.take().expect("a pipe"));
+    let mut generator = Generator::new(7);
+    input.write_all(b"# kind: static\nt_s,g_rad_s\n").expect("it reads");
+    for index in 0..2_000_000_u32 {
+        let (time, rate) = (f64::from(index) / 100.0, 1e-5 * generator.gaussian());
+        writeln!(input, "{time:.2},{rate:.6e}").expect("it reads");
+    }
+    input.flush().expect("it reads");
+    let memory = most_memory(&process);
+    drop(input);
+    let output = process.wait_with_output().expect("it ends");
+    assert!(text(&output.stdout).contains("2000000 samples at 100 Hz"), "{}", text(&output.stdout));
+    assert!(memory < 100 * 1024, "{memory} KiB");
 }
 
 #[test]

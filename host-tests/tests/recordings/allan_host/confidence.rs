@@ -1,24 +1,26 @@
 //! The limits hold the true deviation as often as they say, and the analysis refuses what it must.
 
 use hal_mock::noise::Generator;
-use host::allan::analysis::{Analysis, Rest, RestError, factors};
-use host::allan::speed::compare;
-use host::recording::{Body, Header, Kind, StaticRow};
+use host::allan::analysis::{Analysis, factors};
+use host::allan::rest::{Rest, RestError};
+use host::recording::{Kind, RestRows};
 use orientation::noise::fit::FitError;
 
-/// The rows of a gyro at rest that has these rates at 10 Hz.
-fn body(rates: &[f64]) -> Body {
-    let row = |(index, rate): (usize, &f64)| StaticRow {
-        line: index as u64 + 1,
-        time_s: index as f64 * 0.1,
-        rate_rad_s: Some(*rate),
-        imu: None,
-    };
-    Body::Static(rates.iter().enumerate().map(row).collect())
+/// What a text comes to.
+fn read(text: &str) -> Result<Rest, RestError> {
+    let opened = RestRows::open("rest.csv", text.as_bytes()).map_err(RestError::Read)?;
+    Rest::read(opened, None, &mut Vec::new())
+}
+
+/// The recording of a gyro at rest that has these rates at 10 Hz.
+fn text(rates: &[f64]) -> String {
+    let row = |(index, rate): (usize, &f64)| format!("{:.1},{rate:e}\n", index as f64 * 0.1);
+    let rows: String = rates.iter().enumerate().map(row).collect();
+    format!("# kind: static\nt_s,g_rad_s\n{rows}")
 }
 
 fn rest(rates: &[f64]) -> Rest {
-    Rest::take(&Header::default(), &body(rates), None).expect("it is a record at rest")
+    read(&text(rates)).expect("it is a record at rest")
 }
 
 /// White noise of 1 mrad/s a sample.
@@ -77,13 +79,6 @@ fn longer_averages_are_less_sure() {
 }
 
 #[test]
-fn both_estimators_agree_on_the_same_windows() {
-    let compared = compare(&rest(&white(2, 5000)));
-    assert_eq!(compared.points, 22);
-    assert!(compared.difference < 1e-9, "{}", compared.difference);
-}
-
-#[test]
 fn what_says_nothing_is_refused_by_name() {
     let refused = |rates: &[f64]| Analysis::of(&rest(rates)).expect_err("it says nothing");
     assert_eq!(refused(&[1e-5; 1000]), FitError::Constant);
@@ -98,7 +93,8 @@ fn what_says_nothing_is_refused_by_name() {
 
 #[test]
 fn a_recording_of_another_kind_or_of_one_row_is_no_record_at_rest() {
-    let take = |body: &Body| Rest::take(&Header::default(), body, None).expect_err("it is none");
-    assert_eq!(take(&Body::Stage(vec![])), RestError::Kind(Kind::Stage));
-    assert_eq!(take(&body(&[1e-5])), RestError::OneRow);
+    let refused = |text: &str| read(text).expect_err("it is none");
+    let moving = "# kind: dwells\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n0,1e-5,1e-8,60\n";
+    assert_eq!(refused(moving), RestError::Kind(Kind::Dwells));
+    assert_eq!(refused(&text(&[1e-5])), RestError::OneRow);
 }

@@ -1,0 +1,291 @@
+//! A gyro's record at rest, read once from its beginning to its end, in memory that does not grow with it.
+//!
+//! One thread reads and parses, another looks at the numbers and sums the Allan variances.
+
+use std::panic::resume_unwind;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::thread;
+
+use orientation::noise::allan::Point;
+use orientation::noise::fit::FitError;
+use orientation::units::AngularRate;
+use thiserror::Error;
+
+use super::Overlapping;
+use crate::recording::{
+    Kind, Opened, ReadError, RestRows, Short, Spacer, Spacing, StaticRow, Unsteady, Warning,
+};
+
+/// Rows from which the usual step between samples is learnt.
+pub const LEARNT: usize = 1 << 20;
+/// Samples that go from thread to thread at once.
+const BATCH: usize = 4096;
+/// Batches that wait for the other thread.
+const WAITING: usize = 8;
+
+/// The rate in a row, where it has that column.
+type RateOf = fn(&StaticRow) -> Option<f64>;
+
+/// The columns that have rates; the first that a recording has is the default.
+const COLUMNS: [(&str, RateOf); 4] = [
+    ("g_rad_s", |row| row.rate_rad_s),
+    ("gx_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[0])),
+    ("gy_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[1])),
+    ("gz_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[2])),
+];
+
+/// What the rates of one column at rest came to.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// The column's name.
+    pub column: &'static str,
+    /// When the samples came.
+    pub spacing: Spacing,
+    /// How many samples there are in all segments.
+    pub samples: u64,
+    /// Their overlapping Allan variances, (rad/s)², rising in averaging time.
+    pub points: Vec<Point>,
+    survey: Survey,
+}
+
+/// Why a recording has no rates at rest.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RestError {
+    /// The recording cannot be read.
+    #[error("{0}")]
+    Read(ReadError),
+    /// The recording is of another kind.
+    #[error("kind `{0}` is no record at rest; record the gyro at rest as kind `static`")]
+    Kind(Kind),
+    /// The name of a column that is not there, and those that are.
+    #[error("there is no rate column {0:?}; there is {there}", there = .1.join(", "))]
+    Column(String, Vec<&'static str>),
+    /// There is but one row.
+    #[error("record too short: one row has no time between samples")]
+    OneRow,
+    /// The samples have no period in common.
+    #[error("{0}")]
+    Unsteady(Unsteady),
+}
+
+impl Rest {
+    /// Reads a column of a recording to its end; without a name the gyro's, else that of body x. `warnings` takes what is
+    /// passed over.
+    ///
+    /// # Errors
+    /// Why there are no rates.
+    pub fn read(
+        opened: Opened<'_>,
+        column: Option<&str>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self, RestError> {
+        let mut rows = match opened {
+            Opened::AtRest(rows) => rows,
+            Opened::Other(kind, passed_over) => {
+                warnings.extend(passed_over);
+                return Err(RestError::Kind(kind));
+            }
+        };
+        let rest = Self::of(&mut rows, column);
+        warnings.append(&mut rows.warnings);
+        rest
+    }
+
+    fn of(rows: &mut RestRows<'_>, column: Option<&str>) -> Result<Self, RestError> {
+        let mut first = None;
+        rows.read(1, |row| first = Some(row)).map_err(RestError::Read)?;
+        let (column, rate) = chosen(first.as_ref(), column)?;
+        let gathered = gathered(rows, first, rate).map_err(RestError::Read)?;
+        gathered.finish(column, rows.header.rate_hz)
+    }
+
+    /// What a reader must know of the record: gaps, and a header's rate that is wrong.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let Spacing { period_s, gaps, gap_count, missing_s, contradicted_rate_hz } = &self.spacing;
+        let rate = contradicted_rate_hz.map(|stated| {
+            let (stated, found) = (Short(stated), 1.0 / period_s);
+            format!("the header's {stated} Hz contradicts the times, which have {found:.6} Hz: the times are believed")
+        });
+        let gaps = gaps.first().map(|first| {
+            let (line, from) = (first.line, first.from_s);
+            let gaps = if *gap_count == 1 { "gap" } else { "gaps" };
+            format!("{gap_count} {gaps}, {missing_s:.3} s in all, the first before line {line} after {from} s: no window crosses one")
+        });
+        rate.into_iter().chain(gaps).collect()
+    }
+
+    /// Why nothing can be said whatever the variances are.
+    pub(super) fn check(&self) -> Result<(), FitError> {
+        let Survey { is_saturated, is_constant, .. } = self.survey;
+        match (is_saturated, is_constant) {
+            (true, _) => Err(FitError::Saturated),
+            (false, true) if self.samples > 1 => Err(FitError::Constant),
+            _ => Ok(()),
+        }
+    }
+
+    /// The smallest change between neighbouring samples, rad/s: in a record of noise, the step of the
+    /// numbers it came in.
+    pub(super) fn step(&self) -> f64 {
+        self.survey.step
+    }
+}
+
+/// The column of this name, or the first there is, by what a row has.
+fn chosen(
+    first: Option<&StaticRow>,
+    name: Option<&str>,
+) -> Result<(&'static str, RateOf), RestError> {
+    let has = |(_, rate): &&(&str, RateOf)| first.is_some_and(|row| rate(row).is_some());
+    let there = || COLUMNS.iter().filter(has);
+    let chosen = there().find(|(column, _)| name.is_none_or(|name| name == *column));
+    chosen.copied().ok_or_else(|| {
+        let names = there().map(|(column, _)| *column).collect();
+        RestError::Column(name.unwrap_or_default().to_owned(), names)
+    })
+}
+
+/// One rate of a row.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    line: u64,
+    time_s: f64,
+    /// rad/s.
+    rate: f64,
+}
+
+/// Reads to the end on this thread while another one gathers.
+fn gathered(
+    rows: &mut RestRows<'_>,
+    first: Option<StaticRow>,
+    rate: RateOf,
+) -> Result<Gatherer, ReadError> {
+    thread::scope(|scope| {
+        let (full, taken) = sync_channel(WAITING);
+        let (emptied, empty) = channel();
+        let gatherer = scope.spawn(move || Gatherer::of(&taken, &emptied));
+        let read = send(rows, first, rate, full, &empty);
+        let gatherer = gatherer.join().unwrap_or_else(|panic| resume_unwind(panic));
+        read.map(|()| gatherer)
+    })
+}
+
+/// Sends the samples of all rows in batches, in vectors that come back empty.
+fn send(
+    rows: &mut RestRows<'_>,
+    first: Option<StaticRow>,
+    rate: RateOf,
+    full: SyncSender<Vec<Sample>>,
+    empty: &Receiver<Vec<Sample>>,
+) -> Result<(), ReadError> {
+    let sample = |row: StaticRow| {
+        let StaticRow { line, time_s, .. } = row;
+        rate(&row).map(|rate| Sample { line, time_s, rate })
+    };
+    let mut batch: Vec<Sample> = first.and_then(sample).into_iter().collect();
+    let mut is_more = true;
+    while is_more {
+        is_more = rows.read(BATCH, |row| batch.extend(sample(row)))?;
+        // The other thread listens for as long as this one speaks.
+        let _ = full.send(batch);
+        batch = empty.try_recv().unwrap_or_else(|_| Vec::with_capacity(BATCH));
+    }
+    drop(full);
+    Ok(())
+}
+
+/// What is kept of the samples.
+#[derive(Default)]
+struct Gatherer {
+    /// The first samples, until the usual step between them is learnt.
+    first: Vec<Sample>,
+    spacer: Option<Spacer>,
+    survey: Survey,
+    sums: Overlapping,
+    samples: u64,
+}
+
+impl Gatherer {
+    /// Gathers batches until no more come.
+    fn of(taken: &Receiver<Vec<Sample>>, emptied: &Sender<Vec<Sample>>) -> Self {
+        let mut gatherer = Self::default();
+        for mut batch in taken {
+            for sample in batch.drain(..) {
+                gatherer.take(sample);
+            }
+            // Once all is read nobody needs it again.
+            let _ = emptied.send(batch);
+        }
+        gatherer
+    }
+
+    fn take(&mut self, sample: Sample) {
+        if let Some(spacer) = &mut self.spacer {
+            if spacer.is_apart(sample.line, sample.time_s) {
+                self.sums.part();
+            }
+            self.survey.take(sample.rate);
+            self.sums.push(sample.rate);
+            self.samples += 1;
+            return;
+        }
+        self.first.push(sample);
+        if self.first.len() == LEARNT {
+            self.learn();
+        }
+    }
+
+    /// Learns the usual step from the first samples, and then takes them.
+    fn learn(&mut self) {
+        let first = std::mem::take(&mut self.first);
+        self.spacer = Spacer::learnt(first.iter().map(|sample| sample.time_s));
+        if self.spacer.is_some() {
+            for sample in first {
+                self.take(sample);
+            }
+        }
+    }
+
+    /// What all samples came to.
+    fn finish(mut self, column: &'static str, rate_hz: Option<f64>) -> Result<Rest, RestError> {
+        if self.spacer.is_none() {
+            self.learn();
+        }
+        let Self { spacer, survey, sums, samples, .. } = self;
+        let spacing = spacer.ok_or(RestError::OneRow)?.finish(rate_hz);
+        let spacing = spacing.map_err(RestError::Unsteady)?;
+        let points = sums.points(spacing.period_s);
+        Ok(Rest { column, spacing, samples, points, survey })
+    }
+}
+
+/// What tells an unusable record.
+#[derive(Clone, Copy, Debug)]
+struct Survey {
+    /// Whether a sample stood at a limit of its range.
+    is_saturated: bool,
+    /// Whether all samples were equal.
+    is_constant: bool,
+    /// The smallest change between neighbouring samples, rad/s.
+    step: f64,
+    /// The latest sample, rad/s.
+    latest: Option<f64>,
+}
+
+impl Default for Survey {
+    fn default() -> Self {
+        Self { is_saturated: false, is_constant: true, step: f64::INFINITY, latest: None }
+    }
+}
+
+impl Survey {
+    fn take(&mut self, rate: f64) {
+        self.is_saturated |= AngularRate::from_rad_per_s(rate).is_saturated();
+        let change = self.latest.replace(rate).map_or(0.0, |before| (rate - before).abs());
+        if change > 0.0 {
+            self.is_constant = false;
+            self.step = self.step.min(change);
+        }
+    }
+}
