@@ -5,12 +5,14 @@
 #![forbid(unsafe_code)]
 
 pub mod allan;
+pub mod angle;
 mod assumptions;
 pub mod campaign;
 mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;
+pub mod interrupt;
 mod median;
 pub mod methods;
 pub mod outcome;
@@ -25,3 +27,4 @@ pub mod simulate;
 pub mod spectrum;
 pub mod unwritten;
 pub mod virtual_time;
+pub mod work;

@@ -6,6 +6,7 @@ use clap::Args;
 use host::allan::analysis::{Analysis, Rest};
 use host::allan::speed;
 use host::output::allan::Shown;
+use host::output::manner::Manner;
 use host::planning::suggestion;
 use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
@@ -26,18 +27,18 @@ pub struct AllanOptions {
 }
 
 /// Analyses a recording.
-pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let report = ("--report", "the page", options.report.clone());
     files::check(Some(&options.file), &[report]).map_err(Failure::misuse)?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let warnings = recording.warning_lines(&options.file);
-    analyse(options, recording, as_json)
+    analyse(options, recording, manner)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
 }
 
 /// Analyses what was read.
-fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Result<Answer, String> {
+fn analyse(options: &AllanOptions, recording: Recording, manner: Manner) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, _) = recording.into_parts();
     let rest = Rest::take(&header, &body, options.column.as_deref())
@@ -52,7 +53,7 @@ fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Resul
         schedule: found.and_then(|analysis| suggestion(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
-    let answer = Answer::of(refusal, as_json, &shown.object(), || shown.report().text())?;
+    let answer = Answer::reported(refusal, manner, &shown.object(), || shown.report())?;
     Ok(answer.with_page(options.report.as_deref(), || shown.report()))
 }
 

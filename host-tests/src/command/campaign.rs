@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
+use host::interrupt;
+use host::output::manner::Manner;
 use host::output::progress::Progress;
 use simulated::fault::Platform;
 
@@ -59,8 +61,14 @@ impl CampaignOptions {
     }
 }
 
+/// That the campaign was interrupted, where it was.
+fn interrupted() -> Option<String> {
+    let reason = || format!("{}: the tables rest on the runs that were done", interrupt::reason());
+    interrupt::is_asked().then(reason)
+}
+
 /// Runs a campaign.
-pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure> {
     options.check().map_err(Failure::misuse)?;
     let campaign = options.campaign;
     let asked = Asked {
@@ -68,12 +76,13 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> 
         platform: options.platform,
         class: options.class.clone(),
     };
-    let progress = Progress::new((campaign.count)(&asked) as u64, campaign.steps);
-    let Done { mut object, report, refusal } = (campaign.run)(&asked, &|| progress.step())?;
+    let progress = Progress::new(manner, (campaign.count)(&asked) as u64, campaign.steps);
+    interrupt::heed();
+    let Done { mut object, report, refusal } = (campaign.run)(&asked, &progress)?;
     progress.finish();
+    let refusal = interrupted().or(refusal.map(str::to_owned));
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
-    let refusal = refusal.map(str::to_owned);
-    let answer = Answer::of(refusal, as_json, &object, || report.text())?;
+    let answer = Answer::reported(refusal, manner, &object, || report.clone())?;
     Ok(answer.with_page(options.report.as_deref(), || report))
 }

@@ -15,7 +15,9 @@ use std::io::Write;
 use std::path::Path;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use host::angle::Quantity;
 use host::outcome::{self, Finished, Outcome};
+use host::output::manner::{Manner, Verbosity};
 use host::recording::{Body, Truth};
 use host::report::Report;
 use orientation::alignment::stepwise::setting::Half;
@@ -69,16 +71,26 @@ impl Answer {
     /// The object, or the text, of a result, or of what came instead of one.
     fn of(
         refusal: Option<String>,
-        as_json: bool,
+        manner: Manner,
         object: &impl Serialize,
         text: impl FnOnce() -> String,
     ) -> Result<Self, String> {
-        let output = if as_json {
+        let output = if manner.as_json {
             Output::Object(serde_json::to_value(object).map_err(|error| error.to_string())?)
         } else {
             Output::Text(text())
         };
         Ok(Self { output, refusal, warnings: Vec::new() })
+    }
+
+    /// The object, or so much of a report as is asked for.
+    fn reported(
+        refusal: Option<String>,
+        manner: Manner,
+        object: &impl Serialize,
+        report: impl FnOnce() -> Report,
+    ) -> Result<Self, String> {
+        Self::of(refusal, manner, object, || as_text(&report(), manner.verbosity))
     }
 
     /// What goes to standard output: an object says `ok` where there was a result, and nowhere else.
@@ -136,6 +148,20 @@ impl Answer {
     }
 }
 
+/// So much of a report as is asked for.
+fn as_text(report: &Report, verbosity: Verbosity) -> String {
+    let text = report.text();
+    match verbosity {
+        Verbosity::Quiet => shortest(&text),
+        Verbosity::Usual | Verbosity::Verbose => text,
+    }
+}
+
+/// The heading of a text, and the first line below it: what was found, or why nothing was.
+fn shortest(text: &str) -> String {
+    text.lines().filter(|line| !line.is_empty()).take(2).collect::<Vec<_>>().join("\n")
+}
+
 /// A finished analysis, ready to be shown.
 pub struct Shown<'a> {
     /// What texts and pages call it.
@@ -157,12 +183,12 @@ impl Shown<'_> {
         &self,
         outcome: &Outcome,
         report: Option<&Path>,
-        as_json: bool,
+        manner: Manner,
     ) -> Result<Answer, String> {
         let Self { name, finished, truth, body } = self;
         let made = |figures| outcome::report(name, outcome, &**finished, figures);
-        let text = || made(Vec::new()).text();
-        let answer = Answer::of(outcome.reason.clone(), as_json, outcome, text)?;
+        let text = || made(Vec::new());
+        let answer = Answer::reported(outcome.reason.clone(), manner, outcome, text)?;
         Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }
 }
@@ -195,9 +221,14 @@ fn registered<T: Sync>(
     })
 }
 
+/// An angle in degrees, of whatever size.
+fn angle(text: &str, of: Quantity) -> Result<f64, String> {
+    host::angle::degrees(text, of).map_err(|error| error.to_string())
+}
+
 /// A latitude in degrees.
 fn latitude(text: &str) -> Result<Latitude, String> {
-    let degrees: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let degrees = angle(text, Quantity::Latitude)?;
     Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
 }
 
@@ -214,7 +245,7 @@ fn seed(text: &str) -> Result<u64, String> {
 
 /// A standard deviation in degrees, as radians.
 fn sigma(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
+    match angle(text, Quantity::Other) {
         Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
         _ => Err("not a number of degrees above 0, at most 180".to_owned()),
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use host::outcome::keys::Keys;
+use host::output::manner::Manner;
 use host::output::plan;
 use host::planning::{Request, Wanted};
 use orientation::earth::Latitude;
@@ -87,23 +88,23 @@ impl From<&PlanOptions> for Request {
 }
 
 /// Plans positions and dwells, and shows them.
-pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &PlanOptions, manner: Manner) -> Result<Answer, Failure> {
     let report = ("--report", "the page", options.report.clone());
     files::check(None, &[report]).map_err(Failure::misuse)?;
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
-        Err(why) => return Ok(refused(options, why.to_string(), as_json)?),
+        Err(why) => return Ok(refused(options, why.to_string(), manner)?),
     };
     let object = Keys::default().with("status", "ok").with_all(Some(&planned));
-    let answer = Answer::of(None, as_json, &object, || plan::report(&request, &planned).text())?;
+    let answer = Answer::reported(None, manner, &object, || plan::report(&request, &planned))?;
     Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.
-fn refused(options: &PlanOptions, why: String, as_json: bool) -> Result<Answer, String> {
+fn refused(options: &PlanOptions, why: String, manner: Manner) -> Result<Answer, String> {
     let object = json!({ "status": "refused", "reason": why });
     let no_page = |_| "--report: without a schedule there is no page".to_owned();
     let warnings = options.report.iter().map(no_page).collect();
-    Ok(Answer::of(Some(why), as_json, &object, String::new)?.with_warnings(warnings))
+    Ok(Answer::of(Some(why), manner, &object, String::new)?.with_warnings(warnings))
 }

@@ -9,6 +9,7 @@ use host::methods::vertical::write_attitude;
 use host::methods::{self, METHODS, Method};
 use host::outcome::run::RunDetails;
 use host::outcome::{Outcome, Source};
+use host::output::manner::Manner;
 use host::output::progress::Progress;
 use host::recording::{self, Recording, inputs};
 use host::unwritten;
@@ -103,7 +104,7 @@ const SPECIAL: [(&str, &str); 5] = [
 ];
 
 /// What may be asked for with inputs of a run, too: they hold everything else.
-const ALWAYS: [&str; 3] = ["file", "json", "report"];
+const ALWAYS: [&str; 2] = ["file", "report"];
 
 /// Refuses the first option that a method does not take.
 ///
@@ -118,23 +119,23 @@ fn check(stated: &Stated, method: &Method) -> Result<(), String> {
 }
 
 /// Replays a recording.
-pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &ReplayOptions, stated: &Stated, manner: Manner) -> Result<Answer, Failure> {
     options.check(stated).map_err(Failure::misuse)?;
     if inputs::is_named(&options.file) {
-        return Ok(again(options, as_json)?);
+        return Ok(again(options, manner)?);
     }
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let method = options.method.unwrap_or_else(|| methods::usual(&recording));
     // Without a method stated, that the options do not suit shows only now.
     check(stated, method).map_err(Failure::misuse)?;
     let warnings = recording.warning_lines(&options.file);
-    replay(options, method, recording, as_json)
+    replay(options, method, recording, manner)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
 }
 
 /// Replays a whole run by its inputs.
-fn again(options: &ReplayOptions, as_json: bool) -> Result<Answer, String> {
+fn again(options: &ReplayOptions, manner: Manner) -> Result<Answer, String> {
     let replayed = replay_inputs(&options.file);
     let Replayed { finished, body, done: Done { kept, realignments, truth, warning } } =
         replayed.map_err(|error| error.to_string())?;
@@ -142,7 +143,7 @@ fn again(options: &ReplayOptions, as_json: bool) -> Result<Answer, String> {
     let details = RunDetails::of_kept(&kept, realignments);
     let outcome = finished.outcome(&truth).of_run(Source::File(name.clone()), details);
     let shown = Shown { name: &name, finished, truth, body };
-    let answer = shown.answer(&outcome, options.report.as_deref(), as_json)?;
+    let answer = shown.answer(&outcome, options.report.as_deref(), manner)?;
     let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     Ok(Answer { refusal, ..answer }.with_warnings(Vec::from_iter(warning)))
 }
@@ -152,11 +153,11 @@ fn replay(
     options: &ReplayOptions,
     method: &Method,
     recording: Recording,
-    as_json: bool,
+    manner: Manner,
 ) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, truth) = recording.into_parts();
-    let (asked, progress) = (options.asked(), Progress::new(0, "positions"));
+    let (asked, progress) = (options.asked(), Progress::new(manner, 0, "positions"));
     let finished = (method.replay)(&header, &body, &asked, &|session| progress.session(session))
         .map_err(|error| format!("{name}: {error}"))?;
     progress.finish();
@@ -172,7 +173,7 @@ fn replay(
     });
     let outcome = Outcome { source: Some(Source::File(name.clone())), reason, ..outcome };
     let shown = Shown { name: &name, finished, truth, body: Some(body) };
-    let answer = shown.answer(&outcome, options.report.as_deref(), as_json)?;
+    let answer = shown.answer(&outcome, options.report.as_deref(), manner)?;
     let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let attitude = options.attitude_out.as_ref().zip(shown.finished.attitude());
     let written = attitude.map_or(Ok(()), |(path, moments)| {

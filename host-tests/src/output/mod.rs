@@ -3,6 +3,7 @@
 pub mod allan;
 pub mod emulation;
 pub mod executed;
+pub mod manner;
 pub mod plan;
 pub mod progress;
 

@@ -254,10 +254,14 @@ impl From<Table> for Part {
 }
 
 impl Report {
-    /// A report of these parts, without labelled lines of which there are none.
+    /// A report of these parts, without labelled lines and rows of which there are none.
     pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
-        let is_there = |part: &Part| !matches!(part, Part::Lines(lines) if lines.lines.is_empty());
-        let parts = parts.into_iter().filter(is_there).collect();
+        let is_empty = |part: &Part| match part {
+            Part::Lines(lines) => lines.lines.is_empty(),
+            Part::Table(table) => table.rows.is_empty(),
+            Part::Figure(_) => false,
+        };
+        let parts = parts.into_iter().filter(|part| !is_empty(part)).collect();
         Self { title: title.into(), subtitle: Vec::new(), parts }
     }
 

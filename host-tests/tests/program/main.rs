@@ -4,11 +4,14 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod angles;
 mod command_line;
 mod emulate;
+mod interrupted;
 mod log;
 mod program;
 mod records;
 mod report;
 mod rotating_run;
 mod stops_run;
+mod verbosity;

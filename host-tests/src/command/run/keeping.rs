@@ -1,9 +1,11 @@
 //! How `meridian run` goes on after its alignment.
 
 use clap::Args;
+use host::angle::Quantity;
 use simulated::hold::Hold;
 
-use super::options::{Common, seconds};
+use super::options::{Common, azimuth, seconds};
+use crate::command::angle;
 use crate::command::stated::{self, Stated};
 
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
@@ -30,8 +32,8 @@ pub struct KeepingOptions {
 fn handover(text: &str) -> Result<[f64; 2], String> {
     let wrong = || "not an azimuth within ±360° and a σ up to 30°, as 213.7,0.1".to_owned();
     let (azimuth, sigma) = text.split_once(',').ok_or_else(wrong)?;
-    match (azimuth.parse::<f64>(), sigma.parse::<f64>()) {
-        (Ok(azimuth), Ok(sigma)) if azimuth.abs() <= 360.0 && sigma > 0.0 && sigma <= 30.0 => {
+    match (self::azimuth(azimuth), angle(sigma, Quantity::Other)) {
+        (Ok(azimuth), Ok(sigma)) if sigma > 0.0 && sigma <= 30.0 => {
             Ok([azimuth.rem_euclid(360.0), sigma])
         }
         _ => Err(wrong()),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use drivers::ads1262::configuration::DataRate;
+use host::angle::Quantity;
 use host::instrument::recorder::{self, Recorded, Samples};
 use host::packed::Packed;
 use host::recording::inputs::{self, Given, Writer};
@@ -13,7 +14,7 @@ use host::unwritten;
 use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
-use crate::command::{named, seed};
+use crate::command::{angle, named, seed};
 
 /// What writes the inputs of a run, where they are recorded.
 pub type Inputs = Option<Writer<Packed>>;
@@ -91,10 +92,10 @@ impl Common {
 #[derive(Args, Clone, Debug)]
 pub struct Place {
     /// Latitude in degrees, north positive.
-    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>)]
+    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = latitude)]
     latitude: f64,
     /// True azimuth of body x in degrees; the board is not given it.
-    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
+    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = azimuth)]
     azimuth: f64,
     /// The gyro (fog).
     #[arg(long, value_parser = named(&GYROS))]
@@ -122,10 +123,10 @@ impl Place {
 #[derive(Args, Clone, Debug)]
 pub struct Inclination {
     /// True pitch of the base in degrees, nose up positive.
-    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>)]
+    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = inclination::<90>)]
     pub pitch: f64,
     /// True roll of the base in degrees, right side down positive.
-    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>)]
+    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = inclination::<180>)]
     pub roll: f64,
 }
 
@@ -146,13 +147,21 @@ static GYROS: [(GyroClass, [&str; 2]); 4] = [
     ),
 ];
 
-fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
-    let limit = f64::from(LIMIT);
-    match text.parse::<f64>() {
-        Ok(angle) if angle.abs() <= limit => Ok(angle),
-        Ok(_) => Err(format!("outside ±{limit}°")),
-        Err(_) => Err("not a number".to_owned()),
-    }
+fn latitude(text: &str) -> Result<f64, String> {
+    within(90.0, angle(text, Quantity::Latitude)?)
+}
+
+/// An azimuth in degrees, east of north, or west of it with a minus.
+pub fn azimuth(text: &str) -> Result<f64, String> {
+    within(360.0, angle(text, Quantity::Azimuth)?)
+}
+
+fn inclination<const LIMIT: u16>(text: &str) -> Result<f64, String> {
+    within(f64::from(LIMIT), angle(text, Quantity::Other)?)
+}
+
+fn within(limit: f64, angle: f64) -> Result<f64, String> {
+    if angle.abs() <= limit { Ok(angle) } else { Err(format!("outside ±{limit}°")) }
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -6,6 +6,7 @@ use host::instrument::recorder::Recorded as _;
 use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Replay, follow};
 use host::outcome::run::{OfPlatform, RunDetails};
+use host::output::manner::Manner;
 use host::recording::GIVEN;
 use orientation::roll::Progress;
 use simulated::fault::Fault;
@@ -28,7 +29,7 @@ pub struct SpinOptions {
 }
 
 impl Simulated for SpinOptions {
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
         let usual = SpinScenario::default();
         let scenario = SpinScenario {
             seed: self.common.seed,
@@ -36,9 +37,10 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (run, wall) = Terminal::watching("samples", &None, |watch| {
-            Trial::of(&scenario).fault(fault).watch(watch).run()
-        })?;
+        let (run, wall) =
+            Terminal::watching((manner, "samples", scenario.seconds), &None, |watch| {
+                Trial::of(&scenario).fault(fault).watch(watch).run()
+            })?;
         let written = self.common.write(&scenario, &run, (&run.truth.samples, None));
         let (_, truth) = scenario.end_of(&run);
         let assumed = vec![GIVEN.to_owned()];

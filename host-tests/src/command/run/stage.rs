@@ -4,12 +4,14 @@ use std::time::Duration;
 
 use clap::Args;
 use firmware::event::Event;
+use host::angle::Quantity;
 use host::instrument::recorder::Recorded;
 use host::instrument::{Run, Trial};
 use host::methods::stepwise::Replay;
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
+use host::output::manner::Manner;
 use host::recording::Truth;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::signal::Sample;
@@ -22,7 +24,7 @@ use super::options::{Common, Inclination, Place, number, seconds};
 use super::{Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
-use crate::command::{HALVES, named, sigma, whole};
+use crate::command::{HALVES, angle, named, sigma, whole};
 
 /// What is asked of a stage.
 #[derive(Args, Clone, Debug)]
@@ -72,7 +74,7 @@ pub(super) struct BaseOptions {
     #[command(flatten)]
     keeping: KeepingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
-    #[arg(long, value_name = "DEGREES", value_parser = number(0.0..=2.0, "an amplitude in degrees"))]
+    #[arg(long, value_name = "DEGREES", value_parser = amplitude)]
     sway: Option<f64>,
     /// Frequency of the sway in hertz.
     #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway")]
@@ -80,6 +82,13 @@ pub(super) struct BaseOptions {
     /// Lets the base sway without a coarse IMU on it.
     #[arg(long, requires = "sway")]
     no_base_imu: bool,
+}
+
+fn amplitude(text: &str) -> Result<f64, String> {
+    match angle(text, Quantity::Other) {
+        Ok(degrees) if (0.0..=2.0).contains(&degrees) => Ok(degrees),
+        _ => Err("not an amplitude in degrees from 0 to 2".to_owned()),
+    }
 }
 
 fn wanted(text: &str) -> Result<f64, String> {
@@ -132,12 +141,12 @@ impl BaseOptions {
     /// Runs a board, and writes the recording; `shown` gets the time, too, that it took on this machine.
     fn run<C: Recorded<Sample = Sample>>(
         &self,
-        carrier: &C,
-        fault: Option<Fault>,
+        (carrier, seconds): (&C, f64),
+        (fault, manner): (Option<Fault>, Manner),
         shown: impl FnOnce(C::Run, Truth, Duration) -> Ran,
     ) -> Result<Ran, String> {
         let (mut wanted, inputs) = self.common.wanted(carrier.given())?;
-        let (run, wall) = Terminal::watching("positions", &inputs, |watch| {
+        let (run, wall) = Terminal::watching((manner, "positions", seconds), &inputs, |watch| {
             let recorder = (&mut wanted, inputs.as_ref());
             Trial::of(carrier).fault(fault).record(recorder).watch(watch).run()
         })?;
@@ -184,9 +193,10 @@ impl Simulated for StageOptions {
         self.base.check(stated, (&scenario, scenario.alignment_seconds()), &aligning)
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, truth, wall| {
+        let seconds = scenario.alignment_seconds() + scenario.hold.seconds;
+        self.base.run((&scenario, seconds), (fault, manner), |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
             ran("the simulated run", run, details, truth)
@@ -211,9 +221,10 @@ impl Simulated for FramesOptions {
         self.base.check(stated, (&scenario.base, scenario.alignment_seconds()), &ALIGNING)
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, truth, wall| {
+        let seconds = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        self.base.run((&scenario, seconds), (fault, manner), |run, truth, wall| {
             let [forward, right, down] = run.truth;
             let is_vertical =
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));

@@ -11,6 +11,7 @@ use host::instrument::{Trial, flash_file};
 use host::methods::rotating::Replay;
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
+use host::output::manner::Manner;
 use host::recording::Body;
 use simulated::fault::Fault;
 use simulated::flash::Flash;
@@ -167,13 +168,15 @@ impl Simulated for TurntableOptions {
         Ok(())
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
         let scenario = self.scenario();
         let mut store = self.store()?;
         let (mut recorder, inputs) = self.common.wanted(given_by(&scenario, &mut store))?;
+        let expected_s = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        let watched = (manner, "turns", expected_s);
         // Figures show them.
         recorder.is_idle = false;
-        let (run, wall) = Terminal::watching("turns", &inputs, |watch| {
+        let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut recorder, inputs.as_ref());
             let trial = Trial::of(&scenario).fault(fault).record(recorder);
             trial.store(&mut store).watch(watch).run()

@@ -6,6 +6,7 @@ use host::instrument::recorder::Recorded as _;
 use host::methods::stops::{Replay, SIAP};
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
+use host::output::manner::Manner;
 use host::recording::GIVEN;
 use orientation::alignment::stops::session::Session;
 use simulated::fault::Fault;
@@ -58,6 +59,12 @@ impl VehicleOptions {
     }
 }
 
+/// How long a run takes by its own time, s.
+fn lasting(scenario: &VehicleScenario) -> f64 {
+    let VehicleScenario { base, stops, stop_s, drive_s, .. } = scenario;
+    *stops as f64 * (stop_s + drive_s) - drive_s + base.hold.seconds
+}
+
 impl Simulated for VehicleOptions {
     fn check(&self, stated: &Stated) -> Result<(), String> {
         let hold = self.scenario().base.hold;
@@ -69,7 +76,7 @@ impl Simulated for VehicleOptions {
         )
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
         let scenario = self.scenario();
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
@@ -77,7 +84,8 @@ impl Simulated for VehicleOptions {
         let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
         let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
         let (mut wanted, inputs) = self.common.wanted(scenario.given())?;
-        let (run, wall) = Terminal::watching("stops", &inputs, |watch| {
+        let watched = (manner, "stops", lasting(&scenario));
+        let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
             Trial::of(&scenario).fault(fault).record(recorder).watch(watch).run()
         })?;
