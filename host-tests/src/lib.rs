@@ -15,6 +15,7 @@ pub mod instrument;
 pub mod interrupt;
 mod median;
 pub mod methods;
+pub mod new_file;
 pub mod outcome;
 pub mod output;
 pub mod packed;

@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use host::interrupt;
+use host::new_file;
 use host::output::manner::{Manner, Verbosity};
 use host::output::say;
 
@@ -22,23 +23,24 @@ use crate::command::log::LogOptions;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
+use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
-use crate::command::{Answer, Failure, Output, print};
+use crate::command::{Answer, Failure, OUTPUT, Output, examples, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
 /// Without a command it is `run stage`.
 #[derive(Parser)]
-#[command(name = "meridian", version)]
+#[command(name = "meridian", version = env!("MERIDIAN_VERSION"), after_help = examples::PROGRAM)]
 struct CommandLine {
     /// One JSON object on standard output instead of text.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OUTPUT)]
     json: bool,
     /// Shows the log of a run, line by line, and all that stands behind the result.
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
     verbose: bool,
     /// Shows errors alone, and the shortest form of the result.
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
     quiet: bool,
     #[command(subcommand)]
     command: Command,
@@ -66,24 +68,39 @@ impl CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
-    #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]")]
+    #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]", after_help = examples::RUN)]
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, finds the
     /// roll of a spinning body on one of kind `spin`, or does again all that a run did by its inputs.
+    #[command(after_help = examples::REPLAY)]
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
+    #[command(override_usage = PLAN, after_help = examples::PLAN)]
     Plan(PlanOptions),
     /// Finds a gyro's noise from a recording of kind `static`: Allan deviation and coefficients.
+    #[command(after_help = examples::ALLAN)]
     Allan(AllanOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
+    #[command(after_help = examples::CAMPAIGN)]
     Campaign(CampaignOptions),
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
     /// and holds its instructions and memory to their budget. Needs qemu-system-arm.
+    #[command(after_help = examples::EMULATE)]
     Emulate(EmulateOptions),
     /// Prints the lines of its log that a board has kept in flash: which device failed and how, how a run ended, what came
     /// of an alignment.
+    #[command(after_help = examples::LOG)]
     Log(LogOptions),
+    /// Prints what a shell needs to complete commands, options and their values.
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(CompletionsOptions),
+    /// Prints the manual page of the program, or of a command.
+    #[command(after_help = examples::MAN)]
+    Man(ManOptions),
 }
+
+/// What `plan` needs.
+const PLAN: &str = "meridian plan [OPTIONS] --arw N --latitude D (--seconds S | --sigma D)";
 
 /// What was asked, and which options stand on the command line.
 struct Parsed {
@@ -195,6 +212,7 @@ fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCod
 
 /// Ends the program at once, and says why.
 fn end(reason: &str, manner: Manner) {
+    new_file::clear();
     failed(&reason.to_owned().into(), manner);
     std::process::exit(1);
 }
@@ -216,6 +234,10 @@ fn answer(command: &Command, stated: &Stated, manner: Manner) -> Result<bool, Fa
         Command::Campaign(options) => command::campaign::run(options, manner)?,
         Command::Emulate(options) => command::emulate::run(options, manner)?,
         Command::Log(options) => command::log::run(options, manner)?,
+        Command::Completions(options) => {
+            shell::completions(options, CommandLine::command(), manner)?
+        }
+        Command::Man(options) => shell::man(options, CommandLine::command(), manner)?,
     };
     print(&answer.printed())?;
     warn(&answer.warnings, manner);

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 use host::allan::analysis::{Analysis, Rest};
 use host::allan::speed;
+use host::new_file::NewFile;
 use host::output::allan::Shown;
 use host::output::manner::Manner;
 use host::planning::suggestion;
 use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
 
-use super::{Answer, Failure, files};
+use super::files::Written;
+use super::{Answer, Failure, OUTPUT, files};
 
 /// The recording, and which of its columns is analysed.
 #[derive(Args)]
@@ -22,23 +24,29 @@ pub struct AllanOptions {
     #[arg(long, value_name = "NAME")]
     column: Option<String>,
     /// Writes the curve, its fit and all numbers as a page for a browser.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     report: Option<PathBuf>,
 }
 
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
-    let report = ("--report", "the page", options.report.clone());
-    files::check(Some(&options.file), &[report]).map_err(Failure::misuse)?;
+    let page = Written::page(options.report.as_ref());
+    files::check(Some(&options.file), &[page]).map_err(Failure::misuse)?;
+    let page = files::opened("the report", options.report.as_ref())?;
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let warnings = recording.warning_lines(&options.file);
-    analyse(options, recording, manner)
+    analyse(options, recording, page, manner)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
 }
 
 /// Analyses what was read.
-fn analyse(options: &AllanOptions, recording: Recording, manner: Manner) -> Result<Answer, String> {
+fn analyse(
+    options: &AllanOptions,
+    recording: Recording,
+    page: Option<NewFile>,
+    manner: Manner,
+) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, _) = recording.into_parts();
     let rest = Rest::take(&header, &body, options.column.as_deref())
@@ -54,7 +62,7 @@ fn analyse(options: &AllanOptions, recording: Recording, manner: Manner) -> Resu
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
     let answer = Answer::reported(refusal, manner, &shown.object(), || shown.report())?;
-    Ok(answer.with_page(options.report.as_deref(), || shown.report()))
+    Ok(answer.with_page(page, || shown.report()))
 }
 
 /// Why there is no noise, with what is to be known of the record.

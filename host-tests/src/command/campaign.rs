@@ -9,7 +9,8 @@ use host::output::manner::Manner;
 use host::output::progress::Progress;
 use simulated::fault::Platform;
 
-use super::{Answer, Failure, faults as of_run, files, registered, whole};
+use super::files::Written;
+use super::{Answer, Failure, OUTPUT, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -24,7 +25,7 @@ pub struct CampaignOptions {
     #[arg(long, value_parser = whole::<1, 1_000_000>)]
     runs: Option<u64>,
     /// Writes figures and tables as a page for a browser.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     report: Option<PathBuf>,
     /// The only platform to run, of faults: stage, two-frame, turntable, vehicle or spin.
     #[arg(long, value_name = "NAME", value_parser = of_run::platform)]
@@ -57,7 +58,7 @@ impl CampaignOptions {
             let names: Vec<_> = disturbed::classes().map(|class| class.fault.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
-        files::check(None, &[("--report", "the page", self.report.clone())])
+        files::check(None, &[Written::page(self.report.as_ref())])
     }
 }
 
@@ -76,6 +77,7 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
         platform: options.platform,
         class: options.class.clone(),
     };
+    let page = files::opened("the report", options.report.as_ref())?;
     let progress = Progress::new(manner, (campaign.count)(&asked) as u64, campaign.steps);
     interrupt::heed();
     let Done { mut object, report, refusal } = (campaign.run)(&asked, &progress)?;
@@ -84,5 +86,5 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
     let answer = Answer::reported(refusal, manner, &object, || report.clone())?;
-    Ok(answer.with_page(options.report.as_deref(), || report))
+    Ok(answer.with_page(page, || report))
 }

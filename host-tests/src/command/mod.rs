@@ -3,19 +3,21 @@
 pub mod allan;
 pub mod campaign;
 pub mod emulate;
+pub mod examples;
 pub mod faults;
 pub mod files;
 pub mod log;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod shell;
 pub mod stated;
 
 use std::io::Write;
-use std::path::Path;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::angle::Quantity;
+use host::new_file::NewFile;
 use host::outcome::{self, Finished, Outcome};
 use host::output::manner::{Manner, Verbosity};
 use host::recording::{Body, Truth};
@@ -24,6 +26,9 @@ use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use serde::Serialize;
 use serde_json::{Value, json};
+
+/// Heading of the options that say where results go, and how much is told.
+pub const OUTPUT: &str = "Output";
 
 /// What came of a command, ready to print.
 pub struct Answer {
@@ -97,7 +102,15 @@ impl Answer {
     pub fn printed(&self) -> String {
         match &self.output {
             Output::Text(text) => text.clone(),
-            Output::Object(object) => format!("{:#}", self.agreeing(object.clone())),
+            Output::Object(_) => format!("{:#}", self.object()),
+        }
+    }
+
+    /// The object, of which status and exit code agree; null where there is none.
+    pub fn object(&self) -> Value {
+        match &self.output {
+            Output::Text(_) => Value::Null,
+            Output::Object(object) => self.agreeing(object.clone()),
         }
     }
 
@@ -143,17 +156,18 @@ impl Answer {
 
     /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
-    fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
-        self.with_written(path.map_or(Ok(()), |path| page().write(path)))
+    fn with_page(self, place: Option<NewFile>, page: impl FnOnce() -> Report) -> Self {
+        self.with_written(place.map_or(Ok(()), |place| place.write(|path| page().write(path))))
     }
 }
 
 /// So much of a report as is asked for.
 fn as_text(report: &Report, verbosity: Verbosity) -> String {
     let text = report.text();
+    let text = text.trim_start_matches('\n');
     match verbosity {
-        Verbosity::Quiet => shortest(&text),
-        Verbosity::Usual | Verbosity::Verbose => text,
+        Verbosity::Quiet => shortest(text),
+        Verbosity::Usual | Verbosity::Verbose => text.to_owned(),
     }
 }
 
@@ -182,7 +196,7 @@ impl Shown<'_> {
     pub fn answer(
         &self,
         outcome: &Outcome,
-        report: Option<&Path>,
+        report: Option<NewFile>,
         manner: Manner,
     ) -> Result<Answer, String> {
         let Self { name, finished, truth, body } = self;

@@ -19,7 +19,7 @@ use self::keys::Keys;
 use self::run::RunDetails;
 use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
-use crate::output::{azimuth_error, positive_zero};
+use crate::output::{azimuth_error, positive_zero, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part as ReportPart, Report, Table};
 
@@ -213,6 +213,13 @@ impl Outcome {
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
 
+    /// The roll of a spinning body at the last sample, within a turn, °, where it was found.
+    #[must_use]
+    pub fn roll_end_deg(&self) -> Option<f64> {
+        let turned = self.details.number("roll_rad_end")?;
+        Some(turned.to_degrees().rem_euclid(360.0))
+    }
+
     /// Whether there is a result.
     pub(crate) fn is_ok(&self) -> bool {
         self.reason.is_none()
@@ -259,7 +266,7 @@ fn headline(outcome: &Outcome) -> Lines {
 /// The true azimuth, and what one that was found with its 1σ is off, °.
 fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
     let truth = (azimuth - error).rem_euclid(360.0);
-    format!("{truth:.4}°: the error is {error:+.4}°, {:+.2} σ", error / sigma)
+    format!("{truth:.4}°: the error is {}°, {} σ", signed(error, 4), signed(error / sigma, 2))
 }
 
 fn limit(outcome: &Outcome) -> Option<String> {
@@ -313,7 +320,7 @@ fn remedy(source: Part) -> &'static str {
 /// Biases of the gyros forward, right and down, and their 1σ, °/h, in words with so many decimal places.
 pub(crate) fn of_biases([biases, sigmas]: [[f64; 3]; 2], places: usize) -> String {
     let both = biases.iter().zip(sigmas);
-    let each = both.map(|(bias, sigma)| format!("{bias:+.places$} ± {sigma:.places$}"));
+    let each = both.map(|(bias, sigma)| format!("{} ± {sigma:.places$}", signed(*bias, places)));
     format!("{} °/h forward, right, down", each.collect::<Vec<_>>().join(", "))
 }
 

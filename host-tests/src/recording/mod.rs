@@ -32,7 +32,7 @@ mod warning;
 
 use std::fmt;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 pub use error::{Place, ReadError};
@@ -165,8 +165,13 @@ impl fmt::Display for Kind {
 /// [`ReadError`] names file, line, column and remedy in one line.
 pub fn read(path: &Path) -> Result<Recording, ReadError> {
     let name = path.display().to_string();
-    let refused = |error| lines::refused(Place::Whole, &error).in_file(&name);
-    read_from(&name, File::open(path).map_err(refused)?)
+    read_from(&name, File::open(path).map_err(|error| unread(&name, &error))?)
+}
+
+/// That a file of this name cannot be opened.
+#[must_use]
+pub fn unread(name: &str, error: &io::Error) -> ReadError {
+    lines::refused(Place::Whole, error).in_file(name)
 }
 
 /// Reads a recording from any reader; `name` stands in the errors. Reads no more than 32 KiB past

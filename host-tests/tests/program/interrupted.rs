@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
+use crate::support::files::Scratch;
 use crate::support::program::command;
 
 /// What a program that was interrupted after its first sign of progress ended with: exit code, standard output, and what
@@ -46,6 +47,15 @@ fn a_run_that_is_interrupted_says_how_far_it_was() {
     assert_eq!((code, printed.as_str()), (Some(1), ""));
     let reason = said.lines().last().unwrap_or_default();
     assert!(reason.starts_with("meridian: interrupted at "), "{said}");
+}
+
+#[test]
+fn a_recording_that_is_interrupted_leaves_what_was_there_and_nothing_beside_it() {
+    let scratch = Scratch::new("interrupted");
+    let there = scratch.with("run.jsonl", "before");
+    let (code, ..) = interrupted(&format!("run --hold 14400 --record {there}"));
+    assert_eq!((code, scratch.read("run.jsonl").as_str()), (Some(1), "before"));
+    assert_eq!(std::fs::read_dir(scratch.folder()).expect("it is there").count(), 1);
 }
 
 #[test]

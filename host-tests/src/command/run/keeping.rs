@@ -4,7 +4,7 @@ use clap::Args;
 use host::angle::Quantity;
 use simulated::hold::Hold;
 
-use super::options::{Common, azimuth, seconds};
+use super::options::{Common, KEEPING, azimuth, seconds};
 use crate::command::angle;
 use crate::command::stated::{self, Stated};
 
@@ -19,13 +19,13 @@ const HANDED: f64 = 20.0;
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
     /// with --realign 1800; 0 with --fault, and where an accuracy is asked for).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0), help_heading = KEEPING)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
-    #[arg(long)]
+    #[arg(long, help_heading = KEEPING)]
     realign: bool,
     /// An azimuth that is handed over from outside instead of an alignment, and its 1σ, in degrees.
-    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover)]
+    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover, help_heading = KEEPING)]
     handover: Option<[f64; 2]>,
 }
 

@@ -10,6 +10,7 @@ pub mod usual;
 mod vehicle;
 
 use clap::{Args, Subcommand};
+use host::new_file::NewFile;
 use host::outcome::Source;
 use host::outcome::run::RunDetails;
 use host::output::manner::Manner;
@@ -17,6 +18,7 @@ use simulated::fault::{Fault, Platform};
 
 use self::options::Common;
 use self::terminal::Terminal;
+use super::examples;
 use super::faults::{self, FaultChoice};
 use super::files::{self, Written};
 use super::stated::{self, Stated};
@@ -34,14 +36,19 @@ pub struct RunOptions {
 enum Carrier {
     /// A gyro on a single-axis stage: positions on the full circle, unless a plan is asked for. What runs where no
     /// platform is named.
+    #[command(after_help = examples::STAGE)]
     Stage(Box<stage::StageOptions>),
     /// A gyro in two frames: four headings, and vertical to keep the azimuth.
+    #[command(after_help = examples::TWO_FRAME)]
     TwoFrame(Box<stage::FramesOptions>),
     /// A platform that turns all the time, on a slip ring.
+    #[command(after_help = examples::TURNTABLE)]
     Turntable(Box<turntable::TurntableOptions>),
     /// Three gyros in a vehicle that drives from stop to stop.
+    #[command(after_help = examples::VEHICLE)]
     Vehicle(Box<vehicle::VehicleOptions>),
     /// The roll of a body in fast rotation.
+    #[command(after_help = examples::SPIN)]
     Spin(spin::SpinOptions),
 }
 
@@ -64,7 +71,17 @@ trait Simulated {
     ///
     /// # Errors
     /// What keeps it from running; a refusal is none.
-    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String>;
+    fn run(&self, begun: &Begun) -> Result<Ran, String>;
+}
+
+/// What a run begins with, beside the options of its platform.
+struct Begun {
+    /// What goes wrong.
+    fault: Option<Fault>,
+    /// How it is shown.
+    manner: Manner,
+    /// The place of its recording.
+    record: Option<NewFile>,
 }
 
 /// A finished run, ready to be shown.
@@ -101,10 +118,9 @@ impl RunOptions {
             );
         }
         options.check(stated)?;
-        let Common { record, report, .. } = common.clone();
-        let record = ("--record", "the recording", record);
-        let report = ("--report", "the page", report);
-        let files: Vec<_> = [record].into_iter().chain(options.files()).chain([report]).collect();
+        let record = Written::recording(common.record.as_ref());
+        let page = Written::page(common.report.as_ref());
+        let files: Vec<_> = [record].into_iter().chain(options.files()).chain([page]).collect();
         files::check(None, &files)
     }
 }
@@ -132,8 +148,11 @@ pub fn run(options: &RunOptions, stated: &Stated, manner: Manner) -> Result<Answ
         Some(FaultChoice::One(fault)) => Some(*fault),
         None => None,
     };
-    common.open()?;
-    let Ran { shown, details, written } = options.run(fault, manner)?;
+    let record = files::opened("the recording", common.record.as_ref())?;
+    let page = files::opened("the report", report.as_ref())?;
+    let begun = Begun { fault, manner, record };
+    let Ran { shown, details, written } = options.run(&begun)?;
+    let written = written.and_then(|()| begun.record.map_or(Ok(()), NewFile::keep));
     let outcome = shown.finished.outcome(&shown.truth).of_run(Source::Seed(*seed), details);
-    Ok(shown.answer(&outcome, report.as_deref(), manner)?.with_written(written))
+    Ok(shown.answer(&outcome, page, manner)?.with_written(written))
 }

@@ -11,17 +11,15 @@ use host::methods::stepwise::Replay;
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
-use host::output::manner::Manner;
 use host::recording::Truth;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::signal::Sample;
-use simulated::fault::Fault;
 use simulated::mount::FramesScenario;
 use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Inclination, Place, number, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{CHANCE, COURSE, Common, Inclination, Place, number, seconds};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
 use crate::command::{HALVES, angle, named, sigma, whole};
@@ -32,7 +30,7 @@ pub struct StageOptions {
     #[command(flatten)]
     pub(super) base: BaseOptions,
     /// Positions on the full circle (24), to the first of which it comes once more at the end.
-    #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     positions: Option<u64>,
 }
 
@@ -42,7 +40,7 @@ pub struct FramesOptions {
     #[command(flatten)]
     pub(super) base: BaseOptions,
     /// How often the four headings are visited (6).
-    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     passes: Option<u64>,
 }
 
@@ -50,38 +48,38 @@ pub struct FramesOptions {
 #[derive(Args, Clone, Debug)]
 pub(super) struct BaseOptions {
     #[command(flatten)]
-    pub(super) common: Common,
-    #[command(flatten)]
     place: Place,
     #[command(flatten)]
     inclination: Inclination,
     /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
     /// --sigma the time allowed.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0), help_heading = COURSE)]
     seconds: Option<f64>,
     /// Goes on until this standard deviation is reached, in degrees (1σ).
-    #[arg(long, value_name = "DEGREES", value_parser = wanted)]
+    #[arg(long, value_name = "DEGREES", value_parser = wanted, help_heading = COURSE)]
     sigma: Option<f64>,
     /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0), help_heading = COURSE)]
     survey: Option<f64>,
     /// The half of the circle in which the board is given that the azimuth lies: two positions need it.
-    #[arg(long, value_parser = named(&HALVES))]
+    #[arg(long, value_parser = named(&HALVES), help_heading = COURSE)]
     half: Option<Half>,
     /// Seconds at each position (10).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=600.0), conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=600.0), conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     dwell: Option<f64>,
     #[command(flatten)]
     keeping: KeepingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
-    #[arg(long, value_name = "DEGREES", value_parser = amplitude)]
+    #[arg(long, value_name = "DEGREES", value_parser = amplitude, help_heading = CHANCE)]
     sway: Option<f64>,
     /// Frequency of the sway in hertz.
-    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway")]
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway", help_heading = CHANCE)]
     sway_hertz: f64,
     /// Lets the base sway without a coarse IMU on it.
-    #[arg(long, requires = "sway")]
+    #[arg(long, requires = "sway", help_heading = CHANCE)]
     no_base_imu: bool,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
@@ -142,15 +140,15 @@ impl BaseOptions {
     fn run<C: Recorded<Sample = Sample>>(
         &self,
         (carrier, seconds): (&C, f64),
-        (fault, manner): (Option<Fault>, Manner),
+        Begun { fault, manner, record }: &Begun,
         shown: impl FnOnce(C::Run, Truth, Duration) -> Ran,
     ) -> Result<Ran, String> {
-        let (mut wanted, inputs) = self.common.wanted(carrier.given())?;
-        let (run, wall) = Terminal::watching((manner, "positions", seconds), &inputs, |watch| {
+        let (mut wanted, inputs) = self.common.wanted(record.as_ref(), carrier.given())?;
+        let (run, wall) = Terminal::watching((*manner, "positions", seconds), &inputs, |watch| {
             let recorder = (&mut wanted, inputs.as_ref());
-            Trial::of(carrier).fault(fault).record(recorder).watch(watch).run()
+            Trial::of(carrier).fault(*fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(carrier, &run, (&wanted.taken, inputs));
+        let written = Common::write(record.as_ref(), carrier, &run, (&wanted.taken, inputs));
         let (_, truth) = carrier.end_of(&run);
         Ok(Ran { written, ..shown(run, truth, wall) })
     }
@@ -193,10 +191,10 @@ impl Simulated for StageOptions {
         self.base.check(stated, (&scenario, scenario.alignment_seconds()), &aligning)
     }
 
-    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
         let seconds = scenario.alignment_seconds() + scenario.hold.seconds;
-        self.base.run((&scenario, seconds), (fault, manner), |run, truth, wall| {
+        self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
             ran("the simulated run", run, details, truth)
@@ -221,10 +219,10 @@ impl Simulated for FramesOptions {
         self.base.check(stated, (&scenario.base, scenario.alignment_seconds()), &ALIGNING)
     }
 
-    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
         let seconds = scenario.alignment_seconds() + scenario.base.hold.seconds;
-        self.base.run((&scenario, seconds), (fault, manner), |run, truth, wall| {
+        self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let [forward, right, down] = run.truth;
             let is_vertical =
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));

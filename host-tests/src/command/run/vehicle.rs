@@ -6,17 +6,15 @@ use host::instrument::recorder::Recorded as _;
 use host::methods::stops::{Replay, SIAP};
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
-use host::output::manner::Manner;
 use host::recording::GIVEN;
 use orientation::alignment::stops::session::Session;
-use simulated::fault::Fault;
 use simulated::hold::STOP_SECONDS;
 use simulated::scenario::Scenario;
 use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Place, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{COURSE, Common, Place, seconds};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -24,23 +22,23 @@ use crate::command::whole;
 #[derive(Args, Clone, Debug)]
 pub struct VehicleOptions {
     #[command(flatten)]
-    pub(super) common: Common,
-    #[command(flatten)]
     place: Place,
     /// How often the vehicle stops (3).
-    #[arg(long, value_parser = whole::<2, 8>)]
+    #[arg(long, value_parser = whole::<2, 8>, help_heading = COURSE)]
     stops: Option<u64>,
     /// Seconds for which the board levels at each stop (60).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
     stop_seconds: Option<f64>,
     /// Seconds of driving from stop to stop (600).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
     drive_seconds: Option<f64>,
     /// The board is not given how far it has come.
-    #[arg(long)]
+    #[arg(long, help_heading = COURSE)]
     no_displacement: bool,
     #[command(flatten)]
     keeping: KeepingOptions,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 impl VehicleOptions {
@@ -76,20 +74,21 @@ impl Simulated for VehicleOptions {
         )
     }
 
-    fn run(&self, fault: Option<Fault>, manner: Manner) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
+        let Begun { fault, manner, record } = begun;
         let scenario = self.scenario();
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;
         let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
         let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
-        let (mut wanted, inputs) = self.common.wanted(scenario.given())?;
-        let watched = (manner, "stops", lasting(&scenario));
+        let (mut wanted, inputs) = self.common.wanted(record.as_ref(), scenario.given())?;
+        let watched = (*manner, "stops", lasting(&scenario));
         let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
-            Trial::of(&scenario).fault(fault).record(recorder).watch(watch).run()
+            Trial::of(&scenario).fault(*fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &run, (&wanted.taken, inputs));
+        let written = Common::write(record.as_ref(), &scenario, &run, (&wanted.taken, inputs));
         let (_, truth) = scenario.end_of(&run);
         let details =
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());

@@ -11,7 +11,7 @@ use crate::methods::spin::track::Track;
 use crate::methods::spin::{Replay, name};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome};
-use crate::output::degrees;
+use crate::output::{degrees, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Table};
 
@@ -123,10 +123,9 @@ fn lines(replay: &Replay, outcome: &Outcome) -> Lines {
     let at_end = outcome
         .sigma_deg
         .map(|sigma| format!("{turns} turns and {angle:.5}° ± {sigma:.5}° (1σ); {roll:.6} rad"));
-    let truth = outcome
-        .sigma_deg
-        .zip(outcome.error_deg)
-        .map(|(sigma, error)| format!("the error is {error:+.5}°, {:+.2} σ", error / sigma));
+    let truth = outcome.sigma_deg.zip(outcome.error_deg).map(|(sigma, error)| {
+        format!("the error is {}°, {} σ", signed(error, 5), signed(error / sigma, 2))
+    });
     let scale = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
     Lines::default()
         .with_found("roll at the end", at_end)
