@@ -11,6 +11,9 @@ use crate::command::stated::{self, Stated};
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
 const REALIGNING: f64 = 1800.0;
+/// From power-on until the vehicle sets off, beside the time of a usual alignment, s: room for one dwell that is measured
+/// again.
+const STANDING: f64 = 10.0;
 /// When an azimuth from outside comes, s from power-on.
 const HANDED: f64 = 20.0;
 
@@ -41,14 +44,18 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
-    /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
-    pub fn hold(&self, is_plain: bool) -> Hold {
+    /// How the run goes on; one that is to be the same as ever does not unless it is asked to. After a usual alignment,
+    /// which lasts as long as is known, the vehicle soon sets off.
+    pub fn hold(&self, is_plain: bool, is_usual: bool) -> Hold {
         let usual = if self.realign { REALIGNING } else { USUAL };
         let usual = if is_plain { 0.0 } else { usual };
+        let is_known = is_usual && !self.realign && self.handover.is_none();
+        let plain = Hold::of(self.hold.unwrap_or(usual));
         Hold {
+            standing_s: if is_known { STANDING } else { plain.standing_s },
             realigns: self.realign,
             handover: self.handover.map(|handover| (handover, HANDED)),
-            ..Hold::of(self.hold.unwrap_or(usual))
+            ..plain
         }
     }
 

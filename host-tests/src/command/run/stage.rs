@@ -110,14 +110,15 @@ impl BaseOptions {
         }
     }
 
-    /// The scenario of the base.
-    fn scenario(&self) -> Scenario {
+    /// The scenario of the base, where its positions are the usual ones or not.
+    fn scenario(&self, has_usual_positions: bool) -> Scenario {
         let usual = self.place.scenario(self.common.seed);
         // A fault shows in the alignment, and one that goes on until an accuracy is reached may last: the base must not
         // drive off meanwhile.
         let fault = self.common.fault;
         let is_plain = fault.is_some() || self.no_base_imu || self.sigma.is_some();
-        let hold = self.keeping.hold(is_plain);
+        let is_timed = self.seconds.is_some() || self.survey.is_some() || self.dwell.is_some();
+        let hold = self.keeping.hold(is_plain, has_usual_positions && !is_timed);
         let needs_base_imu = self.sway.is_some()
             || hold.seconds > 0.0
             || fault.is_some_and(FaultChoice::is_of_base_imu);
@@ -175,7 +176,7 @@ impl BaseOptions {
 
 impl StageOptions {
     fn scenario(&self) -> Scenario {
-        let base = self.base.scenario();
+        let base = self.base.scenario(self.positions.is_none());
         Scenario {
             positions: self.positions.map_or(base.positions, |count| count as usize),
             ..base
@@ -206,7 +207,7 @@ impl FramesOptions {
     fn scenario(&self) -> FramesScenario {
         let usual = FramesScenario::default();
         FramesScenario {
-            base: self.base.scenario(),
+            base: self.base.scenario(self.passes.is_none()),
             passes: self.passes.map_or(usual.passes, |count| count as usize),
             ..usual
         }

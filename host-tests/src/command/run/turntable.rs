@@ -112,7 +112,10 @@ impl TurntableOptions {
         };
         let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
         // A fault shows in the alignment; and a run by a flash begins where the one before began, not where it ended.
-        let hold = self.keeping.hold(self.common.fault.is_some() || self.flash.is_some());
+        let is_plain = self.common.fault.is_some() || self.flash.is_some();
+        let is_timed = self.speeds.is_some() || self.turns.is_some();
+        let is_usual = !is_timed && self.modulated_turns.is_none() && self.sensor.is_none();
+        let hold = self.keeping.hold(is_plain, is_usual);
         let has_base_imu =
             hold.seconds > 0.0 || self.common.fault.is_some_and(FaultChoice::is_of_base_imu);
         let given = self.place.scenario(seed);
