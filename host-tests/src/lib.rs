@@ -5,14 +5,17 @@
 #![forbid(unsafe_code)]
 
 pub mod allan;
+pub mod angle;
 mod assumptions;
 pub mod campaign;
 mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;
+pub mod interrupt;
 mod median;
 pub mod methods;
+pub mod new_file;
 pub mod outcome;
 pub mod output;
 pub mod packed;
@@ -25,6 +28,7 @@ pub mod simulate;
 pub mod spectrum;
 pub mod unwritten;
 pub mod virtual_time;
+pub mod work;
 
-/// Name and version of the program.
-pub const VERSION: &str = concat!("meridian ", env!("CARGO_PKG_VERSION"));
+/// Name and version of the program, with its commit where that is known.
+pub const VERSION: &str = concat!("meridian ", env!("MERIDIAN_VERSION"));

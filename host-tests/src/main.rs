@@ -11,6 +11,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use host::interrupt;
+use host::new_file;
+use host::output::manner::{Manner, Verbosity};
 use host::output::say;
 
 use crate::command::allan::AllanOptions;
@@ -20,47 +23,88 @@ use crate::command::log::LogOptions;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
+use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
-use crate::command::{Answer, Failure, Output, print};
+use crate::command::{Answer, Failure, OUTPUT, Output, examples, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
 /// Without a command it is `run stage`.
 #[derive(Parser)]
-#[command(name = "meridian", version)]
+#[command(name = "meridian", version = env!("MERIDIAN_VERSION"), after_help = examples::PROGRAM)]
 struct CommandLine {
     /// One JSON object on standard output instead of text.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OUTPUT)]
     json: bool,
+    /// Shows the log of a run, line by line, and all that stands behind the result.
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    verbose: bool,
+    /// Shows errors alone, and the shortest form of the result.
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
+}
+
+impl CommandLine {
+    /// How the command is to say what came of it.
+    ///
+    /// # Errors
+    /// It is to be quiet and verbose.
+    fn manner(&self) -> Result<Manner, clap::Error> {
+        let verbosity = match (self.verbose, self.quiet) {
+            (false, false) => Verbosity::Usual,
+            (true, false) => Verbosity::Verbose,
+            (false, true) => Verbosity::Quiet,
+            (true, true) => {
+                let wrong = "--quiet: --verbose asks for the opposite; leave one out";
+                return Err(CommandLine::command().error(ErrorKind::ArgumentConflict, wrong));
+            }
+        };
+        Ok(Manner { as_json: self.json, verbosity })
+    }
 }
 
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
-    #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]")]
+    #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]", after_help = examples::RUN)]
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, finds the
     /// roll of a spinning body on one of kind `spin`, or does again all that a run did by its inputs.
+    #[command(after_help = examples::REPLAY)]
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
+    #[command(override_usage = PLAN, after_help = examples::PLAN)]
     Plan(PlanOptions),
     /// Finds a gyro's noise from a recording of kind `static`: Allan deviation and coefficients.
+    #[command(after_help = examples::ALLAN)]
     Allan(AllanOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
+    #[command(after_help = examples::CAMPAIGN)]
     Campaign(CampaignOptions),
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
     /// and holds its instructions and memory to their budget. Needs qemu-system-arm.
+    #[command(after_help = examples::EMULATE)]
     Emulate(EmulateOptions),
     /// Prints the lines of its log that a board has kept in flash: which device failed and how, how a run ended, what came
     /// of an alignment.
+    #[command(after_help = examples::LOG)]
     Log(LogOptions),
+    /// Prints what a shell needs to complete commands, options and their values.
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(CompletionsOptions),
+    /// Prints the manual page of the program, or of a command.
+    #[command(after_help = examples::MAN)]
+    Man(ManOptions),
 }
+
+/// What `plan` needs.
+const PLAN: &str = "meridian plan [OPTIONS] --arw N --latitude D (--seconds S | --sigma D)";
 
 /// What was asked, and which options stand on the command line.
 struct Parsed {
-    as_json: bool,
+    manner: Manner,
     command: Command,
     stated: Stated,
 }
@@ -71,8 +115,8 @@ fn parse() -> Result<Parsed, clap::Error> {
     let named = usual::named(arguments.split_off(1.min(arguments.len())));
     let program = taking_negative_numbers(CommandLine::command());
     let matches = program.try_get_matches_from(arguments.iter().chain(&named))?;
-    let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
-    Ok(Parsed { as_json, command, stated: Stated::of(&matches) })
+    let line = CommandLine::from_arg_matches(&matches)?;
+    Ok(Parsed { manner: line.manner()?, command: line.command, stated: Stated::of(&matches) })
 }
 
 /// The program, in which an option that takes a number may have a value that begins with a minus: what it may be, its
@@ -98,17 +142,19 @@ fn takes_number(arg: &clap::Arg) -> bool {
 const STACK: usize = 16 << 20;
 
 fn main() -> ExitCode {
-    let Parsed { as_json, command, stated } = match parse() {
+    let Parsed { manner, command, stated } = match parse() {
         Ok(asked) => asked,
         Err(error) => return misuse(&error),
     };
     // Where there is a pool already, or no room for another one, that one serves.
     let _ = rayon::ThreadPoolBuilder::new().stack_size(STACK).build_global();
-    match answer(&command, &stated, as_json) {
+    // Where it cannot be listened to, Ctrl-C ends the program as the system has it.
+    let _ = interrupt::listen(move |reason| end(reason, manner));
+    match answer(&command, &stated, manner) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
-        Err(failure) => failed(&failure, as_json),
+        Err(failure) => failed(&failure, manner),
     }
 }
 
@@ -151,39 +197,50 @@ fn one_line(text: &str) -> String {
 }
 
 /// Says why there is no result, as JSON too where that was asked for.
-fn failed(Failure { reason, warnings, .. }: &Failure, as_json: bool) -> ExitCode {
-    if as_json {
+fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCode {
+    if manner.as_json {
         let output = Output::Object(serde_json::json!({}));
         let refusal = Some(reason.clone());
         let nothing = Answer { output, refusal, warnings: warnings.clone() };
         // The reason goes to standard error all the same.
         let _ = print(&nothing.printed());
     }
-    warn(warnings);
+    warn(warnings, manner);
     say(&one_line(&format!("meridian: {reason}")));
     ExitCode::from(1)
 }
 
+/// Ends the program at once, and says why.
+fn end(reason: &str, manner: Manner) {
+    new_file::clear();
+    failed(&reason.to_owned().into(), manner);
+    std::process::exit(1);
+}
+
 /// Says what there is to be said beside the result.
-fn warn(warnings: &[String]) {
-    for warning in warnings {
+fn warn(warnings: &[String], manner: Manner) {
+    for warning in warnings.iter().filter(|_| manner.warns()) {
         say(&one_line(&format!("warning: {warning}")));
     }
 }
 
 /// Runs the command and prints what came of it; whether there was a result.
-fn answer(command: &Command, stated: &Stated, as_json: bool) -> Result<bool, Failure> {
+fn answer(command: &Command, stated: &Stated, manner: Manner) -> Result<bool, Failure> {
     let answer = match command {
-        Command::Run(options) => command::run::run(options, stated, as_json)?,
-        Command::Replay(options) => command::replay::run(options, stated, as_json)?,
-        Command::Plan(options) => command::plan::run(options, as_json)?,
-        Command::Allan(options) => command::allan::run(options, as_json)?,
-        Command::Campaign(options) => command::campaign::run(options, as_json)?,
-        Command::Emulate(options) => command::emulate::run(options, as_json)?,
-        Command::Log(options) => command::log::run(options, as_json)?,
+        Command::Run(options) => command::run::run(options, stated, manner)?,
+        Command::Replay(options) => command::replay::run(options, stated, manner)?,
+        Command::Plan(options) => command::plan::run(options, manner)?,
+        Command::Allan(options) => command::allan::run(options, manner)?,
+        Command::Campaign(options) => command::campaign::run(options, manner)?,
+        Command::Emulate(options) => command::emulate::run(options, manner)?,
+        Command::Log(options) => command::log::run(options, manner)?,
+        Command::Completions(options) => {
+            shell::completions(options, CommandLine::command(), manner)?
+        }
+        Command::Man(options) => shell::man(options, CommandLine::command(), manner)?,
     };
     print(&answer.printed())?;
-    warn(&answer.warnings);
+    warn(&answer.warnings, manner);
     if let Some(reason) = &answer.refusal {
         say(&one_line(&format!("meridian: {reason}")));
     }

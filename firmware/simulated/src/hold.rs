@@ -10,6 +10,9 @@ use orientation::units::{Radians, Seconds};
 
 use firmware::ports::Aiding;
 
+/// From power-on to the first position, and from the last one until the vehicle sets off, s: enough for any schedule, with
+/// dwells that are measured again.
+const STANDING_SECONDS: f64 = 50.0;
 /// Duration of a stop at which nothing is done, s.
 pub const STOP_SECONDS: f64 = 60.0;
 /// How long a vehicle stands before it is aligned anew by a mechanism, s.
@@ -25,6 +28,9 @@ pub struct Hold {
     pub seconds: f64,
     /// Whether it is aligned anew at stops.
     pub realigns: bool,
+    /// From power-on to the first position, and from the last one until the vehicle sets off, s; of a base on which an
+    /// alignment takes about as long as its schedule.
+    pub standing_s: f64,
     /// Duration of a drive after the alignment, s.
     pub drive_s: f64,
     /// Duration of a stop after the alignment, s; as long as it needs where nothing is stated.
@@ -36,7 +42,14 @@ pub struct Hold {
 impl Default for Hold {
     /// Not at all; else drives of four minutes, and stops of one or as long as another alignment takes.
     fn default() -> Self {
-        Self { seconds: 0.0, realigns: false, drive_s: 240.0, stop_s: None, handover: None }
+        Self {
+            seconds: 0.0,
+            realigns: false,
+            standing_s: STANDING_SECONDS,
+            drive_s: 240.0,
+            stop_s: None,
+            handover: None,
+        }
     }
 }
 

@@ -16,8 +16,6 @@ use super::scenario::{self, Aim, Scenario};
 
 /// What a movement of a stage takes at most on a usual schedule, s; the way back from the last position is one.
 const MOVEMENT_SECONDS: f64 = 1.7;
-/// From power-on to the first position, and from the last one until the vehicle sets off, s.
-const SETTING_OUT_SECONDS: f64 = 50.0;
 
 impl Scenario {
     /// What the board is given about its precise gyro.
@@ -69,7 +67,7 @@ impl Scenario {
 
     /// Where the base goes after an alignment that takes so many seconds.
     pub fn day(&self, alignment_s: f64) -> Day {
-        let seconds = SETTING_OUT_SECONDS + alignment_s;
+        let seconds = self.hold.standing_s + alignment_s;
         let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
         let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
         let mut day = Day::standing(latitude_deg, azimuth_deg, stop);

@@ -21,9 +21,10 @@ impl<'a, R> Columns<'a, R> {
     }
 }
 
-/// Three numbers with one decimal place.
+/// Three numbers with one decimal place, and a dash for one that there is not.
 pub(super) fn list(values: &[f64; 3]) -> String {
-    values.map(|value| format!("{value:.1}")).join(", ")
+    let text = |value: f64| if value.is_nan() { "-".to_owned() } else { format!("{value:.1}") };
+    values.map(text).join(", ")
 }
 
 /// First reasons of refusals, a line each.

@@ -18,11 +18,11 @@ pub mod szymanowski;
 use orientation::alignment::site::Site;
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
-use rayon::prelude::*;
 use serde_json::Value;
 use simulated::fault::Platform;
 
 use crate::report::Report;
+use crate::work::{Follower, one_by_one, side_by_side};
 
 /// What a user asks of a campaign.
 #[derive(Clone, Debug)]
@@ -35,8 +35,8 @@ pub struct Asked {
     pub class: Option<String>,
 }
 
-/// Called after each step of a campaign, from whatever thread.
-pub type Tick<'a> = &'a (dyn Fn() + Sync);
+/// Who is told of each step of a campaign, and may end it before the last one.
+pub type Tick<'a> = &'a dyn Follower;
 
 /// A campaign.
 pub struct Campaign {
@@ -50,7 +50,7 @@ pub struct Campaign {
     pub steps: &'static str,
     /// How many steps it has.
     pub count: fn(&Asked) -> usize,
-    /// Runs it.
+    /// Runs it; where it is to end early, what it gives rests on the runs that were done, and rows without one are left out.
     pub run: fn(&Asked, Tick<'_>) -> Result<Done, String>,
 }
 
@@ -105,7 +105,7 @@ fn tenth(runs: usize) -> usize {
     (runs / 10).max(1)
 }
 
-/// One result for each seed.
+/// One result for each seed; for the first ones where the campaign ends early.
 fn over<T: Send>(runs: usize, tick: Tick<'_>, of: impl Fn(u64) -> T + Send + Sync) -> Vec<T> {
-    (1..=runs as u64).into_par_iter().map(of).inspect(|_| tick()).collect()
+    side_by_side(1..=runs as u64, tick, of)
 }

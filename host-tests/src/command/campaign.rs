@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
+use host::interrupt;
+use host::output::manner::Manner;
 use host::output::progress::Progress;
 use simulated::fault::Platform;
 
-use super::{Answer, Failure, LOOK, faults as of_run, files, registered, whole};
+use super::files::Written;
+use super::{Answer, Failure, OUTPUT, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -22,7 +25,7 @@ pub struct CampaignOptions {
     #[arg(long, value_parser = whole::<1, 1_000_000>)]
     runs: Option<u64>,
     /// Writes figures and tables as a page for a browser.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     report: Option<PathBuf>,
     /// The only platform to run, of faults: stage, two-frame, turntable, vehicle or spin.
     #[arg(long, value_name = "NAME", value_parser = of_run::platform)]
@@ -55,12 +58,18 @@ impl CampaignOptions {
             let names: Vec<_> = disturbed::classes().map(|class| class.fault.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
-        files::check(None, &[("--report", "the page", self.report.clone())])
+        files::check(None, &[Written::page(self.report.as_ref())])
     }
 }
 
+/// That the campaign was interrupted, where it was.
+fn interrupted() -> Option<String> {
+    let reason = || format!("{}: the tables rest on the runs that were done", interrupt::reason());
+    interrupt::is_asked().then(reason)
+}
+
 /// Runs a campaign.
-pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure> {
     options.check().map_err(Failure::misuse)?;
     let campaign = options.campaign;
     let asked = Asked {
@@ -68,12 +77,14 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, Failure> 
         platform: options.platform,
         class: options.class.clone(),
     };
-    let progress = Progress::new((campaign.count)(&asked) as u64, campaign.steps);
-    let Done { mut object, report, refusal } = (campaign.run)(&asked, &|| progress.step())?;
+    let page = files::opened("the report", options.report.as_ref())?;
+    let progress = Progress::new(manner, (campaign.count)(&asked) as u64, campaign.steps);
+    interrupt::heed();
+    let Done { mut object, report, refusal } = (campaign.run)(&asked, &progress)?;
     progress.finish();
+    let refusal = interrupted().or(refusal.map(str::to_owned));
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
-    let refusal = refusal.map(str::to_owned);
-    let answer = Answer::of(refusal, as_json, &object, || report.text(LOOK))?;
-    Ok(answer.with_page(options.report.as_deref(), || report))
+    let answer = Answer::reported(refusal, manner, &object, || report.clone())?;
+    Ok(answer.with_page(page, || report))
 }

@@ -1,14 +1,18 @@
 //! `meridian emulate`: the firmware on an emulated Cortex-M4F, or a board's own image behind a model of its
 //! microcontroller.
 
+use std::collections::VecDeque;
+
 use clap::Args;
 use execution::options;
 use firmware::platform::Platform;
-use host::emulate::emulate;
 use host::emulate::executed::{Executed, Options, execute};
+use host::emulate::{STEPS, emulate};
+use host::output::manner::Manner;
+use host::output::progress::Progress;
 use host::output::{emulation, executed, say};
 
-use super::{Answer, Failure, LOOK};
+use super::{Answer, Failure};
 
 /// What to emulate.
 #[derive(Args)]
@@ -45,21 +49,49 @@ fn carriers(name: &str) -> Result<Carriers, String> {
 }
 
 /// Runs the firmware's images; whether all is as it must be.
-pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &EmulateOptions, manner: Manner) -> Result<Answer, Failure> {
     if let Some(Carriers(carriers)) = &options.board {
-        return run_boards(carriers, options, as_json);
+        return run_boards(carriers, options, manner);
     }
-    let found = emulate(options.seed, |line| say(&line.to_string()))?;
+    let progress = Progress::new(manner, STEPS as u64, "emulated runs");
+    let mut log = Log { progress: &progress, is_shown: manner.shows_log(), last: VecDeque::new() };
+    let found = emulate(options.seed, |line| log.take(line.to_string()), &progress);
+    progress.finish();
+    let found = found.inspect_err(|_| log.say_last())?;
     let object = emulation::object(&found);
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
-    Ok(Answer::of(refusal, as_json, &object, || emulation::report(&found).text(LOOK))?)
+    Ok(Answer::reported(refusal, manner, &object, || emulation::report(&found))?)
+}
+
+/// Lines of a log that are kept, to be shown where it ends badly.
+const LAST: usize = 10;
+
+/// The log of an image: shown as it comes where that is asked for, else its last lines where it ends badly.
+struct Log<'p> {
+    progress: &'p Progress,
+    is_shown: bool,
+    last: VecDeque<String>,
+}
+
+impl Log<'_> {
+    fn take(&mut self, line: String) {
+        if self.is_shown {
+            return self.progress.log(&line);
+        }
+        self.last.push_back(line);
+        self.last.drain(..self.last.len().saturating_sub(LAST));
+    }
+
+    fn say_last(&self) {
+        self.last.iter().for_each(|line| say(line));
+    }
 }
 
 /// Executes the images of boards; whether no azimuth is wrong.
 fn run_boards(
     carriers: &[Platform],
     options: &EmulateOptions,
-    as_json: bool,
+    manner: Manner,
 ) -> Result<Answer, Failure> {
     if options.link.is_some() && carriers.len() > 1 {
         let wrong = "--link: one carrier has one link, and --board names several";
@@ -67,9 +99,12 @@ fn run_boards(
     }
     let EmulateOptions { seed, cycles, afterwards, link, .. } = *options;
     let options = Options { seed, cycles, afterwards, link };
-    let found = execute(carriers, &options)?;
+    let progress = Progress::new(manner, carriers.len() as u64, "executed images");
+    let found = execute(carriers, &options, manner.shows_log(), &progress);
+    progress.finish();
+    let found = found?;
     let is_right = found.iter().flat_map(Executed::complaints).next().is_none();
     let refusal = (!is_right).then(|| "not all is as it must be".to_owned());
     let object = executed::object(&found);
-    Ok(Answer::of(refusal, as_json, &object, || executed::report(&found, &options).text(LOOK))?)
+    Ok(Answer::reported(refusal, manner, &object, || executed::report(&found, &options))?)
 }

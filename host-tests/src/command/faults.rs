@@ -1,5 +1,6 @@
 //! `meridian run --fault`: the catalogue of faults on the command line.
 
+use host::output::manner::Manner;
 use orientation::device::Device;
 use serde_json::json;
 use simulated::fault::{Fault, Platform};
@@ -64,8 +65,8 @@ pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
 ///
 /// # Errors
 /// The object cannot be serialised.
-pub fn list(platform: Platform, as_json: bool) -> Result<Answer, String> {
+pub fn list(platform: Platform, manner: Manner) -> Result<Answer, String> {
     let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
     let object = json!({ "status": "ok", "faults": names });
-    Answer::of(None, as_json, &object, || names.join("\n"))
+    Answer::of(None, manner, &object, || names.join("\n"))
 }

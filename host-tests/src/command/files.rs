@@ -5,11 +5,71 @@
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
-/// Links that are followed to a file that is not there yet.
-const LINKS: u32 = 40;
+use host::new_file::{NewFile, folder, linked};
 
-/// A file that a command may write: the option that names it, what is written, and its path where the option is given.
-pub type Written = (&'static str, &'static str, Option<PathBuf>);
+/// A file that a command may write.
+pub struct Written {
+    /// The option that names it.
+    option: &'static str,
+    /// What is written.
+    what: &'static str,
+    /// How its name may end; any name does where there is none.
+    endings: &'static [&'static str],
+    /// Its path, where the option is given.
+    path: Option<PathBuf>,
+}
+
+impl Written {
+    /// A page for `--report`.
+    pub fn page(path: Option<&PathBuf>) -> Self {
+        Self::of("--report", "the page", &[".html", ".htm"], path)
+    }
+
+    /// A recording of a run.
+    pub fn recording(path: Option<&PathBuf>) -> Self {
+        Self::of("--record", "the recording", &[".csv", ".csv.gz", ".jsonl", ".jsonl.gz"], path)
+    }
+
+    /// The attitude after each sample.
+    pub fn attitude(path: Option<&PathBuf>) -> Self {
+        Self::of("--attitude-out", "the attitude", &[".csv"], path)
+    }
+
+    /// A board's flash.
+    pub fn flash(path: Option<&PathBuf>) -> Self {
+        Self::of("--flash", "the flash", &[], path)
+    }
+
+    fn of(
+        option: &'static str,
+        what: &'static str,
+        endings: &'static [&'static str],
+        path: Option<&PathBuf>,
+    ) -> Self {
+        Self { option, what, endings, path: path.cloned() }
+    }
+
+    /// Refuses a name that ends otherwise than it may; a terminal and the like have any.
+    fn check_ending(&self, path: &Path) -> Result<(), String> {
+        let name = path.to_string_lossy().to_lowercase();
+        let ends = self.endings.is_empty() || self.endings.iter().any(|end| name.ends_with(end));
+        let is_special = fs::metadata(path).is_ok_and(|there| !there.is_file());
+        if ends || is_special {
+            return Ok(());
+        }
+        let Self { option, what, endings, .. } = self;
+        let (shown, endings) = (path.display(), endings.join(", "));
+        Err(format!("{option}: {shown}: the name of {what} ends in {endings}"))
+    }
+}
+
+/// Makes the file of what is written beside its place, where a path is given.
+///
+/// # Errors
+/// Nothing can be written there; the words name it and say why.
+pub fn opened(what: &'static str, path: Option<&PathBuf>) -> Result<Option<NewFile>, String> {
+    path.map(|path| NewFile::open(what, path)).transpose()
+}
 
 /// Refuses an output that is the recording, another output, or no file.
 ///
@@ -21,8 +81,8 @@ pub fn check(recording: Option<&Path>, outputs: &[Written]) -> Result<(), String
     }
     let read = recording.and_then(Identity::of);
     let mut taken: Vec<(Identity, &str)> = Vec::new();
-    for (option, what, path) in outputs {
-        let Some(path) = path else { continue };
+    for written in outputs {
+        let Written { option, what, path: Some(path), .. } = written else { continue };
         let shown = path.display();
         if path.as_os_str().is_empty() {
             return Err(format!("{option}: the name of the file is empty"));
@@ -38,6 +98,7 @@ pub fn check(recording: Option<&Path>, outputs: &[Written]) -> Result<(), String
             return Err(format!("{option}: {shown} takes {what} already; name another file"));
         }
         taken.push((place, what));
+        written.check_ending(path)?;
     }
     Ok(())
 }
@@ -76,16 +137,7 @@ impl Identity {
 
 /// Where a file will be that is not there yet.
 fn to_be(path: &Path) -> PathBuf {
-    let mut path = path.to_path_buf();
-    for _ in 0..LINKS {
-        let Ok(target) = fs::read_link(&path) else { break };
-        path = folder(&path).join(target);
-    }
+    let path = linked(path);
     let name = path.file_name().unwrap_or_default();
     folder(&path).canonicalize().map_or_else(|_| path.clone(), |folder| folder.join(name))
-}
-
-/// The folder of a file.
-fn folder(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

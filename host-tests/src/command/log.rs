@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use execution::kept::{Line, lines};
+use host::output::manner::Manner;
 use serde::Serialize;
 
 use super::{Answer, Failure};
@@ -27,13 +28,13 @@ struct Object {
 }
 
 /// Prints the lines.
-pub fn run(options: &LogOptions, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &LogOptions, manner: Manner) -> Result<Answer, Failure> {
     let LogOptions { image, pages } = options;
     let lines = lines(&read(image)?, &read(pages)?);
     let lines = lines.map_err(|error| format!("{}: {error}", image.display()))?;
     let refusal = lines.is_empty().then(|| format!("{}: no line was kept there", pages.display()));
     let text = lines.iter().map(Line::to_string).collect::<Vec<_>>().join("\n");
-    Ok(Answer::of(refusal, as_json, &Object { lines }, || text)?)
+    Ok(Answer::of(refusal, manner, &Object { lines }, || text)?)
 }
 
 /// Reads a file.

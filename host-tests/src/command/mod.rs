@@ -3,25 +3,32 @@
 pub mod allan;
 pub mod campaign;
 pub mod emulate;
+pub mod examples;
 pub mod faults;
 pub mod files;
 pub mod log;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod shell;
 pub mod stated;
 
-use std::io::Write;
-use std::path::Path;
+use std::io::{IsTerminal as _, Write};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use host::angle::Quantity;
+use host::new_file::NewFile;
 use host::outcome::{self, Finished, Outcome};
+use host::output::manner::{Manner, Verbosity};
 use host::recording::{Body, Truth};
 use host::report::{Extent, Look, Report};
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use serde::Serialize;
 use serde_json::{Value, json};
+
+/// Heading of the options that say where results go, and how much is told.
+pub const OUTPUT: &str = "Output";
 
 /// What came of a command, ready to print.
 pub struct Answer {
@@ -52,9 +59,6 @@ pub struct Failure {
     pub is_misuse: bool,
 }
 
-/// How reports look on the terminal.
-const LOOK: Look = Look { extent: Extent::Usual, is_coloured: false };
-
 impl Failure {
     /// A failure because the options do not suit what was read.
     pub fn misuse(reason: String) -> Self {
@@ -72,11 +76,11 @@ impl Answer {
     /// The object, or the text, of a result, or of what came instead of one.
     fn of(
         refusal: Option<String>,
-        as_json: bool,
+        manner: Manner,
         object: &impl Serialize,
         text: impl FnOnce() -> String,
     ) -> Result<Self, String> {
-        let output = if as_json {
+        let output = if manner.as_json {
             Output::Object(serde_json::to_value(object).map_err(|error| error.to_string())?)
         } else {
             Output::Text(text())
@@ -84,11 +88,29 @@ impl Answer {
         Ok(Self { output, refusal, warnings: Vec::new() })
     }
 
+    /// The object, or so much of a report as is asked for.
+    fn reported(
+        refusal: Option<String>,
+        manner: Manner,
+        object: &impl Serialize,
+        report: impl FnOnce() -> Report,
+    ) -> Result<Self, String> {
+        Self::of(refusal, manner, object, || as_text(&report(), manner.verbosity))
+    }
+
     /// What goes to standard output: an object says `ok` where there was a result, and nowhere else.
     pub fn printed(&self) -> String {
         match &self.output {
             Output::Text(text) => text.clone(),
-            Output::Object(object) => format!("{:#}", self.agreeing(object.clone())),
+            Output::Object(_) => format!("{:#}", self.object()),
+        }
+    }
+
+    /// The object, of which status and exit code agree; null where there is none.
+    pub fn object(&self) -> Value {
+        match &self.output {
+            Output::Text(_) => Value::Null,
+            Output::Object(object) => self.agreeing(object.clone()),
         }
     }
 
@@ -134,9 +156,26 @@ impl Answer {
 
     /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
-    fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
-        self.with_written(path.map_or(Ok(()), |path| page().write(path)))
+    fn with_page(self, place: Option<NewFile>, page: impl FnOnce() -> Report) -> Self {
+        self.with_written(place.map_or(Ok(()), |place| place.write(|path| page().write(path))))
     }
+}
+
+/// So much of a report as is asked for, in colours on a terminal.
+fn as_text(report: &Report, verbosity: Verbosity) -> String {
+    let extent = match verbosity {
+        Verbosity::Quiet => Extent::Result,
+        Verbosity::Usual => Extent::Usual,
+        Verbosity::Verbose => Extent::Whole,
+    };
+    report.text(Look { extent, is_coloured: is_coloured() })
+}
+
+/// Whether standard output is a terminal that shows colours, and nobody has asked for none (no-color.org).
+fn is_coloured() -> bool {
+    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_plain = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    std::io::stdout().is_terminal() && !is_set("NO_COLOR") && !is_plain
 }
 
 /// A finished analysis, ready to be shown.
@@ -159,13 +198,13 @@ impl Shown<'_> {
     pub fn answer(
         &self,
         outcome: &Outcome,
-        report: Option<&Path>,
-        as_json: bool,
+        report: Option<NewFile>,
+        manner: Manner,
     ) -> Result<Answer, String> {
         let Self { name, finished, truth, body } = self;
         let made = |figures| outcome::report(name, outcome, &**finished, figures);
-        let text = || made(Vec::new()).text(LOOK);
-        let answer = Answer::of(outcome.reason.clone(), as_json, outcome, text)?;
+        let text = || made(Vec::new());
+        let answer = Answer::reported(outcome.reason.clone(), manner, outcome, text)?;
         Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }
 }
@@ -198,9 +237,14 @@ fn registered<T: Sync>(
     })
 }
 
+/// An angle in degrees, of whatever size.
+fn angle(text: &str, of: Quantity) -> Result<f64, String> {
+    host::angle::degrees(text, of).map_err(|error| error.to_string())
+}
+
 /// A latitude in degrees.
 fn latitude(text: &str) -> Result<Latitude, String> {
-    let degrees: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let degrees = angle(text, Quantity::Latitude)?;
     Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
 }
 
@@ -217,7 +261,7 @@ fn seed(text: &str) -> Result<u64, String> {
 
 /// A standard deviation in degrees, as radians.
 fn sigma(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
+    match angle(text, Quantity::Other) {
         Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
         _ => Err("not a number of degrees above 0, at most 180".to_owned()),
     }

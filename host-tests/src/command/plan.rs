@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use host::outcome::keys::Keys;
+use host::output::manner::Manner;
 use host::output::plan;
 use host::planning::{Request, Wanted};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use serde_json::json;
 
-use super::{Answer, Failure, LOOK, files, latitude};
+use super::files::Written;
+use super::{Answer, Failure, OUTPUT, files, latitude};
 
 /// The gyro, the place, the stage, and what is asked.
 #[derive(Args)]
@@ -31,7 +33,7 @@ pub struct PlanOptions {
     /// Quantisation Q, arc seconds.
     #[arg(long, value_name = "Q", default_value = "0", value_parser = coefficient)]
     quantisation: f64,
-    /// Latitude in degrees, north positive.
+    /// Latitude, north positive: 47.58, 47°35′, 47:34:48, or 47°35′N.
     #[arg(long, value_name = "DEGREES", value_parser = latitude)]
     latitude: Latitude,
     /// Total time for everything, rotations included, s.
@@ -44,7 +46,7 @@ pub struct PlanOptions {
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
     rotate_seconds: f64,
     /// Writes figures and tables as a page for a browser.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     report: Option<PathBuf>,
 }
 
@@ -87,24 +89,24 @@ impl From<&PlanOptions> for Request {
 }
 
 /// Plans positions and dwells, and shows them.
-pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, Failure> {
-    let report = ("--report", "the page", options.report.clone());
-    files::check(None, &[report]).map_err(Failure::misuse)?;
+pub fn run(options: &PlanOptions, manner: Manner) -> Result<Answer, Failure> {
+    let page = Written::page(options.report.as_ref());
+    files::check(None, &[page]).map_err(Failure::misuse)?;
+    let page = files::opened("the report", options.report.as_ref())?;
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
-        Err(why) => return Ok(refused(options, why.to_string(), as_json)?),
+        Err(why) => return Ok(refused(options, why.to_string(), manner)?),
     };
     let object = Keys::default().with("status", "ok").with_all(Some(&planned));
-    let answer =
-        Answer::of(None, as_json, &object, || plan::report(&request, &planned).text(LOOK))?;
-    Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
+    let answer = Answer::reported(None, manner, &object, || plan::report(&request, &planned))?;
+    Ok(answer.with_page(page, || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.
-fn refused(options: &PlanOptions, why: String, as_json: bool) -> Result<Answer, String> {
+fn refused(options: &PlanOptions, why: String, manner: Manner) -> Result<Answer, String> {
     let object = json!({ "status": "refused", "reason": why });
     let no_page = |_| "--report: without a schedule there is no page".to_owned();
     let warnings = options.report.iter().map(no_page).collect();
-    Ok(Answer::of(Some(why), as_json, &object, String::new)?.with_warnings(warnings))
+    Ok(Answer::of(Some(why), manner, &object, String::new)?.with_warnings(warnings))
 }

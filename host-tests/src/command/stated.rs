@@ -3,7 +3,10 @@
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 
-/// The options that stand on the command line, by the names of their fields.
+/// The options that every command takes, which change nothing of what it does.
+const GLOBAL: [&str; 3] = ["json", "verbose", "quiet"];
+
+/// The options of a command that stand on the command line, by the names of their fields.
 #[derive(Default)]
 pub struct Stated(Vec<String>);
 
@@ -13,6 +16,7 @@ impl Stated {
         // What begins with a capital letter is a group of options.
         let stands = |id: &&clap::Id| {
             id.as_str().starts_with(char::is_lowercase)
+                && !GLOBAL.contains(&id.as_str())
                 && matches.value_source(id.as_str()) == Some(ValueSource::CommandLine)
         };
         let mut stated: Vec<_> = matches.ids().filter(stands).map(ToString::to_string).collect();

@@ -28,6 +28,7 @@ use self::collect::Collected;
 use self::jobs::{JOBS, Job};
 use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
+use crate::work::Follower;
 
 /// Longest time for an image to run: a hundred times what is usual, and never for ever.
 const LONGEST: Duration = Duration::from_mins(10);
@@ -72,11 +73,18 @@ impl Emulation {
     }
 }
 
-/// Builds, runs, compares and checks; the log's lines go to `on_line` as they come.
+/// Steps of an emulation: each run of the instrument with that of the host, and the cores.
+pub const STEPS: usize = JOBS.len() + 1;
+
+/// Builds, runs, compares and checks; the log's lines go to `on_line` as they come, and `follower` is told of each step.
 ///
 /// # Errors
 /// One line that says what is missing or what went wrong.
-pub fn emulate(seed: u64, mut on_line: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
+pub fn emulate(
+    seed: u64,
+    mut on_line: impl FnMut(&decode::Line),
+    follower: &dyn Follower,
+) -> Result<Emulation, String> {
     qemu::require()?;
     let images = images::build()?;
     let elf = read(&images.emulator)?;
@@ -89,10 +97,12 @@ pub fn emulate(seed: u64, mut on_line: impl FnMut(&decode::Line)) -> Result<Emul
         comparison = comparison.and_then(|()| outcome::compare(&emulated, &host));
         outcomes.push(emulated);
         runs.push(Run { job, figures });
+        follower.done();
     }
     let emulated = outcomes.swap_remove(0);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
+    follower.done();
     let checks = checks::all(&runs, &memory);
     Ok(Emulation { seed, emulated, comparison, runs, memory, cost, cost_is_right, checks })
 }

@@ -17,6 +17,7 @@ use simulated::mount::FramesScenario;
 
 use super::harness::Harness;
 use super::kept::KeptPlan;
+use super::latest::Latest;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::methods::stepwise::{POSITIONS, Replay, given_with};
@@ -55,7 +56,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
-    let mut session = Session::new(setting, scenario.procedure())?;
+    let mut session = Latest::of(Session::new(setting, scenario.procedure())?);
     let frames = scenario.frames()?;
     let board = RefCell::new(scenario.board(journey, injection));
     let harness = Harness::new(watch);
@@ -76,6 +77,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
+    let session = session.into_session::<Sample>();
     let replay = Replay { method: POSITIONS, session, assumed: given_with(scenario.base.half) };
     Ok(harness.clear(ended, &board, replay, axis))
 }

@@ -4,6 +4,7 @@ pub mod flash_file;
 mod frames;
 mod harness;
 pub mod kept;
+mod latest;
 pub mod recorder;
 pub mod replay;
 mod spinning;

@@ -7,10 +7,11 @@ use orientation::alignment::setup::SetupError;
 use orientation::alignment::{Method, Request, rotating, stepwise, stops};
 use orientation::attitude::{Keeper, Report};
 use orientation::navigation::{self, Aligner, Navigator, Order, Output, aligner};
-use orientation::signal::Timed;
+use orientation::signal::{InertialSample, Sample, Timed};
 use serde::de::DeserializeOwned;
 
 use super::kept::{Kept, Point, Realignments};
+use super::latest::Latest;
 use super::recorder::turning_rows;
 use crate::methods::{rotating as turning, stepwise as standing, stops as stopping};
 use crate::outcome::Finished;
@@ -70,8 +71,9 @@ fn positions(
     given: &Given,
     lines: &mut Reader<'_>,
 ) -> Result<Replayed, ReadError> {
-    let mut session = begun(standing::mounted(is_mounted, of.clone()), lines)?;
-    let done = drive(&mut session, given, lines, |_| ())?;
+    let mut session = Latest::of(begun(standing::mounted(is_mounted, of.clone()), lines)?);
+    let done = drive(&mut session, given, lines, |_: &Sample| ())?;
+    let session = session.into_session::<Sample>();
     let method = if is_mounted { standing::POSITIONS } else { standing::name_of(&session) };
     let assumed = standing::given_with(session.setting.half);
     let is_aligned = session.conclusion().is_some();
@@ -85,9 +87,11 @@ fn turntable(
     given: &Given,
     lines: &mut Reader<'_>,
 ) -> Result<Replayed, ReadError> {
-    let mut session = begun(rotating::Session::new(*setting, procedure.clone()), lines)?;
+    let begun = begun(rotating::Session::new(*setting, procedure.clone()), lines)?;
+    let mut session = Latest::of(begun);
     let mut samples = Vec::new();
-    let done = drive(&mut session, given, lines, |sample| samples.push(*sample))?;
+    let done = drive(&mut session, given, lines, |sample: &Sample| samples.push(*sample))?;
+    let session = session.into_session::<Sample>();
     let finished = finished(session.conclusion().is_some(), turning::Replay::of_run(session));
     Ok(Replayed { finished, body: Some(Body::Rotating(turning_rows(&samples))), done })
 }
@@ -99,10 +103,11 @@ fn vehicle(
     lines: &mut Reader<'_>,
 ) -> Result<Replayed, ReadError> {
     let begin = || begun(stops::Session::new(*setting, procedure.clone()), lines);
-    let (mut session, beside) = (begin()?, begin()?);
+    let (mut session, beside) = (Latest::of(begin()?), begin()?);
     let (method, criteria, assumed) = (stopping::SIAP, Vec::new(), vec![GIVEN.to_owned()]);
     let mut seen = stopping::Replay { method, session: beside, zero_s: 0.0, criteria, assumed };
     let done = drive(&mut session, given, lines, |sample| seen.push(sample))?;
+    let session = session.into_session::<InertialSample>();
     let is_aligned = session.conclusion().is_some();
     let finished = finished(is_aligned, stopping::Replay { session, ..seen });
     Ok(Replayed { finished, body: None, done })

@@ -18,6 +18,7 @@ use simulated::{self, Wires};
 
 use super::harness::Harness;
 use super::kept::KeptPlan;
+use super::latest::Latest;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::methods::stepwise::{Replay, given_with, name_of};
@@ -55,7 +56,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
-    let mut session = Session::new(setting, scenario.procedure())?;
+    let mut session = Latest::of(Session::new(setting, scenario.procedure())?);
     let board = RefCell::new(simulated::board(scenario, journey, injection));
     let harness = Harness::new(watch);
     let channels = harness.channels();
@@ -71,6 +72,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
         &channels,
     )?;
+    let session = session.into_session::<Sample>();
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };
     Ok(harness.clear(ended, &board, replay, ()))
 }

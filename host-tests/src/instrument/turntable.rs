@@ -19,6 +19,7 @@ use simulated::turntable::{self, TurntableScenario};
 
 use super::harness::Harness;
 use super::kept::KeptPlan;
+use super::latest::Latest;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 use crate::virtual_time;
@@ -67,7 +68,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         let load = load_calibration(&mut opened, today, given, &channels.shared);
         virtual_time::run(load).map_err(|_| RunError::Deadlock)?;
     }
-    let mut session = rotating::Session::new(setting, procedure)?;
+    let mut session = Latest::of(rotating::Session::new(setting, procedure)?);
     let configuration = scenario.base.configuration();
     let platform = TurntableConfiguration::default();
     let wires = Wires(&board, injection);
@@ -85,5 +86,5 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         channels,
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(harness.clear(ended, &board, session, rate))
+    Ok(harness.clear(ended, &board, session.into_session::<Sample>(), rate))
 }

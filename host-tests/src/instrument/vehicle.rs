@@ -16,6 +16,7 @@ use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
 use super::harness::Harness;
 use super::kept::Kept;
+use super::latest::Latest;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
 
@@ -54,7 +55,7 @@ impl Carrier for VehicleScenario {
         let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
         let VehiclePlan { day, chips: injection } = &plan;
         let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
-        let mut session = stops::Session::new(setting, scenario.procedure())?;
+        let mut session = Latest::of(stops::Session::new(setting, scenario.procedure())?);
         let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
         let harness = Harness::new(watch);
         let channels = harness.channels();
@@ -71,6 +72,7 @@ impl Carrier for VehicleScenario {
             &channels,
         )?;
         let truth = board.borrow().plant.truth();
+        let session = session.into_session::<InertialSample>();
         let mut run = harness.clear(ended, &board, session, truth);
         run.kept = Kept::of(&run.reports, day.configuration().motion());
         Ok(run)

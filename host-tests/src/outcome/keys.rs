@@ -31,6 +31,11 @@ impl Keys {
         self
     }
 
+    /// The number of a key, where it has one.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        self.0.get(key)?.as_f64()
+    }
+
     /// Whether there is none.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -24,7 +24,7 @@ use self::keys::Keys;
 use self::run::RunDetails;
 use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
-use crate::output::azimuth_error;
+use crate::output::{azimuth_error, signed};
 use crate::recording::{Body, Truth};
 use crate::report::Part as ReportPart;
 
@@ -227,6 +227,13 @@ impl Outcome {
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
 
+    /// The roll of a spinning body at the last sample, within a turn, °, where it was found.
+    #[must_use]
+    pub fn roll_end_deg(&self) -> Option<f64> {
+        let turned = self.details.number("roll_rad_end")?;
+        Some(turned.to_degrees().rem_euclid(360.0))
+    }
+
     /// Whether there is a result.
     pub(crate) fn is_ok(&self) -> bool {
         self.reason.is_none()
@@ -236,6 +243,6 @@ impl Outcome {
 /// Biases of the gyros forward, right and down, and their 1σ, °/h, in words with so many decimal places.
 pub(crate) fn of_biases([biases, sigmas]: [[f64; 3]; 2], places: usize) -> String {
     let both = biases.iter().zip(sigmas);
-    let each = both.map(|(bias, sigma)| format!("{bias:+.places$} ± {sigma:.places$}"));
+    let each = both.map(|(bias, sigma)| format!("{} ± {sigma:.places$}", signed(*bias, places)));
     format!("{} °/h forward, right, down", each.collect::<Vec<_>>().join(", "))
 }

@@ -13,7 +13,7 @@ use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
-use crate::output::{degrees, positive_zero};
+use crate::output::{degrees, positive_zero, signed};
 use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
@@ -186,7 +186,8 @@ fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
     let known = last.azimuth_deg().filter(|[.., error]| !error.is_nan());
     let error = known.map(|[_, sigma, error]| {
         let (sigmas, greatest) = (error / sigma, greatest_sigmas(kept).unwrap_or(0.0));
-        format!("{error:+.4}°, {sigmas:+.2} σ; {greatest:.2} σ at most on the way")
+        let [error, sigmas] = [signed(error, 4), signed(sigmas, 2)];
+        format!("{error}°, {sigmas} σ; {greatest:.2} σ at most on the way")
     });
     let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle.degrees(), 5e-4));
     let sigma = level_sigma.degrees();

@@ -5,7 +5,7 @@ use orientation::alignment::site::Site;
 
 use super::{BudgetDetails, Excluded, Finished, FitDetails, Outcome};
 use crate::methods;
-use crate::output::{degrees, noise_in_words, positive_zero};
+use crate::output::{degrees, noise_in_words, positive_zero, signed};
 use crate::report::{
     Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
 };
@@ -117,8 +117,7 @@ pub(crate) fn of_site(site: &Site) -> Lines {
 /// The true azimuth, and what one that was found with its 1σ is off, °.
 fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
     let truth = (azimuth - error).rem_euclid(360.0);
-    let error = positive_zero(error, 5e-5);
-    format!("{truth:.4}°: the error is {error:+.4}°, {:+.2} σ", positive_zero(error / sigma, 5e-3))
+    format!("{truth:.4}°: the error is {}°, {} σ", signed(error, 4), signed(error / sigma, 2))
 }
 
 fn limit(outcome: &Outcome) -> Option<String> {

@@ -3,6 +3,7 @@
 pub mod allan;
 pub mod emulation;
 pub mod executed;
+pub mod manner;
 pub mod plan;
 pub mod progress;
 
@@ -22,6 +23,28 @@ pub fn say(line: &str) {
 #[must_use]
 pub fn degrees(angle: f64) -> f64 {
     angle.to_degrees()
+}
+
+/// A number with so many decimal places; one that rounds to zero has no sign.
+#[must_use]
+pub fn fixed(value: f64, places: usize) -> String {
+    unsigned_zero(format!("{value:.places$}"), "")
+}
+
+/// A number with its sign and so many decimal places; one that rounds to zero has a plus.
+#[must_use]
+pub fn signed(value: f64, places: usize) -> String {
+    unsigned_zero(format!("{value:+.places$}"), "+")
+}
+
+/// The text of a number, with another sign where it is that of a negative zero.
+fn unsigned_zero(text: String, sign: &str) -> String {
+    match text.strip_prefix('-') {
+        Some(size) if size.chars().all(|digit| matches!(digit, '0' | '.')) => {
+            format!("{sign}{size}")
+        }
+        _ => text,
+    }
 }
 
 /// What rounds to zero, being smaller than `half`, prints without a sign.

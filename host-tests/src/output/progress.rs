@@ -1,54 +1,79 @@
-//! Progress on standard error: a bar on a terminal, elsewhere a dozen lines.
+//! Progress on standard error, with the time that is left: a bar on a terminal, elsewhere a dozen lines.
 
+use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use orientation::alignment::stepwise::session::Session;
 use orientation::units::Radians;
 
+use super::manner::Manner;
 use super::say;
+use crate::interrupt;
+use crate::work::Follower;
 
 /// Lines that a whole task may print where there is no terminal.
 const LINES: u64 = 12;
+/// How often the bar is drawn while nothing comes.
+const REDRAWN: Duration = Duration::from_millis(500);
+/// What the bar shows; the rest of a line is cut.
+const TEMPLATE: &str = "{bar:20} {percent:>3} % {left} {wide_msg}";
 
 /// The progress of one task; shared by the threads that work at it.
 pub struct Progress {
     bar: ProgressBar,
     what: &'static str,
+    /// Whether lines take the place of a bar that nobody would see.
+    prints_lines: bool,
     printed: AtomicU64,
 }
 
 impl Progress {
-    /// Progress of a task of `length` steps; `what` names them.
+    /// Progress of a task of `length` steps, shown as a command is asked to; `what` names them.
     #[must_use]
-    pub fn new(length: u64, what: &'static str) -> Self {
-        let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");
-        let bar = ProgressBar::new(length).with_prefix(what);
-        let bar = match style {
-            Ok(style) => bar.with_style(style.progress_chars("━╸ ")),
+    pub fn new(manner: Manner, length: u64, what: &'static str) -> Self {
+        let bar = ProgressBar::new(length.max(1));
+        if !manner.shows_progress() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let bar = match ProgressStyle::with_template(TEMPLATE) {
+            Ok(style) => bar.with_style(style.progress_chars("━╸ ").with_key("left", write_left)),
             Err(_) => bar,
         };
-        Self { bar, what, printed: AtomicU64::new(0) }
+        let prints_lines = manner.shows_progress() && bar.is_hidden();
+        if !bar.is_hidden() {
+            bar.set_message(what);
+            bar.enable_steady_tick(REDRAWN);
+        }
+        Self { bar, what, prints_lines, printed: AtomicU64::new(0) }
     }
 
     /// One more step is done.
     pub fn step(&self) {
         self.bar.inc(1);
-        self.show(String::new);
+        self.show(&self.counted(), String::new);
     }
 
     /// Shows how far a session is and what its dwells so far would give.
     pub fn session(&self, session: &Session) {
-        self.bar.set_length(session.planned() as u64);
+        self.bar.set_length(session.planned().max(1) as u64);
         self.bar.set_position(session.dwells().len() as u64);
-        self.show(|| so_far(session));
+        self.show(&self.counted(), || so_far(session));
     }
 
-    /// Shows how many of the planned steps are done: dwells, a platform's turns, a vehicle's stops.
-    pub fn steps(&self, (done, planned): (u64, u64)) {
-        self.bar.set_length(planned);
-        self.bar.set_position(done);
-        self.show(String::new);
+    /// Shows how much of a whole is done, and says in words what that is.
+    pub fn reached(&self, (done, all): (u64, u64), words: &str) {
+        self.bar.set_length(all.max(1));
+        self.bar.set_position(done.min(all));
+        self.show(words, String::new);
+    }
+
+    /// How many steps are done, of how many.
+    #[must_use]
+    pub fn counted(&self) -> String {
+        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        format!("{} {done}/{all}", self.what)
     }
 
     /// Prints a line of a log above the bar.
@@ -56,23 +81,66 @@ impl Progress {
         if self.bar.is_hidden() { say(line) } else { self.bar.println(line) }
     }
 
-    /// The task is done: the bar stays as it is.
+    /// The task is done: the bar goes, what came of it takes its place.
     pub fn finish(&self) {
-        self.bar.abandon();
+        self.bar.finish_and_clear();
     }
 
-    /// Puts a message behind the bar; without a terminal, prints a line each time that another
-    /// twelfth of the task is done.
-    fn show(&self, message: impl FnOnce() -> String) {
+    /// Puts words behind the bar, and more of them; without a terminal, prints a line when something is done at first, and
+    /// each time that another twelfth of the task is.
+    fn show(&self, words: &str, more: impl FnOnce() -> String) {
+        interrupt::note(words);
         if !self.bar.is_hidden() {
-            self.bar.set_message(message());
-            return;
+            return self.bar.set_message(format!("{words} {}", more()));
         }
+        if self.prints_lines && self.bar.position() > 0 {
+            self.print(words, more);
+        }
+    }
+
+    fn print(&self, words: &str, more: impl FnOnce() -> String) {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
-        let part = done * LINES / all;
+        let part = 1 + done * LINES / all;
         if self.printed.fetch_max(part, Ordering::Relaxed) < part {
-            say(&format!("{} {done}/{all} {}", self.what, message()));
+            let left = in_words(left(self.bar.elapsed(), done, all));
+            let line = format!("{words}, {} %, {left} {}", done * 100 / all, more());
+            say(line.trim_end());
         }
+    }
+}
+
+impl Follower for Progress {
+    fn done(&self) {
+        self.step();
+    }
+
+    fn wants_more(&self) -> bool {
+        !interrupt::is_asked()
+    }
+}
+
+/// Writes the time that is left into the bar.
+fn write_left(state: &ProgressState, to: &mut dyn Write) {
+    let left = left(state.elapsed(), state.pos(), state.len().unwrap_or(0));
+    // A bar that lacks it does no harm.
+    let _ = write!(to, "{}", in_words(left));
+}
+
+/// The time that is left where the rest goes on as what is done; none before anything is.
+fn left(elapsed: Duration, done: u64, all: u64) -> Option<Duration> {
+    let rest = all.saturating_sub(done) as f64;
+    (done > 0).then(|| elapsed.mul_f64(rest / done as f64))
+}
+
+/// The time that is left, in words.
+fn in_words(left: Option<Duration>) -> String {
+    let Some(seconds) = left.map(|left| left.as_secs_f64().ceil() as u64) else {
+        return "-:-- left".to_owned();
+    };
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    match hours {
+        0 => format!("{minutes}:{seconds:02} left"),
+        _ => format!("{hours}:{minutes:02}:{seconds:02} left"),
     }
 }
 

@@ -35,7 +35,7 @@ mod warning;
 
 use std::fmt;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 pub use at_rest::{Opened, RestRows};
@@ -184,8 +184,13 @@ pub fn read(path: &Path) -> Result<Recording, ReadError> {
 /// # Errors
 /// [`ReadError`] that names it.
 pub fn open(path: &Path) -> Result<File, ReadError> {
-    let name = path.display().to_string();
-    File::open(path).map_err(|error| lines::refused(Place::Whole, &error).in_file(&name))
+    File::open(path).map_err(|error| unread(&path.display().to_string(), &error))
+}
+
+/// That a file of this name cannot be opened.
+#[must_use]
+pub fn unread(name: &str, error: &io::Error) -> ReadError {
+    lines::refused(Place::Whole, error).in_file(name)
 }
 
 /// Reads a recording from any reader; `name` stands in the errors. Reads no more than 32 KiB past

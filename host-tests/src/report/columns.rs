@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use super::{Part, Table};
+use crate::output;
 
 /// A table that grows by columns: each names itself and shows one thing of every row.
 #[must_use]
@@ -37,13 +38,13 @@ impl<'a, R> Columns<'a, R> {
 
     /// A number with so many decimal places.
     pub fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
-        self.column(name, |row| format!("{:.places$}", of(row)))
+        self.column(name, |row| output::fixed(of(row), places))
     }
 
     /// A number with so many decimal places, and a dash where there is none.
     pub fn found(self, name: &str, places: usize, of: impl Fn(&'a R) -> Option<f64>) -> Self {
         let dash = || "-".to_owned();
-        self.column(name, |row| of(row).map_or_else(dash, |number| format!("{number:.places$}")))
+        self.column(name, |row| of(row).map_or_else(dash, |number| output::fixed(number, places)))
     }
 
     /// A number with an exponent and so many decimal places.

@@ -105,7 +105,8 @@ impl Part {
             Self::Lines(lines) => lines.lines.is_empty(),
             Self::Timeline(timeline) => timeline.lanes.iter().all(|lane| lane.spans.is_empty()),
             Self::Detail(part) => part.is_empty(),
-            Self::Figure(_) | Self::Table(_) | Self::Shares(_) => false,
+            Self::Table(table) => table.rows.is_empty(),
+            Self::Figure(_) | Self::Shares(_) => false,
         }
     }
 }
@@ -141,7 +142,7 @@ impl From<Timeline> for Part {
 }
 
 impl Report {
-    /// A report of these parts, without labelled lines of which there are none.
+    /// A report of these parts, without labelled lines and rows of which there are none.
     pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
         let parts = parts.into_iter().filter(|part| !part.is_empty()).collect();
         Self { title: title.into(), parts, ..Self::default() }

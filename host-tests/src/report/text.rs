@@ -8,7 +8,7 @@ const LABEL: usize = 18;
 /// Heading, what was found, lines below it, labelled lines and tables; figures are left out.
 pub(super) fn document(report: &Report, look: Look) -> String {
     let grade = report.summary.as_ref().map(|summary| summary.grade);
-    let mut text = format!("\n{}\n", look.title(&report.title, grade));
+    let mut text = format!("{}\n", look.title(&report.title, grade));
     text.extend(report.subtitle.iter().flat_map(|line| [line.as_str(), "\n"]));
     text.extend(report.summary.iter().map(|summary| of_summary(summary, look)));
     let is_enough = report.summary.is_some() && look.extent == Extent::Result;

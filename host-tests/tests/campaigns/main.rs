@@ -7,6 +7,7 @@ mod support;
 mod burov;
 mod disturbed;
 mod instrument;
+mod interrupted;
 mod keep;
 mod rotating;
 mod sokolov;

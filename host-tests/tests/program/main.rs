@@ -4,11 +4,18 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod angles;
 mod command_line;
 mod emulate;
+mod help;
+mod interrupted;
 mod log;
+mod many;
+mod numbers;
 mod program;
+mod realigned;
 mod records;
 mod report;
 mod rotating_run;
 mod stops_run;
+mod verbosity;

@@ -220,13 +220,17 @@ fn a_run_that_ends_before_its_first_sample_says_that_there_is_nothing_to_record(
 }
 
 #[test]
-fn a_run_that_ends_before_its_first_sample_leaves_no_older_recording_in_its_place() {
+fn a_run_that_ends_before_its_first_sample_leaves_an_older_recording_as_it_was_and_says_that_it_wrote_none()
+ {
     let scratch = Scratch::new("older");
     let path = scratch.path("run.csv");
     answered(&["run", "stage", "--rate=50", "--dwell=2", "--record", &path]);
     assert_eq!(answered(&["replay", &path])["status"], "ok");
-    answered(&["run", "stage", "--latitude=90", "--record", &path]);
-    assert!(reason(&meridian(&["replay", &path])).contains("the file is empty"));
+    let older = scratch.read("run.csv");
+    let output = meridian(&["run", "stage", "--latitude=90", "--record", &path]);
+    assert_eq!(code(&output), 1);
+    assert!(text(&output.stderr).contains("the recording cannot be written"));
+    assert_eq!(scratch.read("run.csv"), older);
 }
 
 #[test]

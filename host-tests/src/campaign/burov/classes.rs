@@ -15,7 +15,7 @@ use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude};
 use crate::campaign::chance::Chance;
 use crate::campaign::keep::limit::stored_sigma;
 use crate::campaign::statistics::{Answer, Precision};
-use crate::campaign::{Tick, over};
+use crate::campaign::{Tick, one_by_one, over};
 use crate::methods::stops::samples::Converter;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
@@ -141,7 +141,7 @@ pub struct Row {
 /// The five rows over `runs` runs each.
 #[must_use]
 pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
-    CLASSES.iter().map(|class| class.row(runs, tick)).collect()
+    one_by_one(&CLASSES, tick, |class| class.row(runs, tick))
 }
 
 /// Number of classes.

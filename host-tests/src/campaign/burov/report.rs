@@ -6,7 +6,7 @@ use super::devices::{Device, ROTATION, SECONDS, curve};
 use super::drift::Comparison;
 use super::{LATITUDE_DEG, classes, devices, drift};
 use crate::campaign::columns::{Columns, normal};
-use crate::campaign::{Asked, Campaign, Done, Tick, tenth, unless};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one, tenth, unless};
 use crate::report::{Figure, Part, Report, Series, Style};
 
 /// The paper's example and devices, schedules under drift, the five classes.
@@ -21,8 +21,8 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where every row of the classes is met.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let drift = drift::GYROS.iter().filter_map(|gyro| drift::compare(*gyro, asked.runs, tick));
-    let drift: Vec<_> = drift.collect();
+    let drift = one_by_one(drift::GYROS, tick, |gyro| drift::compare(gyro, asked.runs, tick));
+    let drift: Vec<_> = drift.into_iter().flatten().collect();
     let classes = classes::rows(tenth(asked.runs), tick);
     let (curve, devices) = (curve(8..=14), devices::devices());
     let reason =

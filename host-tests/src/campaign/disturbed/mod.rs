@@ -20,7 +20,7 @@ use serde::Serialize;
 
 use super::chance::Chance;
 use super::statistics::{Answer, Precision};
-use super::{Tick, over};
+use super::{Tick, one_by_one, over};
 
 use self::class::Subject;
 pub use class::{Class, Fault, Pair};
@@ -74,12 +74,12 @@ pub struct HealthyRow {
 /// Draws healthy recordings of every platform, so many in all; the last row has all of them.
 pub fn healthy(runs: usize, tick: Tick<'_>) -> Vec<HealthyRow> {
     let mut all = Vec::new();
-    let mut rows: Vec<HealthyRow> = Vec::new();
-    for Platform { name, healthy, .. } in PLATFORMS {
+    let mut rows = one_by_one(PLATFORMS, tick, |Platform { name, healthy, .. }| {
         let answers = over(runs / PLATFORMS.len(), tick, healthy);
-        rows.push(HealthyRow { method: name, precision: Precision::of(&answers) });
+        let row = HealthyRow { method: name, precision: Precision::of(&answers) };
         all.extend(answers);
-    }
+        row
+    });
     rows.push(HealthyRow { method: "all", precision: Precision::of(&all) });
     rows
 }

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{Class, HealthyRow, Row, classes, healthy, row};
 use crate::campaign::columns::Columns;
 use crate::campaign::faults::WRONG_SIGMAS;
-use crate::campaign::{Asked, Campaign, Done, Tick, unless};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one, unless};
 use crate::report::{Lines, Part, Report};
 
 /// Every class of faults in recordings, or one, and healthy recordings beside all.
@@ -22,7 +22,7 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
     let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), tick));
     let healthy = all.unwrap_or_default();
-    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, tick)).collect();
+    let rows = one_by_one(chosen(asked), tick, |class| row(&class, asked.runs, tick));
     let reason = "a class of faults gets past, or is refused without need";
     Done {
         report: report(&healthy, &rows),

@@ -6,12 +6,11 @@ mod runs;
 
 use std::ops::RangeInclusive;
 
-use rayon::prelude::*;
 use serde::Serialize;
 use simulated::fault::{Fault, Platform};
 
 use self::runs::Ended;
-use super::Tick;
+use super::{Tick, side_by_side};
 
 /// Error in σ beyond which an azimuth is a wrong north, and a roll a wrong one.
 pub const WRONG_SIGMAS: f64 = 5.0;
@@ -66,8 +65,7 @@ pub fn rows(platforms: &[Platform], seeds: RangeInclusive<u64>, tick: Tick<'_>) 
     let cases: Vec<(Platform, Fault, u64)> = faults
         .flat_map(|(platform, fault)| seeds.clone().map(move |seed| (platform, fault, seed)))
         .collect();
-    let rows = cases.into_par_iter().map(|(platform, fault, seed)| row(platform, fault, seed));
-    rows.inspect(|_| tick()).collect()
+    side_by_side(cases.into_iter(), tick, |(platform, fault, seed)| row(platform, fault, seed))
 }
 
 /// Runs one fault; a board that does not come to an end has failed.

@@ -127,7 +127,7 @@ pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
         mount: fitting.mount.to_string(),
         force_bias_m_s2: fitting.force_bias_m_s2,
         way,
-        runs,
+        runs: days.len(),
         lost,
         azimuth,
         azimuth_driving: azimuths(driving),

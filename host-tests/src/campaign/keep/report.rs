@@ -6,7 +6,7 @@ use super::{COUNT, Growth, Row, row};
 use crate::campaign::burov::LATITUDE_DEG;
 use crate::campaign::columns::Columns;
 use crate::campaign::statistics::Spread;
-use crate::campaign::{Asked, Campaign, Done, Tick, unless};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one, unless};
 use crate::report::{Figure, Part, Report, Series, Style};
 
 /// Azimuth, pitch and roll through half an hour of driving.
@@ -21,7 +21,7 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where every row that is to be met is.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows: Vec<_> = (0..COUNT).map(|case| row(case, asked.runs, tick)).collect();
+    let rows = one_by_one(0..COUNT, tick, |case| row(case, asked.runs, tick));
     let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
     let refusal = unless(found, "a class does not meet its row; with few runs that may be chance");
     Done { report: report(&rows), refusal, object: json!({ "classes": rows }) }

@@ -13,7 +13,7 @@ use super::world::{Integrating, LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, World}
 use super::{Solved, solve};
 use crate::campaign::chance::Chance;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
-use crate::campaign::{Tick, over};
+use crate::campaign::{Tick, one_by_one, over};
 use crate::output::azimuth_error;
 
 /// Both speeds, turns a second.
@@ -83,8 +83,9 @@ struct Run {
 /// Runs each ratio at each misalignment with seeds 1 to `runs`; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
-    let at = |misalignment| RATIOS.map(|ratio| row(misalignment, ratio, runs, tick));
-    MISALIGNMENTS_DEG.into_iter().flat_map(at).collect()
+    let at = |misalignment| RATIOS.map(|ratio| (misalignment, ratio));
+    let cases = MISALIGNMENTS_DEG.into_iter().flat_map(at);
+    one_by_one(cases, tick, |(misalignment, ratio)| row(misalignment, ratio, runs, tick))
 }
 
 fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: Tick<'_>) -> Row {

@@ -14,7 +14,7 @@ use super::world::World;
 use super::{Solved, follow_world};
 use crate::campaign::faults::WRONG_SIGMAS;
 use crate::campaign::statistics::Answer;
-use crate::campaign::{Tick, over};
+use crate::campaign::{Tick, one_by_one, over};
 
 /// Angle random walk of the gyro, °/√h.
 const WALK: f64 = 0.002;
@@ -44,7 +44,7 @@ pub struct Row {
 /// Every case with seeds 1 to `runs`; `tick` after each run.
 #[must_use]
 pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
-    CASES.iter().map(|case| row(case, runs, tick)).collect()
+    one_by_one(&CASES, tick, |case| row(case, runs, tick))
 }
 
 /// How many cases there are.
@@ -59,7 +59,7 @@ fn row((name, spoil): &Case, runs: usize, tick: Tick<'_>) -> Row {
     let (reason, reason_given) = most_given(&solved);
     Row {
         case: name,
-        runs,
+        runs: solved.len(),
         refused: solved.iter().filter(|run| run.answer.is_err()).count(),
         wrong: solved.iter().filter(|run| is_wrong(run)).count(),
         reason,

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::world::{Integrating, World};
 use super::{Solved, solve};
 use crate::campaign::statistics::{Precision, greatest, rms};
-use crate::campaign::{Tick, azimuth_deg, over};
+use crate::campaign::{Tick, azimuth_deg, one_by_one, over};
 use crate::output::azimuth_error;
 
 /// Speed, turns a second: that of papers/004's last figure.
@@ -68,7 +68,7 @@ struct Run {
 /// Runs seeds 1 to `runs` with each gyro; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: Tick<'_>) -> Vec<Row> {
-    WALKS.into_iter().map(|n| row(n, runs, tick)).collect()
+    one_by_one(WALKS, tick, |n| row(n, runs, tick))
 }
 
 fn row(n_deg_sqrt_h: f64, runs: usize, tick: Tick<'_>) -> Row {

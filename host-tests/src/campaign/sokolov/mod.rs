@@ -251,8 +251,8 @@ fn row(all: &[Vec<Dwell>], name: &'static str, criterion: Criterion) -> Row {
         criterion: name,
         precision: Precision::of(&answers),
         least_deg: [0, 1, 2].map(|place: usize| {
-            let runs = &answers[place * TABLE_RUNS..(place + 1) * TABLE_RUNS];
-            least(runs.iter().flatten().map(|answer| answer.error))
+            let runs = answers.iter().skip(place * TABLE_RUNS).take(TABLE_RUNS);
+            least(runs.flatten().map(|answer| answer.error))
         }),
         sigma_deg: rms(answers.iter().flatten().map(|answer| answer.sigma)),
         limit_free_deg: rms(solved.iter().flatten().map(|(_, limit_free)| limit_free)),
@@ -277,7 +277,7 @@ fn stop_rules(all: &[Vec<Dwell>]) -> Vec<StopRow> {
         steps.sort_unstable();
         StopRow {
             rule: name,
-            median_step: steps[steps.len() / 2],
+            median_step: steps.get(steps.len() / 2).copied().unwrap_or(POSITIONS),
             all_positions: steps.iter().filter(|&&step| step == POSITIONS).count(),
             runs: steps.len(),
         }

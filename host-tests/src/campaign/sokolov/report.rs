@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::{AlphaRow, FixedPoint, TABLE_RUNS, TURNS, Table as Turn, fixed_point, tabulate};
 use crate::campaign::columns::{Columns, list, normal};
-use crate::campaign::{Asked, Campaign, Done, Tick};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one};
 use crate::output::positive_zero;
 use crate::report::{Lines, Part, Report};
 
@@ -20,9 +20,10 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// Both schedules: the paper's table, then the precision.
 fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
-    let tables = TURNS.iter().map(|turn| tabulate(*turn, tick)).collect::<Result<Vec<_>, _>>()?;
-    let precisions = TURNS.iter().map(|turn| fixed_point(*turn, asked.runs, tick));
-    let precisions = precisions.collect::<Result<Vec<_>, _>>()?;
+    let tables = one_by_one(TURNS, tick, |turn| tabulate(turn, tick));
+    let tables = tables.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let precisions = one_by_one(TURNS, tick, |turn| fixed_point(turn, asked.runs, tick));
+    let precisions = precisions.into_iter().collect::<Result<Vec<_>, _>>()?;
     let object = json!({ "tables": tables, "precision": precisions });
     let report = report(&tables, &precisions);
     Ok(Done { object, report, refusal: None })

@@ -114,8 +114,8 @@ pub fn row(case: usize, runs: usize, tick: Tick<'_>) -> Row {
     let scales: Vec<[f64; 2]> = all.iter().filter_map(|one| one.scale).collect();
     Row {
         case: case.name,
-        runs,
-        lost: runs - ends.len(),
+        runs: all.len(),
+        lost: all.len() - ends.len(),
         rms_deg: [0, 1, 2].map(|index: usize| rms(all.iter().map(|one| one.rms_deg[index]))),
         limit_deg: rms(all.iter().map(|one| one.limit_deg)),
         miscounted: all.iter().filter(|one| one.is_miscounted).count(),

@@ -6,7 +6,7 @@ use super::cases::{self, Row, Spot};
 use super::paper::{self, FRAGMENT_S, Paper, TURNS_PER_S};
 use super::world::{RATE_HZ, SCALE_ERROR};
 use crate::campaign::columns::{Columns, normal};
-use crate::campaign::{Asked, Campaign, Done, Tick, unless};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one, unless};
 use crate::methods::spin::{METHODS, name};
 use crate::report::{Figure, Lines, Part, Report, Series, Style};
 
@@ -22,8 +22,8 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where no roll was lost and no turn miscounted.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows = (0..cases::COUNT).map(|case| cases::row(case, asked.runs, tick));
-    let (paper, rows) = (paper::paper(), rows.collect::<Vec<_>>());
+    let rows = one_by_one(0..cases::COUNT, tick, |case| cases::row(case, asked.runs, tick));
+    let paper = paper::paper();
     let found = rows.iter().all(|row| row.lost == 0 && row.miscounted == 0);
     Done {
         report: report(&paper, &rows),

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::{drives, parked};
 use crate::campaign::columns::{Columns, normal, reasons};
 use crate::campaign::statistics::Precision;
-use crate::campaign::{Asked, Campaign, Done, Tick, unless};
+use crate::campaign::{Asked, Campaign, Done, Tick, one_by_one, unless};
 use crate::methods::stops::outcome::figures;
 use crate::report::{Figure, Part, Report, Series, Style};
 
@@ -22,10 +22,8 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 
 /// A result where none was refused.
 fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let drives = (0..drives::COUNT).map(|case| drives::row(case, asked.runs, tick));
-    let drives: Vec<_> = drives.collect();
-    let parked = (0..parked::COUNT).map(|case| parked::row(case, asked.runs, tick));
-    let parked: Vec<_> = parked.collect();
+    let drives = one_by_one(0..drives::COUNT, tick, |case| drives::row(case, asked.runs, tick));
+    let parked = one_by_one(0..parked::COUNT, tick, |case| parked::row(case, asked.runs, tick));
     let standing = parked.iter().map(|row| &row.precision);
     let all: Vec<_> = drives.iter().map(|row| &row.precision).chain(standing).collect();
     let found = all.iter().all(|precision| precision.is_complete());

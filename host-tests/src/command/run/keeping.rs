@@ -1,14 +1,19 @@
 //! How `meridian run` goes on after its alignment.
 
 use clap::Args;
+use host::angle::Quantity;
 use simulated::hold::Hold;
 
-use super::options::{Common, seconds};
+use super::options::{Common, KEEPING, azimuth, seconds};
+use crate::command::angle;
 use crate::command::stated::{self, Stated};
 
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
 const REALIGNING: f64 = 1800.0;
+/// From power-on until the vehicle sets off, beside the time of a usual alignment, s: room for one dwell that is measured
+/// again.
+const STANDING: f64 = 10.0;
 /// When an azimuth from outside comes, s from power-on.
 const HANDED: f64 = 20.0;
 
@@ -17,21 +22,21 @@ const HANDED: f64 = 20.0;
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
     /// with --realign 1800; 0 with --fault, and where an accuracy is asked for).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0), help_heading = KEEPING)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
-    #[arg(long)]
+    #[arg(long, help_heading = KEEPING)]
     realign: bool,
     /// An azimuth that is handed over from outside instead of an alignment, and its 1σ, in degrees.
-    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover)]
+    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover, help_heading = KEEPING)]
     handover: Option<[f64; 2]>,
 }
 
 fn handover(text: &str) -> Result<[f64; 2], String> {
     let wrong = || "not an azimuth within ±360° and a σ up to 30°, as 213.7,0.1".to_owned();
     let (azimuth, sigma) = text.split_once(',').ok_or_else(wrong)?;
-    match (azimuth.parse::<f64>(), sigma.parse::<f64>()) {
-        (Ok(azimuth), Ok(sigma)) if azimuth.abs() <= 360.0 && sigma > 0.0 && sigma <= 30.0 => {
+    match (self::azimuth(azimuth), angle(sigma, Quantity::Other)) {
+        (Ok(azimuth), Ok(sigma)) if sigma > 0.0 && sigma <= 30.0 => {
             Ok([azimuth.rem_euclid(360.0), sigma])
         }
         _ => Err(wrong()),
@@ -39,14 +44,18 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
-    /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
-    pub fn hold(&self, is_plain: bool) -> Hold {
+    /// How the run goes on; one that is to be the same as ever does not unless it is asked to. After a usual alignment,
+    /// which lasts as long as is known, the vehicle soon sets off.
+    pub fn hold(&self, is_plain: bool, is_usual: bool) -> Hold {
         let usual = if self.realign { REALIGNING } else { USUAL };
         let usual = if is_plain { 0.0 } else { usual };
+        let is_known = is_usual && !self.realign && self.handover.is_none();
+        let plain = Hold::of(self.hold.unwrap_or(usual));
         Hold {
+            standing_s: if is_known { STANDING } else { plain.standing_s },
             realigns: self.realign,
             handover: self.handover.map(|handover| (handover, HANDED)),
-            ..Hold::of(self.hold.unwrap_or(usual))
+            ..plain
         }
     }
 

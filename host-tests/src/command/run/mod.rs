@@ -4,26 +4,21 @@ mod keeping;
 mod options;
 mod spin;
 mod stage;
+mod terminal;
 mod turntable;
 pub mod usual;
 mod vehicle;
 
-use std::cell::Cell;
-use std::time::{Duration, Instant as WallClock};
-
 use clap::{Args, Subcommand};
-use embassy_time::Instant;
-use firmware::event::Event;
-use firmware::ports::Observer;
-use host::instrument::RunError;
+use host::new_file::NewFile;
 use host::outcome::Source;
 use host::outcome::run::RunDetails;
-use host::output::progress::Progress;
-use orientation::alignment::{self, rotating, stepwise, stops};
-use orientation::navigation::{self, aligner};
+use host::output::manner::Manner;
 use simulated::fault::{Fault, Platform};
 
-use self::options::{Common, Inputs};
+use self::options::Common;
+use self::terminal::Terminal;
+use super::examples;
 use super::faults::{self, FaultChoice};
 use super::files::{self, Written};
 use super::stated::{self, Stated};
@@ -41,14 +36,19 @@ pub struct RunOptions {
 enum Carrier {
     /// A gyro on a single-axis stage: positions on the full circle, unless a plan is asked for. What runs where no
     /// platform is named.
+    #[command(after_help = examples::STAGE)]
     Stage(Box<stage::StageOptions>),
     /// A gyro in two frames: four headings, and vertical to keep the azimuth.
+    #[command(after_help = examples::TWO_FRAME)]
     TwoFrame(Box<stage::FramesOptions>),
     /// A platform that turns all the time, on a slip ring.
+    #[command(after_help = examples::TURNTABLE)]
     Turntable(Box<turntable::TurntableOptions>),
     /// Three gyros in a vehicle that drives from stop to stop.
+    #[command(after_help = examples::VEHICLE)]
     Vehicle(Box<vehicle::VehicleOptions>),
     /// The roll of a body in fast rotation.
+    #[command(after_help = examples::SPIN)]
     Spin(spin::SpinOptions),
 }
 
@@ -71,7 +71,17 @@ trait Simulated {
     ///
     /// # Errors
     /// What keeps it from running; a refusal is none.
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String>;
+    fn run(&self, begun: &Begun) -> Result<Ran, String>;
+}
+
+/// What a run begins with, beside the options of its platform.
+struct Begun {
+    /// What goes wrong.
+    fault: Option<Fault>,
+    /// How it is shown.
+    manner: Manner,
+    /// The place of its recording.
+    record: Option<NewFile>,
 }
 
 /// A finished run, ready to be shown.
@@ -93,7 +103,7 @@ impl RunOptions {
         let (platform, common, options) = self.platform.of();
         match common.fault {
             Some(FaultChoice::List) => {
-                let beside = stated.beside(&["fault", "json"]);
+                let beside = stated.beside(&["fault"]);
                 return beside.map_or(Ok(()), |option| {
                     Err(format!("{}: --fault list runs nothing", stated::long(option)))
                 });
@@ -108,10 +118,9 @@ impl RunOptions {
             );
         }
         options.check(stated)?;
-        let Common { record, report, .. } = common.clone();
-        let record = ("--record", "the recording", record);
-        let report = ("--report", "the page", report);
-        let files: Vec<_> = [record].into_iter().chain(options.files()).chain([report]).collect();
+        let record = Written::recording(common.record.as_ref());
+        let page = Written::page(common.report.as_ref());
+        let files: Vec<_> = [record].into_iter().chain(options.files()).chain([page]).collect();
         files::check(None, &files)
     }
 }
@@ -130,77 +139,20 @@ impl Carrier {
 }
 
 /// Runs the board and reports what came of it.
-pub fn run(options: &RunOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &RunOptions, stated: &Stated, manner: Manner) -> Result<Answer, Failure> {
     options.check(stated).map_err(Failure::misuse)?;
     let (platform, common, options) = options.platform.of();
     let Common { seed, fault, report, .. } = common;
     let fault = match fault {
-        Some(FaultChoice::List) => return Ok(faults::list(platform, as_json)?),
+        Some(FaultChoice::List) => return Ok(faults::list(platform, manner)?),
         Some(FaultChoice::One(fault)) => Some(*fault),
         None => None,
     };
-    common.open()?;
-    let Ran { shown, details, written } = options.run(fault)?;
+    let record = files::opened("the recording", common.record.as_ref())?;
+    let page = files::opened("the report", report.as_ref())?;
+    let begun = Begun { fault, manner, record };
+    let Ran { shown, details, written } = options.run(&begun)?;
+    let written = written.and_then(|()| begun.record.map_or(Ok(()), NewFile::keep));
     let outcome = shown.finished.outcome(&shown.truth).of_run(Source::Seed(*seed), details);
-    Ok(shown.answer(&outcome, report.as_deref(), as_json)?.with_written(written))
-}
-
-/// Shows the log and the progress while a board works, and has its inputs written.
-struct Terminal<'t> {
-    inputs: &'t Inputs,
-    shown: Progress,
-    /// Planned stops of a vehicle.
-    stops: Cell<usize>,
-}
-
-impl<'t> Terminal<'t> {
-    /// Shows how many of the planned dwells, turns or stops are done.
-    fn follow(&self, progress: &alignment::Progress) {
-        let (done, planned) = match *progress {
-            alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => (done, of),
-            alignment::Progress::Rotating(rotating::Progress::Turned(done, of)) => {
-                (done as usize, of as usize)
-            }
-            alignment::Progress::Stops(stops::Progress::Begun { stops, .. }) => {
-                return self.stops.set(stops);
-            }
-            alignment::Progress::Stops(stops::Progress::Standing) => (1, self.stops.get()),
-            alignment::Progress::Stops(stops::Progress::Stopped(stop, _)) => {
-                (stop, self.stops.get())
-            }
-            _ => return,
-        };
-        self.shown.steps((done as u64, planned as u64));
-    }
-
-    /// Runs a board, whose progress counts these; with the time that it took on this machine.
-    fn watching<T>(
-        steps: &'static str,
-        inputs: &'t Inputs,
-        run: impl FnOnce(&Self) -> Result<T, RunError>,
-    ) -> Result<(T, Duration), String> {
-        let begun = WallClock::now();
-        let watch = Self { inputs, shown: Progress::new(0, steps), stops: Cell::new(0) };
-        let ran = run(&watch);
-        watch.shown.finish();
-        ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
-    }
-}
-
-impl Observer for Terminal<'_> {
-    fn aligns(&self, input: &aligner::Input) {
-        self.inputs.iter().for_each(|inputs| inputs.aligns(input));
-    }
-
-    fn navigates(&self, input: &navigation::Input) {
-        self.inputs.iter().for_each(|inputs| inputs.navigates(input));
-    }
-
-    fn event(&self, at: Instant, event: &Event) {
-        let seconds = at.as_micros() as f64 * 1e-6;
-        self.shown.log(&format!("{seconds:>11.6} {event}"));
-        if let Event::Alignment(progress) = event {
-            self.follow(progress);
-        }
-    }
+    Ok(shown.answer(&outcome, page, manner)?.with_written(written))
 }

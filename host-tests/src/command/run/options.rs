@@ -1,19 +1,32 @@
 //! Options that several platforms share.
 
-use std::fs::OpenOptions;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use drivers::ads1262::configuration::DataRate;
+use host::angle::Quantity;
 use host::instrument::recorder::{self, Recorded, Samples};
+use host::new_file::NewFile;
 use host::packed::Packed;
 use host::recording::inputs::{self, Given, Writer};
-use host::unwritten;
 use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
-use crate::command::{named, seed};
+use crate::command::{OUTPUT, angle, named, seed};
+
+/// Headings of the options, in the help.
+pub const PLACE: &str = "Place";
+/// As the board stands.
+pub const ATTITUDE: &str = "Attitude";
+/// What measures.
+pub const SENSOR: &str = "Sensor";
+/// What the board and its carrier do.
+pub const COURSE: &str = "Course";
+/// What is done after an alignment.
+pub const KEEPING: &str = "Keeping";
+/// What is drawn, what sways, and what goes wrong.
+pub const CHANCE: &str = "Chance, disturbances and faults";
 
 /// What writes the inputs of a run, where they are recorded.
 pub type Inputs = Option<Writer<Packed>>;
@@ -22,17 +35,17 @@ pub type Inputs = Option<Writer<Packed>>;
 #[derive(Args, Clone, Debug)]
 pub struct Common {
     /// What fixes everything random.
-    #[arg(long, default_value_t = 1, value_parser = seed)]
+    #[arg(long, default_value_t = 1, value_parser = seed, help_heading = CHANCE)]
     pub seed: u64,
     /// What goes wrong; `list` names the faults of the platform.
-    #[arg(long, value_name = "NAME", value_parser = faults::parse)]
+    #[arg(long, value_name = "NAME", value_parser = faults::parse, help_heading = CHANCE)]
     pub fault: Option<FaultChoice>,
     /// Writes a recording for `replay`: FILE.csv holds the samples of the alignment, FILE.jsonl all that the board's
     /// software took, keeping included; each also compressed, with .gz behind it.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub record: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub report: Option<PathBuf>,
 }
 
@@ -46,12 +59,18 @@ impl Common {
     ///
     /// # Errors
     /// The recording cannot be written; the words say why.
-    pub fn wanted<S>(&self, given: Option<Given>) -> Result<(Samples<S>, Inputs), String> {
-        let begin = |(path, given): (&Path, Given)| {
-            let begun = Packed::create(path).and_then(|file| Writer::new(file, self.seed, given));
-            begun.map_err(|error| unwritten::message("the recording", path, &error))
+    pub fn wanted<S>(
+        &self,
+        place: Option<&NewFile>,
+        given: Option<Given>,
+    ) -> Result<(Samples<S>, Inputs), String> {
+        let begin = |(place, given): (&NewFile, Given)| {
+            let file = Packed::create(place.path());
+            let begun = file.and_then(|file| Writer::new(file, self.seed, given));
+            begun.map_err(|error| place.unwritten(&error))
         };
-        let inputs = self.inputs_file().zip(given).map(begin).transpose()?;
+        let place = place.filter(|_| self.inputs_file().is_some());
+        let inputs = place.zip(given).map(begin).transpose()?;
         let is_idle = self.record.is_none() || inputs.is_some();
         Ok((Samples { taken: Vec::new(), is_idle }, inputs))
     }
@@ -61,28 +80,17 @@ impl Common {
     /// # Errors
     /// The recording cannot be written; the words say why.
     pub fn write<C: Recorded>(
-        &self,
+        place: Option<&NewFile>,
         carrier: &C,
         run: &C::Run,
         (samples, inputs): (&[C::Sample], Inputs),
     ) -> Result<(), String> {
         let (kept, truth) = carrier.end_of(run);
         let end = |inputs: Writer<Packed>| inputs.finish(kept, &truth).and_then(Packed::finish);
-        self.record.as_ref().map_or(Ok(()), |path| {
+        place.map_or(Ok(()), |place| {
             inputs
-                .map_or_else(|| recorder::write(path, carrier, run, samples), end)
-                .map_err(|error| unwritten::message("the recording", path, &error))
-        })
-    }
-
-    /// Makes the file of the recording before the run, so that one that cannot be written is reported at once.
-    ///
-    /// # Errors
-    /// The file cannot be made; the words say why.
-    pub fn open(&self) -> Result<(), String> {
-        self.record.as_ref().map_or(Ok(()), |path| {
-            let opened = OpenOptions::new().append(true).create(true).open(path);
-            opened.map(drop).map_err(|error| unwritten::message("the recording", path, &error))
+                .map_or_else(|| recorder::write(place.path(), carrier, run, samples), end)
+                .map_err(|error| place.unwritten(&error))
         })
     }
 }
@@ -90,17 +98,17 @@ impl Common {
 /// Where a platform that finds north is, and with which gyro.
 #[derive(Args, Clone, Debug)]
 pub struct Place {
-    /// Latitude in degrees, north positive.
-    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>)]
+    /// Latitude, north positive: 47.58, 47°35′, 47:34:48, or 47°35′N.
+    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = latitude, help_heading = PLACE)]
     latitude: f64,
-    /// True azimuth of body x in degrees; the board is not given it.
-    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
+    /// True azimuth of body x, clockwise from north, in degrees or 213°42′; the board is not given it.
+    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = azimuth, help_heading = ATTITUDE)]
     azimuth: f64,
     /// The gyro (fog).
-    #[arg(long, value_parser = named(&GYROS))]
+    #[arg(long, value_parser = named(&GYROS), help_heading = SENSOR)]
     pub gyro: Option<GyroClass>,
     /// Samples of the gyro a second: a data rate of its converter (400; of a vehicle 100).
-    #[arg(long, value_name = "HERTZ", value_parser = rate)]
+    #[arg(long, value_name = "HERTZ", value_parser = rate, help_heading = SENSOR)]
     pub rate: Option<f64>,
 }
 
@@ -122,10 +130,10 @@ impl Place {
 #[derive(Args, Clone, Debug)]
 pub struct Inclination {
     /// True pitch of the base in degrees, nose up positive.
-    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>)]
+    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = inclination::<90>, help_heading = ATTITUDE)]
     pub pitch: f64,
     /// True roll of the base in degrees, right side down positive.
-    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>)]
+    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = inclination::<180>, help_heading = ATTITUDE)]
     pub roll: f64,
 }
 
@@ -146,13 +154,21 @@ static GYROS: [(GyroClass, [&str; 2]); 4] = [
     ),
 ];
 
-fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
-    let limit = f64::from(LIMIT);
-    match text.parse::<f64>() {
-        Ok(angle) if angle.abs() <= limit => Ok(angle),
-        Ok(_) => Err(format!("outside ±{limit}°")),
-        Err(_) => Err("not a number".to_owned()),
-    }
+fn latitude(text: &str) -> Result<f64, String> {
+    within(90.0, angle(text, Quantity::Latitude)?)
+}
+
+/// An azimuth in degrees, east of north, or west of it with a minus.
+pub fn azimuth(text: &str) -> Result<f64, String> {
+    within(360.0, angle(text, Quantity::Azimuth)?)
+}
+
+fn inclination<const LIMIT: u16>(text: &str) -> Result<f64, String> {
+    within(f64::from(LIMIT), angle(text, Quantity::Other)?)
+}
+
+fn within(limit: f64, angle: f64) -> Result<f64, String> {
+    if angle.abs() <= limit { Ok(angle) } else { Err(format!("outside ±{limit}°")) }
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -8,27 +8,27 @@ use host::methods::spin::{Replay, follow};
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::GIVEN;
 use orientation::roll::Progress;
-use simulated::fault::Fault;
 use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
-use super::options::{Common, number, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{COURSE, Common, number, seconds};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 
 /// What is asked of a flight.
 #[derive(Args, Clone, Debug)]
 pub struct SpinOptions {
-    #[command(flatten)]
-    pub(super) common: Common,
     /// Seconds for which the roll is followed (2).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=60.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=60.0), help_heading = COURSE)]
     flight_seconds: Option<f64>,
     /// Turns a second (100).
-    #[arg(long, value_name = "TURNS", value_parser = number(20.0..=105.0, "a number of turns a second"))]
+    #[arg(long, value_name = "TURNS", value_parser = number(20.0..=105.0, "a number of turns a second"), help_heading = COURSE)]
     turns_per_second: Option<f64>,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 impl Simulated for SpinOptions {
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
+        let Begun { fault, manner, record } = begun;
         let usual = SpinScenario::default();
         let scenario = SpinScenario {
             seed: self.common.seed,
@@ -36,10 +36,11 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (run, wall) = Terminal::watching("samples", &None, |watch| {
-            Trial::of(&scenario).fault(fault).watch(watch).run()
-        })?;
-        let written = self.common.write(&scenario, &run, (&run.truth.samples, None));
+        let (run, wall) =
+            Terminal::watching((*manner, "samples", scenario.seconds), &None, |watch| {
+                Trial::of(&scenario).fault(*fault).watch(watch).run()
+            })?;
+        let written = Common::write(record.as_ref(), &scenario, &run, (&run.truth.samples, None));
         let (_, truth) = scenario.end_of(&run);
         let assumed = vec![GIVEN.to_owned()];
         let ended = run.ended().map(|reason| Progress::Ended(reason).to_string());

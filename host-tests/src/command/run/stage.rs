@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 use firmware::event::Event;
+use host::angle::Quantity;
 use host::instrument::recorder::Recorded;
 use host::instrument::{Run, Trial};
 use host::methods::stepwise::Replay;
@@ -13,16 +14,15 @@ use host::output::degrees;
 use host::recording::Truth;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::signal::Sample;
-use simulated::fault::Fault;
 use simulated::mount::FramesScenario;
 use simulated::scenario::{Aim, Scenario};
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Inclination, Place, number, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{CHANCE, COURSE, Common, Inclination, Place, number, seconds};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
 use crate::command::stated::Stated;
-use crate::command::{HALVES, named, sigma, whole};
+use crate::command::{HALVES, angle, named, sigma, whole};
 
 /// What is asked of a stage.
 #[derive(Args, Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct StageOptions {
     #[command(flatten)]
     pub(super) base: BaseOptions,
     /// Positions on the full circle (24), to the first of which it comes once more at the end.
-    #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     positions: Option<u64>,
 }
 
@@ -40,7 +40,7 @@ pub struct FramesOptions {
     #[command(flatten)]
     pub(super) base: BaseOptions,
     /// How often the four headings are visited (6).
-    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     passes: Option<u64>,
 }
 
@@ -48,38 +48,45 @@ pub struct FramesOptions {
 #[derive(Args, Clone, Debug)]
 pub(super) struct BaseOptions {
     #[command(flatten)]
-    pub(super) common: Common,
-    #[command(flatten)]
     place: Place,
     #[command(flatten)]
     inclination: Inclination,
     /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
     /// --sigma the time allowed.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0), help_heading = COURSE)]
     seconds: Option<f64>,
     /// Goes on until this standard deviation is reached, in degrees (1σ).
-    #[arg(long, value_name = "DEGREES", value_parser = wanted)]
+    #[arg(long, value_name = "DEGREES", value_parser = wanted, help_heading = COURSE)]
     sigma: Option<f64>,
     /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(60.0..=36_000.0), help_heading = COURSE)]
     survey: Option<f64>,
     /// The half of the circle in which the board is given that the azimuth lies: two positions need it.
-    #[arg(long, value_parser = named(&HALVES))]
+    #[arg(long, value_parser = named(&HALVES), help_heading = COURSE)]
     half: Option<Half>,
     /// Seconds at each position (10).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=600.0), conflicts_with_all = ["seconds", "sigma"])]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(0.5..=600.0), conflicts_with_all = ["seconds", "sigma"], help_heading = COURSE)]
     dwell: Option<f64>,
     #[command(flatten)]
     keeping: KeepingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
-    #[arg(long, value_name = "DEGREES", value_parser = number(0.0..=2.0, "an amplitude in degrees"))]
+    #[arg(long, value_name = "DEGREES", value_parser = amplitude, help_heading = CHANCE)]
     sway: Option<f64>,
     /// Frequency of the sway in hertz.
-    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway")]
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = number(0.05..=5.0, "a frequency in hertz"), requires = "sway", help_heading = CHANCE)]
     sway_hertz: f64,
     /// Lets the base sway without a coarse IMU on it.
-    #[arg(long, requires = "sway")]
+    #[arg(long, requires = "sway", help_heading = CHANCE)]
     no_base_imu: bool,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+fn amplitude(text: &str) -> Result<f64, String> {
+    match angle(text, Quantity::Other) {
+        Ok(degrees) if (0.0..=2.0).contains(&degrees) => Ok(degrees),
+        _ => Err("not an amplitude in degrees from 0 to 2".to_owned()),
+    }
 }
 
 fn wanted(text: &str) -> Result<f64, String> {
@@ -103,14 +110,15 @@ impl BaseOptions {
         }
     }
 
-    /// The scenario of the base.
-    fn scenario(&self) -> Scenario {
+    /// The scenario of the base, where its positions are the usual ones or not.
+    fn scenario(&self, has_usual_positions: bool) -> Scenario {
         let usual = self.place.scenario(self.common.seed);
         // A fault shows in the alignment, and one that goes on until an accuracy is reached may last: the base must not
         // drive off meanwhile.
         let fault = self.common.fault;
         let is_plain = fault.is_some() || self.no_base_imu || self.sigma.is_some();
-        let hold = self.keeping.hold(is_plain);
+        let is_timed = self.seconds.is_some() || self.survey.is_some() || self.dwell.is_some();
+        let hold = self.keeping.hold(is_plain, has_usual_positions && !is_timed);
         let needs_base_imu = self.sway.is_some()
             || hold.seconds > 0.0
             || fault.is_some_and(FaultChoice::is_of_base_imu);
@@ -132,16 +140,16 @@ impl BaseOptions {
     /// Runs a board, and writes the recording; `shown` gets the time, too, that it took on this machine.
     fn run<C: Recorded<Sample = Sample>>(
         &self,
-        carrier: &C,
-        fault: Option<Fault>,
+        (carrier, seconds): (&C, f64),
+        Begun { fault, manner, record }: &Begun,
         shown: impl FnOnce(C::Run, Truth, Duration) -> Ran,
     ) -> Result<Ran, String> {
-        let (mut wanted, inputs) = self.common.wanted(carrier.given())?;
-        let (run, wall) = Terminal::watching("positions", &inputs, |watch| {
+        let (mut wanted, inputs) = self.common.wanted(record.as_ref(), carrier.given())?;
+        let (run, wall) = Terminal::watching((*manner, "positions", seconds), &inputs, |watch| {
             let recorder = (&mut wanted, inputs.as_ref());
-            Trial::of(carrier).fault(fault).record(recorder).watch(watch).run()
+            Trial::of(carrier).fault(*fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(carrier, &run, (&wanted.taken, inputs));
+        let written = Common::write(record.as_ref(), carrier, &run, (&wanted.taken, inputs));
         let (_, truth) = carrier.end_of(&run);
         Ok(Ran { written, ..shown(run, truth, wall) })
     }
@@ -168,7 +176,7 @@ impl BaseOptions {
 
 impl StageOptions {
     fn scenario(&self) -> Scenario {
-        let base = self.base.scenario();
+        let base = self.base.scenario(self.positions.is_none());
         Scenario {
             positions: self.positions.map_or(base.positions, |count| count as usize),
             ..base
@@ -184,9 +192,10 @@ impl Simulated for StageOptions {
         self.base.check(stated, (&scenario, scenario.alignment_seconds()), &aligning)
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, truth, wall| {
+        let seconds = scenario.alignment_seconds() + scenario.hold.seconds;
+        self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
             ran("the simulated run", run, details, truth)
@@ -198,7 +207,7 @@ impl FramesOptions {
     fn scenario(&self) -> FramesScenario {
         let usual = FramesScenario::default();
         FramesScenario {
-            base: self.base.scenario(),
+            base: self.base.scenario(self.passes.is_none()),
             passes: self.passes.map_or(usual.passes, |count| count as usize),
             ..usual
         }
@@ -211,9 +220,10 @@ impl Simulated for FramesOptions {
         self.base.check(stated, (&scenario.base, scenario.alignment_seconds()), &ALIGNING)
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
-        self.base.run(&scenario, fault, |run, truth, wall| {
+        let seconds = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let [forward, right, down] = run.truth;
             let is_vertical =
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));

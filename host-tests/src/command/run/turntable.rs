@@ -12,16 +12,15 @@ use host::methods::rotating::Replay;
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::Body;
-use simulated::fault::Fault;
 use simulated::flash::Flash;
 use simulated::scenario::Scenario;
 use simulated::turntable::TurntableScenario;
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Inclination, Place};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{COURSE, Common, Inclination, KEEPING, Place, SENSOR};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
-use crate::command::files::Written;
+use crate::command::files::{self, Written};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -29,31 +28,31 @@ use crate::command::whole;
 #[derive(Args, Clone, Debug)]
 pub struct TurntableOptions {
     #[command(flatten)]
-    pub(super) common: Common,
-    #[command(flatten)]
     place: Place,
     #[command(flatten)]
     inclination: Inclination,
     #[command(flatten)]
     keeping: KeepingOptions,
     /// The sensor (gyro).
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = SENSOR)]
     sensor: Option<Sensor>,
     /// One or two speeds in turns a second (0.137; of met 0.1,0.2).
-    #[arg(long, value_name = "HERTZ[,HERTZ]", value_parser = speeds)]
+    #[arg(long, value_name = "HERTZ[,HERTZ]", value_parser = speeds, help_heading = COURSE)]
     speeds: Option<[f64; 2]>,
     /// Whole turns each way at the slowest speed.
-    #[arg(long, value_parser = whole::<2, 1000>)]
+    #[arg(long, value_parser = whole::<2, 1000>, help_heading = COURSE)]
     turns: Option<u64>,
     /// Rate-modulated turns before them, 0 where what --flash keeps is to do (12).
-    #[arg(long, value_name = "TURNS", value_parser = modulated_turns)]
+    #[arg(long, value_name = "TURNS", value_parser = modulated_turns, help_heading = COURSE)]
     modulated_turns: Option<u32>,
     /// The board's flash, which keeps the axis misalignments that rate-modulated turns find from run to run.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = KEEPING)]
     flash: Option<PathBuf>,
     /// Today, so that the board knows when it found something.
-    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "flash")]
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "flash", help_heading = KEEPING)]
     date: Option<u64>,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 /// None, or enough to distinguish an axis misalignment from the Earth rate.
@@ -113,7 +112,10 @@ impl TurntableOptions {
         };
         let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
         // A fault shows in the alignment; and a run by a flash begins where the one before began, not where it ended.
-        let hold = self.keeping.hold(self.common.fault.is_some() || self.flash.is_some());
+        let is_plain = self.common.fault.is_some() || self.flash.is_some();
+        let is_timed = self.speeds.is_some() || self.turns.is_some();
+        let is_usual = !is_timed && self.modulated_turns.is_none() && self.sensor.is_none();
+        let hold = self.keeping.hold(is_plain, is_usual);
         let has_base_imu =
             hold.seconds > 0.0 || self.common.fault.is_some_and(FaultChoice::is_of_base_imu);
         let given = self.place.scenario(seed);
@@ -145,7 +147,7 @@ impl Simulated for TurntableOptions {
     /// The file of the flash, and the one in which it is written first.
     fn files(&self) -> Vec<Written> {
         let beside = self.flash.as_deref().map(flash_file::beside);
-        [self.flash.clone(), beside].map(|path| ("--flash", "the flash", path)).into()
+        [self.flash.as_ref(), beside.as_ref()].map(Written::flash).into()
     }
 
     fn check(&self, stated: &Stated) -> Result<(), String> {
@@ -167,18 +169,24 @@ impl Simulated for TurntableOptions {
         Ok(())
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
+        let Begun { fault, manner, record } = begun;
         let scenario = self.scenario();
+        // It is written when the run is over; that it can be is to be known before.
+        drop(files::opened("the flash", self.flash.as_ref())?);
         let mut store = self.store()?;
-        let (mut recorder, inputs) = self.common.wanted(given_by(&scenario, &mut store))?;
+        let (mut recorder, inputs) =
+            self.common.wanted(record.as_ref(), given_by(&scenario, &mut store))?;
+        let expected_s = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        let watched = (*manner, "turns", expected_s);
         // Figures show them.
         recorder.is_idle = false;
-        let (run, wall) = Terminal::watching("turns", &inputs, |watch| {
+        let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut recorder, inputs.as_ref());
-            let trial = Trial::of(&scenario).fault(fault).record(recorder);
+            let trial = Trial::of(&scenario).fault(*fault).record(recorder);
             trial.store(&mut store).watch(watch).run()
         })?;
-        let recorded = self.common.write(&scenario, &run, (&recorder.taken, inputs));
+        let recorded = Common::write(record.as_ref(), &scenario, &run, (&recorder.taken, inputs));
         let (_, truth) = scenario.end_of(&run);
         let written = self.put_away(store).and(recorded);
         let recalled = run.events.iter().filter_map(|(_, event)| match event {

@@ -4,19 +4,26 @@ use std::ffi::OsString;
 
 use host::methods;
 
+/// The options that every command takes: they may stand before it, and name no platform.
+const GLOBAL: [&str; 5] = ["--json", "-v", "--verbose", "-q", "--quiet"];
+
+fn is_global(argument: &OsString) -> bool {
+    GLOBAL.iter().any(|global| argument == global)
+}
+
 /// The arguments, without the program's name, with the platform of a run in its place; without a command it is a run.
 #[must_use]
 pub fn named(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_option = |argument: &OsString| argument.to_string_lossy().starts_with('-');
     let Some(place) = arguments.iter().position(|argument| !is_option(argument)) else {
-        let is_plain = arguments.iter().all(|argument| argument == "--json");
+        let is_plain = arguments.iter().all(is_global);
         arguments.extend(["run", "stage"].map(OsString::from).into_iter().filter(|_| is_plain));
         return arguments;
     };
     if arguments[place] == "run" {
         name_method(&mut arguments, place + 1);
     }
-    let first = arguments[place + 1..].iter().find(|argument| *argument != "--json");
+    let first = arguments[place + 1..].iter().find(|argument| !is_global(argument));
     let names =
         |argument: &OsString| !is_option(argument) || argument == "--help" || argument == "-h";
     if arguments[place] == "run" && !first.is_some_and(names) {

@@ -8,14 +8,13 @@ use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::recording::{Body, GIVEN};
 use orientation::alignment::stops::session::Session;
-use simulated::fault::Fault;
 use simulated::hold::STOP_SECONDS;
 use simulated::scenario::Scenario;
 use simulated::vehicle::{self, VehicleScenario};
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Place, seconds};
-use super::{Ran, Shown, Simulated, Terminal};
+use super::options::{COURSE, Common, Place, seconds};
+use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::stated::Stated;
 use crate::command::whole;
 
@@ -23,30 +22,30 @@ use crate::command::whole;
 #[derive(Args, Clone, Debug)]
 pub struct VehicleOptions {
     #[command(flatten)]
-    pub(super) common: Common,
-    #[command(flatten)]
     place: Place,
     /// How often the vehicle stops (3).
-    #[arg(long, value_parser = whole::<2, 8>)]
+    #[arg(long, value_parser = whole::<2, 8>, help_heading = COURSE)]
     stops: Option<u64>,
     /// Seconds for which the board levels at each stop (60).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
     stop_seconds: Option<f64>,
     /// Seconds of driving from stop to stop (600).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
     drive_seconds: Option<f64>,
     /// The board is not given how far it has come.
-    #[arg(long)]
+    #[arg(long, help_heading = COURSE)]
     no_displacement: bool,
     #[command(flatten)]
     keeping: KeepingOptions,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 impl VehicleOptions {
     fn scenario(&self) -> VehicleScenario {
         let usual = VehicleScenario::default();
         let sample_rate_hz = self.place.rate.unwrap_or(usual.base.sample_rate_hz);
-        let hold = self.keeping.hold(self.common.fault.is_some());
+        let hold = self.keeping.hold(self.common.fault.is_some(), false);
         let unknown = self.no_displacement.then_some(vehicle::Place::Unknown);
         VehicleScenario {
             base: Scenario { sample_rate_hz, hold, ..self.place.scenario(self.common.seed) },
@@ -56,6 +55,12 @@ impl VehicleOptions {
             place: unknown.unwrap_or(usual.place),
         }
     }
+}
+
+/// How long a run takes by its own time, s.
+fn lasting(scenario: &VehicleScenario) -> f64 {
+    let VehicleScenario { base, stops, stop_s, drive_s, .. } = scenario;
+    *stops as f64 * (stop_s + drive_s) - drive_s + base.hold.seconds
 }
 
 impl Simulated for VehicleOptions {
@@ -69,21 +74,23 @@ impl Simulated for VehicleOptions {
         )
     }
 
-    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+    fn run(&self, begun: &Begun) -> Result<Ran, String> {
+        let Begun { fault, manner, record } = begun;
         let scenario = self.scenario();
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;
         let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
         let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
-        let (mut wanted, inputs) = self.common.wanted(scenario.given())?;
+        let (mut wanted, inputs) = self.common.wanted(record.as_ref(), scenario.given())?;
         // Figures show them.
         wanted.is_idle = self.common.report.is_none() && wanted.is_idle;
-        let (run, wall) = Terminal::watching("stops", &inputs, |watch| {
+        let watched = (*manner, "stops", lasting(&scenario));
+        let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
-            Trial::of(&scenario).fault(fault).record(recorder).watch(watch).run()
+            Trial::of(&scenario).fault(*fault).record(recorder).watch(watch).run()
         })?;
-        let written = self.common.write(&scenario, &run, (&wanted.taken, inputs));
+        let written = Common::write(record.as_ref(), &scenario, &run, (&wanted.taken, inputs));
         let (_, truth) = scenario.end_of(&run);
         let details =
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());

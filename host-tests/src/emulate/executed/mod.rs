@@ -18,6 +18,8 @@ use execution::report::Report;
 use firmware::platform::Platform;
 use rayon::prelude::*;
 
+use crate::work::Follower;
+
 /// Greatest distance of an azimuth from the truth, in its own σ.
 const FROM_TRUTH: f64 = 3.0;
 /// Greatest distance of an azimuth from that of the host's run, in its own σ, on a platform. An image comes to its dwells
@@ -123,21 +125,29 @@ impl Executed {
 }
 
 /// Builds the images of carriers and the program, executes them side by side, and makes the same runs on the host. The
-/// log of a single image goes to standard error as it comes.
+/// log of a single image goes to standard error as it comes where that is asked for, or where a client of its link is waited
+/// for.
 ///
 /// # Errors
 /// What is missing or does not build, or what the model does not know.
-pub fn execute(carriers: &[Platform], options: &Options) -> Result<Vec<Executed>, String> {
+pub fn execute(
+    carriers: &[Platform],
+    options: &Options,
+    asks_log: bool,
+    follower: &dyn Follower,
+) -> Result<Vec<Executed>, String> {
     let images: Vec<PathBuf> =
         carriers.iter().map(|carrier| image(*carrier)).collect::<Result<_, _>>()?;
     let program = program()?;
-    let is_alone = carriers.len() == 1;
+    let shows_log = carriers.len() == 1 && (asks_log || options.link.is_some());
     let pairs: Vec<_> = carriers.iter().zip(&images).collect();
     pairs
         .par_iter()
         .map(|(carrier, image)| {
-            let report = report(&program, image, **carrier, options, is_alone)?;
-            Ok(Executed { report, host_deg: host::azimuth_deg(**carrier, options.seed)? })
+            let report = report(&program, image, **carrier, options, shows_log)?;
+            let host_deg = host::azimuth_deg(**carrier, options.seed)?;
+            follower.done();
+            Ok(Executed { report, host_deg })
         })
         .collect()
 }

@@ -73,11 +73,10 @@ pub fn write<C: Recorded>(
     run: &C::Run,
     samples: &[C::Sample],
 ) -> io::Result<()> {
-    // Made first: an older recording would be taken for this run's.
-    let mut to = Packed::create(path)?;
     if samples.is_empty() {
         return Err(io::Error::other("the run ended before its session got a sample"));
     }
+    let mut to = Packed::create(path)?;
     carrier.write(&mut to, run, samples)?;
     to.finish()
 }

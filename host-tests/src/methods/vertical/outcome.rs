@@ -8,7 +8,7 @@ use crate::methods::vertical::errors::{Errors, Off};
 use crate::methods::vertical::{Moment, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome, of_biases};
-use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero};
+use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
@@ -85,7 +85,10 @@ impl Replay {
         let turned = positive_zero(degrees(self.turned), 5e-5);
         let beyond = "five of the 1σ stated or assumed, which are not believed any more";
         Lines::default()
-            .with("turned", format!("{turned:+.4}° about the vertical since the beginning"))
+            .with(
+                "turned",
+                format!("{}° about the vertical since the beginning", signed(turned, 4)),
+            )
             .with("gyro biases", of_biases(biases_dph, 1))
             .with_found("  beyond", last.is_bias_beyond_stated.then_some(beyond))
             .with("state at the end", last.state.to_string())

@@ -8,10 +8,16 @@ use super::{degrees, noise_in_words};
 use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
 use crate::report::{Lines, Part, Report};
 
-/// The report for terminal and page: what was asked, and both schedules.
+/// The report for terminal and page: the answer, what was asked, and both schedules.
 pub fn report(request: &Request, planned: &Planned) -> Report {
     let parts = [asked(request), burov(planned), optimum(planned)].map(Part::from);
-    Report::new("Schedule for a gyro", parts)
+    Report::new(answer(planned), parts)
+}
+
+/// The answer in a line: the best schedule, its σ, and its time.
+fn answer(planned: &Planned) -> String {
+    let Optimum { positions, dwell_s, seconds, sigma_deg, .. } = planned.optimum;
+    format!("{positions} positions of {dwell_s:.2} s: {sigma_deg:.4}° (1σ) in {seconds:.1} s")
 }
 
 /// An angle as 1σ and as 3σ.

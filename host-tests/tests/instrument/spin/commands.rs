@@ -106,7 +106,7 @@ fn methods_that_do_not_fit_are_refused_and_options_that_do_not_are_misuse() {
 
 #[test]
 fn the_simulated_board_follows_a_flight() {
-    let arguments = ["run", "spin", "--flight-seconds", "1", "--json"];
+    let arguments = ["run", "spin", "--flight-seconds", "1", "--json", "-v"];
     let output = meridian(&arguments);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let object = object(&output);

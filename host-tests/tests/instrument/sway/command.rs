@@ -5,7 +5,7 @@ use std::process::Output;
 use crate::support::program::meridian;
 
 fn run(arguments: &[&str]) -> Output {
-    meridian(&[&["run"], arguments].concat())
+    meridian(&[&["run", "-v"], arguments].concat())
 }
 
 fn all(output: &Output) -> String {

@@ -77,7 +77,7 @@ const LONELY: [&str; 12] = [
     "run --seconds 100 --positions 6",
     "run --sigma 1 --dwell 3",
     "run --seed 1 --seed 2",
-    "replay FILE FILE",
+    "allan FILE FILE",
 ];
 /// Methods, and options that each ignores.
 const IGNORED: [(&str, &[&str]); 6] = [
@@ -128,7 +128,8 @@ fn drawn(chance: &mut Chance) -> Vec<String> {
         _ => {
             let (command, second) =
                 (chance.of(&["replay", "allan"]), chance.of(&["FOLDER", "FILE"]));
-            let option = if second == "FILE" { "--no-such-option" } else { "--json" };
+            let is_folder = second == "FOLDER" && command == "allan";
+            let option = if is_folder { "--json" } else { "--no-such-option" };
             [command, second, option].map(str::to_owned).to_vec()
         }
     }

@@ -110,7 +110,7 @@ fn an_option_that_a_replay_ignores_is_refused_with_both_named() {
 #[test]
 fn an_option_that_the_kind_of_a_recording_ignores_is_a_misuse_without_a_method_too() {
     for (name, option, method) in [
-        ("stepwise-circle", "--attitude-out=x", "stepwise"),
+        ("stepwise-circle", "--attitude-out=x.csv", "stepwise"),
         ("positions-four-fog", "--displacements=0,0", "stepwise"),
         ("rotating-gyro", "--criterion=ml", "rotating"),
         ("drive-ideal", "--half=east", "siap"),

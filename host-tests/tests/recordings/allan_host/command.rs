@@ -126,12 +126,22 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
 }
 
 #[test]
-fn a_page_that_cannot_be_written_is_named() {
+fn a_page_in_a_folder_that_is_not_there_is_named_before_anything_is_computed() {
     let output = allan(&[&hour(), "--json", "--report", "/no/such/folder/a.html"]);
     assert!(refusal(&output).contains("/no/such/folder/a.html: the report cannot be written"));
     let object = object(&output);
     assert_eq!(object["status"], "failed");
-    assert!(object["n_deg_sqrt_h"].is_number(), "the numbers are not lost with the page");
+    assert!(object["n_deg_sqrt_h"].is_null());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_numbers_are_not_lost_with_a_page_that_does_not_fit() {
+    let output = allan(&[&hour(), "--json", "--report", "/dev/full"]);
+    assert!(refusal(&output).contains("/dev/full: the report cannot be written"));
+    let object = object(&output);
+    assert_eq!(object["status"], "failed");
+    assert!(object["n_deg_sqrt_h"].is_number());
 }
 
 #[test]

@@ -20,7 +20,7 @@ use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::output::{azimuth_error, degrees, degrees_per_hour, signed};
 use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -295,7 +295,7 @@ fn of_g_sensitivity(lines: Lines, is_one: bool, ratio: f64, bias: f64) -> Lines 
     let what = if is_one {
         format!("the g-sensitivity turns the azimuth, by {bias:.4}° (1σ): turn at a second speed")
     } else {
-        format!("would be off by {bias:+.4}° for the g-sensitivity")
+        format!("would be off by {}° for the g-sensitivity", signed(bias, 4))
     };
     lines
         .with("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"))
@@ -308,7 +308,7 @@ fn table_of_stages(fit: &Fit) -> Part {
     Columns::of("Azimuth after each stage of compensation", &stages)
         .column("stage", |(stage, _)| stage)
         .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
-        .column("from the last, °", |(_, azimuth)| format!("{:+.4}", off(*azimuth)))
+        .column("from the last, °", |(_, azimuth)| signed(off(*azimuth), 4))
         .into()
 }
 

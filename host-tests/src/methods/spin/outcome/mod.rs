@@ -11,7 +11,7 @@ use crate::methods::spin::track::Track;
 use crate::methods::spin::{Replay, name};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome};
-use crate::output::degrees;
+use crate::output::{degrees, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part, Table};
 
@@ -130,10 +130,9 @@ fn at_end(replay: &Replay, sigma_deg: Option<f64>) -> Option<[String; 2]> {
 /// What else is said first.
 fn facts(replay: &Replay, outcome: &Outcome) -> Lines {
     let (end, noise) = (&replay.answer().end, replay.noise.force);
-    let truth = outcome
-        .sigma_deg
-        .zip(outcome.error_deg)
-        .map(|(sigma, error)| format!("the error is {error:+.5}°, {:+.2} σ", error / sigma));
+    let truth = outcome.sigma_deg.zip(outcome.error_deg).map(|(sigma, error)| {
+        format!("the error is {}°, {} σ", signed(error, 5), signed(error / sigma, 2))
+    });
     let whole = (end.roll_rad / TURN).floor();
     let turns = format!("{whole} since the beginning: {:.6} rad in all", end.roll_rad);
     let scale = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");

@@ -14,7 +14,7 @@ use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{columns, degrees, degrees_per_hour};
+use crate::output::{columns, degrees, degrees_per_hour, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -216,7 +216,8 @@ fn positions(lines: Lines, found: &Autocompensation) -> Lines {
     let list: Vec<String> =
         visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
     let plain = found.plain_azimuth_deg.zip(found.plain_off_sigmas).map(|(azimuth, off)| {
-        format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth")
+        let off = signed(off, 2);
+        format!("{azimuth:.4}° by plain least squares, {off} σ from the azimuth")
     });
     lines.with("positions", list.join(", ")).with_found("without weights", plain)
 }

@@ -15,7 +15,7 @@ use crate::methods::asked::Question;
 use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site};
-use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero};
+use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
 
@@ -157,7 +157,7 @@ impl Replay {
         let words = |[angle, sigma]: [f64; 2]| format!("{angle:.4}° ± {sigma:.4}° (1σ)");
         let lines = Lines::new("Start and gyros")
             .with_found("at the start", start.map(words))
-            .with_found("  truth", error.map(|error| format!("the error is {error:+.4}°")))
+            .with_found("  truth", error.map(|error| format!("the error is {}°", signed(error, 4))))
             .with_found("gyro biases", biases.map(|biases| of_biases(biases, 4)));
         (keys, lines)
     }

@@ -1,0 +1,225 @@
+//! The replay of many recordings side by side, and their table.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use host::interrupt;
+use host::new_file::NewFile;
+use host::outcome::{Outcome, SCHEMA};
+use host::output::manner::Manner;
+use host::output::progress::Progress;
+use host::output::signed;
+use host::report::{Columns, Extent, Look, Report};
+use host::unwritten;
+use host::work::side_by_side;
+use serde_json::{Value, json};
+
+use super::one::One;
+use super::source::Source;
+use crate::command::{Answer, Failure, Output};
+
+/// Longest reason in the table, characters.
+const REASON: usize = 60;
+
+/// A row of the table, and its object.
+struct Row {
+    file: String,
+    method: &'static str,
+    found: String,
+    limit_deg: Option<f64>,
+    seconds: Option<f64>,
+    error: String,
+    reason: String,
+    object: Value,
+    warnings: Vec<String>,
+    is_ok: bool,
+}
+
+/// The folders of what is written for each recording: pages, and attitudes.
+pub struct Folders([Option<PathBuf>; 2]);
+
+impl Folders {
+    /// Makes the folders.
+    ///
+    /// # Errors
+    /// A file is named; it cannot be made; two recordings would have one file in it.
+    pub fn make(
+        [pages, attitudes]: [Option<&PathBuf>; 2],
+        sources: &[Source],
+    ) -> Result<Self, Failure> {
+        let named =
+            [("--report", "the pages", pages), ("--attitude-out", "the attitudes", attitudes)];
+        for (option, what, folder) in named {
+            let Some(folder) = folder else { continue };
+            check(option, folder, sources).map_err(Failure::misuse)?;
+            fs::create_dir_all(folder)
+                .map_err(|error| unwritten::message(what, &folder.join("."), &error))?;
+        }
+        Ok(Self([pages, attitudes].map(Option::<&PathBuf>::cloned)))
+    }
+
+    /// The files that are written for a recording.
+    fn files(&self, source: &Source) -> Result<[Option<NewFile>; 2], String> {
+        let [pages, attitudes] = &self.0;
+        let file = |folder: &Option<PathBuf>, what, end: &str| {
+            let path = folder.as_ref().map(|folder| folder.join(stem(source) + end));
+            path.map(|path| NewFile::open(what, &path)).transpose()
+        };
+        Ok([file(pages, "the report", ".html")?, file(attitudes, "the attitude", ".csv")?])
+    }
+}
+
+/// Refuses what is no folder, and names that two recordings would share in it.
+fn check(option: &str, folder: &Path, sources: &[Source]) -> Result<(), String> {
+    let is_file = folder.is_file() || folder.extension().is_some();
+    if folder.as_os_str().is_empty() || is_file && !folder.is_dir() {
+        let shown = folder.display();
+        return Err(format!(
+            "{option}: {shown}: each of several recordings has a file of its own; name a folder"
+        ));
+    }
+    let mut stems = BTreeSet::new();
+    match sources.iter().map(stem).find(|stem| !stems.insert(stem.clone())) {
+        Some(twice) => Err(format!(
+            "{option}: two recordings would have the file {twice} in the folder; replay them apart"
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The name of a recording without its endings.
+fn stem(source: &Source) -> String {
+    let name = source.path().and_then(Path::file_name).and_then(OsStr::to_str);
+    let name = name.unwrap_or("standard-input");
+    let name = name.strip_suffix(".gz").unwrap_or(name);
+    Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Replays recordings side by side.
+pub fn replay(
+    one: &One<'_>,
+    sources: Vec<Source>,
+    folders: &Folders,
+    manner: Manner,
+) -> Result<Answer, Failure> {
+    let progress = Progress::new(manner, sources.len() as u64, "recordings");
+    interrupt::heed();
+    let rows = side_by_side(sources.into_iter(), &progress, |source| row(one, &source, folders));
+    progress.finish();
+    let refusal = refusal(&rows);
+    let object = object(&rows, refusal.as_deref());
+    let warnings = rows.iter().flat_map(|row| row.warnings.iter().cloned()).collect();
+    let answer = Answer::of(refusal, manner, &object, || table(&rows))?;
+    // Each object has its own.
+    let is_object = matches!(answer.output, Output::Object(_));
+    Ok(if is_object { answer } else { answer.with_warnings(warnings) })
+}
+
+/// Why not every recording has a result.
+fn refusal(rows: &[Row]) -> Option<String> {
+    if interrupt::is_asked() {
+        let reason = interrupt::reason();
+        return Some(format!("{reason}: the table holds the recordings that were done"));
+    }
+    let (all, none) = (rows.len(), rows.iter().filter(|row| !row.is_ok).count());
+    (none > 0).then(|| format!("{none} of {all} recordings gave no result"))
+}
+
+/// All objects in one.
+fn object(rows: &[Row], refusal: Option<&str>) -> Value {
+    let results: Vec<_> = rows.iter().map(|row| &row.object).collect();
+    let status = if refusal.is_none() { "ok" } else { "refused" };
+    json!({ "schema": SCHEMA, "status": status, "results": results })
+}
+
+/// What came of a recording.
+fn row(one: &One<'_>, source: &Source, folders: &Folders) -> Row {
+    let replayed = one.replay(source).and_then(|done| {
+        let row = Row::of(&done.outcome);
+        let as_json = Manner { as_json: true, ..Manner::default() };
+        let answer = done.answer(folders.files(source)?, as_json)?;
+        Ok((row, answer))
+    });
+    match replayed {
+        Ok((row, answer)) => row.answered(source.name(), answer),
+        Err(failure) => Row::failed(source.name(), failure),
+    }
+}
+
+impl Row {
+    /// What was found.
+    fn of(outcome: &Outcome) -> Self {
+        let error = outcome.error_deg.map(|error| signed(error, 4));
+        Self {
+            file: String::new(),
+            method: outcome.method,
+            found: found(outcome),
+            limit_deg: outcome.limit_deg,
+            seconds: Some(outcome.seconds),
+            error: error.unwrap_or_default(),
+            reason: String::new(),
+            object: Value::Null,
+            warnings: Vec::new(),
+            is_ok: false,
+        }
+    }
+
+    /// The row with its object.
+    fn answered(self, file: String, answer: Answer) -> Self {
+        let prefix = format!("{file}: ");
+        let reason = answer.refusal.clone().unwrap_or_default();
+        let reason = short(reason.strip_prefix(&prefix).unwrap_or(&reason));
+        let (is_ok, object) = (answer.refusal.is_none(), answer.object());
+        Self { file, reason, is_ok, object, warnings: answer.warnings, ..self }
+    }
+
+    /// The row of a recording that could not be replayed.
+    fn failed(file: String, Failure { reason, warnings, .. }: Failure) -> Self {
+        let nothing = Self::of(&Outcome::default());
+        let object = Output::Object(json!({ "file": file }));
+        let answer = Answer { output: object, refusal: Some(reason), warnings };
+        Self { found: "failed".to_owned(), seconds: None, ..nothing.answered(file, answer) }
+    }
+}
+
+/// What was found, in words: an azimuth, a level, or a roll.
+fn found(outcome: &Outcome) -> String {
+    let Some(sigma) = outcome.sigma_deg else { return outcome.status.to_owned() };
+    match (outcome.azimuth_deg, outcome.pitch_deg.zip(outcome.roll_deg)) {
+        (Some(azimuth), _) => format!("{azimuth:.4}° ± {sigma:.4}°"),
+        (None, Some((pitch, roll))) => {
+            format!("pitch {pitch:.3}°, roll {roll:.3}° ± {sigma:.3}°")
+        }
+        (None, None) => match outcome.roll_end_deg() {
+            Some(roll) => format!("roll {roll:.4}° ± {sigma:.4}°"),
+            None => format!("± {sigma:.4}°"),
+        },
+    }
+}
+
+/// The beginning of a reason.
+fn short(reason: &str) -> String {
+    if reason.chars().count() <= REASON {
+        return reason.to_owned();
+    }
+    let cut: String = reason.chars().take(REASON).collect();
+    let whole = cut.rsplit_once(' ').map_or(cut.as_str(), |(words, _)| words);
+    format!("{} …", whole.trim_end_matches([',', ';', ':']))
+}
+
+/// The table of all recordings.
+fn table(rows: &[Row]) -> String {
+    let title = "Recordings: what was found, 1σ, Cramér–Rao limit, found less true";
+    let has_reason = rows.iter().any(|row| !row.reason.is_empty());
+    let columns = Columns::of("", rows)
+        .column("file", |row| &row.file)
+        .column("method", |row| row.method)
+        .column("found", |row| &row.found)
+        .found("limit, °", 4, |row| row.limit_deg)
+        .found("seconds", 0, |row| row.seconds)
+        .column("error, °", |row| &row.error);
+    let columns = if has_reason { columns.column("reason", |row| &row.reason) } else { columns };
+    Report::new(title, [columns.into()]).text(Look::plain(Extent::Usual))
+}

@@ -1,0 +1,137 @@
+//! What is shown while a board works: how far it is, and its log where that is asked for.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant as WallClock};
+
+use embassy_time::Instant;
+use firmware::event::Event;
+use firmware::ports::Observer;
+use host::instrument::RunError;
+use host::output::manner::Manner;
+use host::output::progress::Progress;
+use orientation::alignment::{self, rotating, stepwise, stops};
+use orientation::navigation::{self, aligner};
+
+use super::options::Inputs;
+
+/// Parts of a run after each of which its progress is shown.
+const PARTS: u64 = 200;
+/// Power-on, self-tests and level, s.
+const BEGIN_SECONDS: f64 = 10.0;
+
+/// Shows the log and the progress while a board works, and has its inputs written.
+pub(super) struct Terminal<'t> {
+    inputs: &'t Inputs,
+    manner: Manner,
+    shown: Progress,
+    /// What the steps of its alignment are called.
+    steps: &'static str,
+    stage: Cell<Stage>,
+    /// Planned stops of a vehicle.
+    stops: Cell<usize>,
+    /// Time from power-on to the end, as expected, ms.
+    expected: u64,
+    /// Time of what is shown, ms.
+    latest: Cell<u64>,
+}
+
+/// How far a board is.
+#[derive(Clone, Copy)]
+enum Stage {
+    /// It starts, levels or surveys.
+    Preparing,
+    /// It aligns itself: steps that are done, of how many.
+    Aligning(usize, usize),
+    /// It keeps what it found.
+    Keeping,
+}
+
+/// A run for a terminal: how it is shown, what its steps are called, and how long it takes by its own time, s.
+pub(super) type Watched = (Manner, &'static str, f64);
+
+impl<'t> Terminal<'t> {
+    /// Runs a board; with the time that it took on this machine.
+    pub(super) fn watching<T>(
+        watched: Watched,
+        inputs: &'t Inputs,
+        run: impl FnOnce(&Self) -> Result<T, RunError>,
+    ) -> Result<(T, Duration), String> {
+        let begun = WallClock::now();
+        let watch = Self::new(watched, inputs);
+        watch.show();
+        let ran = run(&watch);
+        watch.shown.finish();
+        ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
+    }
+
+    fn new((manner, steps, seconds): Watched, inputs: &'t Inputs) -> Self {
+        let expected = ((BEGIN_SECONDS + seconds) * 1e3) as u64;
+        let (stage, stops, latest) = (Cell::new(Stage::Preparing), Cell::new(0), Cell::new(0));
+        let shown = Progress::new(manner, expected, steps);
+        Self { inputs, manner, shown, steps, stage, stops, expected, latest }
+    }
+
+    /// Notes how many of the planned dwells, turns or stops are done.
+    fn follow(&self, progress: &alignment::Progress) {
+        let (done, planned) = match *progress {
+            alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => (done, of),
+            alignment::Progress::Rotating(rotating::Progress::Turned(done, of)) => {
+                (done as usize, of as usize)
+            }
+            alignment::Progress::Stops(stops::Progress::Begun { stops, .. }) => {
+                return self.stops.set(stops);
+            }
+            alignment::Progress::Stops(stops::Progress::Standing) => (1, self.stops.get()),
+            alignment::Progress::Stops(stops::Progress::Stopped(stop, _)) => {
+                (stop, self.stops.get())
+            }
+            alignment::Progress::Concluded(_) => return self.stage.set(Stage::Keeping),
+            _ => return,
+        };
+        self.stage.set(Stage::Aligning(done, planned));
+        self.show();
+    }
+
+    /// Shows how far the board is, where it has got further by a small part of the whole.
+    fn pass(&self) {
+        let now = Instant::now().as_millis();
+        if now >= self.latest.get() + self.expected / PARTS {
+            self.latest.set(now);
+            self.show();
+        }
+    }
+
+    /// Shows how far the board is.
+    fn show(&self) {
+        let now = Instant::now().as_millis().min(self.expected - 1);
+        let time = format!("{} of {} s", now / 1000, self.expected / 1000);
+        let words = match self.stage.get() {
+            Stage::Preparing => format!("start, {time}"),
+            Stage::Aligning(done, planned) => format!("{} {done}/{planned}, {time}", self.steps),
+            Stage::Keeping => format!("keeping, {time}"),
+        };
+        self.shown.reached((now, self.expected), &words);
+    }
+}
+
+impl Observer for Terminal<'_> {
+    fn aligns(&self, input: &aligner::Input) {
+        self.inputs.iter().for_each(|inputs| inputs.aligns(input));
+        self.pass();
+    }
+
+    fn navigates(&self, input: &navigation::Input) {
+        self.inputs.iter().for_each(|inputs| inputs.navigates(input));
+        self.pass();
+    }
+
+    fn event(&self, at: Instant, event: &Event) {
+        if self.manner.shows_log() {
+            let seconds = at.as_micros() as f64 * 1e-6;
+            self.shown.log(&format!("{seconds:>11.6} {event}"));
+        }
+        if let Event::Alignment(progress) = event {
+            self.follow(progress);
+        }
+    }
+}

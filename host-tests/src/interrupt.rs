@@ -1,0 +1,52 @@
+//! Ctrl-C: it ends the program at once, or, while somebody heeds it, only asks him to come to an end; a second one does not
+//! ask.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether an end was asked for.
+static IS_ASKED: AtomicBool = AtomicBool::new(false);
+/// Whether somebody heeds it.
+static IS_HEEDED: AtomicBool = AtomicBool::new(false);
+/// How far the work is, in words.
+static HOW_FAR: Mutex<String> = Mutex::new(String::new());
+
+/// Listens to Ctrl-C from now on: where it must not wait, `end` gets the reason, and ends the program.
+///
+/// # Errors
+/// The system does not let it.
+pub fn listen(end: impl Fn(&str) + Send + 'static) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || {
+        let is_second = IS_ASKED.swap(true, Ordering::Relaxed);
+        if is_second || !IS_HEEDED.load(Ordering::Relaxed) {
+            end(&reason());
+        }
+    })
+}
+
+/// Why the work ends, and how far it was.
+#[must_use]
+pub fn reason() -> String {
+    match HOW_FAR.lock() {
+        Ok(words) if !words.is_empty() => format!("interrupted at {words}"),
+        _ => "interrupted".to_owned(),
+    }
+}
+
+/// Notes how far the work is.
+pub fn note(words: &str) {
+    if let Ok(mut noted) = HOW_FAR.lock() {
+        words.clone_into(&mut noted);
+    }
+}
+
+/// From now on the work looks whether an end is asked for.
+pub fn heed() {
+    IS_HEEDED.store(true, Ordering::Relaxed);
+}
+
+/// Whether an end is asked for.
+#[must_use]
+pub fn is_asked() -> bool {
+    IS_ASKED.load(Ordering::Relaxed)
+}

@@ -1,0 +1,190 @@
+//! Help: grouped, narrow enough, with examples that run; completions, manual pages, and the version.
+
+use std::fs;
+use std::process::Output;
+
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_misuse, code, command, meridian, object, text};
+
+/// The commands, and the platforms of `run`.
+const COMMANDS: [&str; 15] = [
+    "",
+    "run",
+    "run stage",
+    "run two-frame",
+    "run turntable",
+    "run vehicle",
+    "run spin",
+    "replay",
+    "plan",
+    "allan",
+    "campaign",
+    "emulate",
+    "log",
+    "completions",
+    "man",
+];
+
+/// Columns of a narrow terminal.
+const COLUMNS: usize = 80;
+
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').filter(|word| !word.is_empty()).collect()
+}
+
+/// The help of a command on a narrow terminal.
+fn help(name: &str) -> String {
+    let output = command()
+        .args(words(name))
+        .arg("--help")
+        .env("COLUMNS", COLUMNS.to_string())
+        .output()
+        .expect("it starts");
+    assert_eq!(code(&output), 0, "{name}");
+    text(&output.stdout)
+}
+
+/// The examples of a help, without the program's name.
+fn examples(help: &str) -> Vec<String> {
+    let (_, behind) = help.split_once("Examples:\n").unwrap_or_default();
+    let lines = behind.lines().filter_map(|line| line.strip_prefix("  meridian"));
+    lines.map(|line| line.trim().to_owned()).collect()
+}
+
+#[test]
+fn no_line_of_any_help_is_wider_than_a_narrow_terminal() {
+    for name in COMMANDS {
+        for line in help(name).lines() {
+            assert!(line.chars().count() <= COLUMNS, "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn every_help_has_examples_and_the_first_one_says_what_the_exit_codes_mean() {
+    for name in COMMANDS {
+        let help = help(name);
+        let examples = examples(&help);
+        assert!((1..=4).contains(&examples.len()), "{name}: {help}");
+        let command = name.split(' ').next().unwrap_or_default();
+        assert!(examples.iter().all(|example| example.starts_with(command)), "{name}");
+    }
+    let whole = help("");
+    assert_eq!(examples(&whole).len(), 3);
+    for part in ["The exit code is 0 with a result, 1 where it is refused", "2 for misuse"] {
+        assert!(whole.contains(part), "{whole}");
+    }
+}
+
+#[test]
+fn options_stand_under_their_headings() {
+    for (name, headings) in [
+        ("run stage", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"][..]),
+        ("run two-frame", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
+        ("run turntable", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
+        ("run vehicle", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
+        ("run spin", &["Course", "Chance, disturbances and faults", "Output"]),
+        ("replay", &["Arguments", "Output"]),
+    ] {
+        let help = help(name);
+        for heading in headings {
+            assert!(help.contains(&format!("\n{heading}:\n")), "{name}: {heading} in {help}");
+        }
+        let is_heading = |line: &&str| line.ends_with(':') && !line.starts_with(' ');
+        let found: Vec<&str> = help.lines().filter(is_heading).collect();
+        // Examples come behind them.
+        let last = found.iter().rev().nth(1);
+        assert_eq!(last, Some(&"Output:"), "{name}: {found:?}");
+    }
+}
+
+/// A folder with what examples name.
+fn named() -> Scratch {
+    let scratch = Scratch::new("examples");
+    for (name, of) in [
+        ("stage.csv.gz", "stepwise-circle"),
+        ("drive.csv.gz", "drive-fog-three-stops"),
+        ("rest.csv.gz", "static-gyro-1h"),
+    ] {
+        fs::copy(stored(of), scratch.path(name)).expect("it is ours");
+    }
+    fs::create_dir(scratch.folder().join("recordings")).expect("the folder is ours");
+    for name in ["stepwise-circle.csv.gz", "rotating-gyro.csv.gz"] {
+        let path = stored(name.trim_end_matches(".csv.gz"));
+        fs::copy(path, scratch.path(&format!("recordings/{name}"))).expect("it is ours");
+    }
+    scratch
+}
+
+/// Runs an example, without what a shell does of it.
+fn run(scratch: &Scratch, example: &str) -> Output {
+    let line = example.split(" > ").next().unwrap_or_default();
+    let input = fs::File::open(scratch.path("stage.csv.gz")).expect("it is there");
+    let mut command = command();
+    command.current_dir(scratch.folder()).args(words(line)).stdin(input);
+    command.output().expect("it starts")
+}
+
+#[test]
+fn every_example_runs() {
+    let scratch = named();
+    for name in COMMANDS.iter().filter(|name| !matches!(**name, "emulate" | "log")) {
+        for example in examples(&help(name)) {
+            let output = run(&scratch, &example);
+            // A fault is refused, and so is a class of a campaign with few runs.
+            let fails = example.contains("--fault") || example.starts_with("campaign");
+            let most = i32::from(fails);
+            let said = text(&output.stderr);
+            assert!((0..=most).contains(&code(&output)), "meridian {example}: {said}");
+            assert!(!output.stdout.is_empty(), "meridian {example}");
+        }
+    }
+}
+
+#[test]
+fn examples_that_need_more_than_the_program_are_no_misuse() {
+    let scratch = named();
+    let output = run(&scratch, &examples(&help("log"))[0]);
+    assert_eq!(code(&output), 1, "{}", text(&output.stderr));
+    for example in examples(&help("emulate")) {
+        assert_misuse(&[&words(&example)[..], &["--no-such-option"]].concat(), "--no-such-option");
+    }
+}
+
+#[test]
+fn completions_of_every_shell_know_commands_and_options() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let output = meridian(&["completions", shell]);
+        assert_eq!(code(&output), 0, "{shell}");
+        let script = text(&output.stdout);
+        for word in ["replay", "turntable", "modulated-turns", "attitude-out", "completions"] {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    assert_misuse(&["completions", "sh"], "sh");
+}
+
+#[test]
+fn every_command_has_a_manual_page_and_what_is_none_is_named() {
+    for name in COMMANDS {
+        let output = meridian(&[&["man"][..], &words(name)].concat());
+        assert_eq!(code(&output), 0, "{name}");
+        let page = text(&output.stdout);
+        assert!(page.contains(".TH") && page.contains("Examples"), "{name}: {page}");
+    }
+    assert_misuse(&["man", "run", "ship"], "run has no command ship");
+    assert!(object(&meridian(&["man", "--json"]))["text"].is_string());
+}
+
+#[test]
+fn the_version_begins_with_that_of_the_package_and_names_the_commit_where_there_is_one() {
+    let version = text(&meridian(&["--version"]).stdout);
+    let package = concat!("meridian ", env!("CARGO_PKG_VERSION"));
+    let rest = version.trim_end().strip_prefix(package).expect("it begins so");
+    let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(')'));
+    let is_commit = |text: &str| {
+        let text = text.strip_suffix(", changed").unwrap_or(text);
+        text.len() >= 7 && text.chars().all(|digit| digit.is_ascii_hexdigit())
+    };
+    assert!(rest.is_empty() || commit.is_some_and(is_commit), "{version}");
+}

@@ -1,0 +1,141 @@
+//! Many recordings: a table, an array of the ordinary objects, and standard input.
+
+use std::fs::{self, File};
+use std::process::{Output, Stdio};
+
+use serde_json::Value;
+
+use crate::support::files::{Scratch, stored, unpacked};
+use crate::support::program::{assert_misuse, code, command, meridian, object, reason, text};
+
+/// Recordings of all kinds, with results and without.
+const NAMES: [&str; 6] = [
+    "stepwise-circle",
+    "drive-fog-1dph",
+    "static-gyro-1h",
+    "rotating-gyro",
+    "parked-swaying",
+    "spin-80rps-noisy",
+];
+
+/// A folder with recordings of all kinds.
+fn folder(name: &str) -> (Scratch, Vec<String>) {
+    let scratch = Scratch::new(name);
+    let mut names: Vec<String> = NAMES.iter().map(|name| format!("{name}.csv.gz")).collect();
+    names.sort();
+    for name in &names {
+        fs::copy(stored(name.trim_end_matches(".csv.gz")), scratch.path(name)).expect("it is ours");
+    }
+    scratch.with("notes.txt", "no recording");
+    scratch.with(".hidden.csv", "no recording");
+    fs::create_dir(scratch.folder().join("deeper.csv")).expect("the folder is ours");
+    let paths = names.iter().map(|name| scratch.path(name)).collect();
+    (scratch, paths)
+}
+
+/// The program with a file as its standard input.
+fn fed(arguments: &[&str], path: &str) -> Output {
+    let input = File::open(path).expect("it is there");
+    command().args(arguments).stdin(Stdio::from(input)).output().expect("it starts")
+}
+
+#[test]
+fn a_folder_is_all_recordings_in_it_by_name_and_each_object_is_that_of_the_recording_alone() {
+    let (scratch, paths) = folder("many");
+    let whole = meridian(&["replay", &scratch.folder().display().to_string(), "--json"]);
+    let listed: Vec<&str> =
+        ["replay", "--json"].into_iter().chain(paths.iter().map(String::as_str)).collect();
+    assert_eq!(object(&whole), object(&meridian(&listed)));
+    let results = object(&whole)["results"].as_array().cloned().expect("an array");
+    let alone: Vec<Value> =
+        paths.iter().map(|path| object(&meridian(&["replay", path, "--json"]))).collect();
+    for (mut alone, found) in alone.into_iter().zip(&results) {
+        // What could not be replayed names its file among others.
+        if alone["status"] == "failed" {
+            alone["file"] = found["file"].clone();
+        }
+        assert_eq!(&alone, found);
+    }
+    assert_eq!(results.len(), paths.len());
+    let bad = results.iter().filter(|result| result["status"] != "ok").count();
+    assert!(bad > 0);
+    assert_eq!((code(&whole), &object(&whole)["status"]), (1, &"refused".into()));
+    assert!(
+        reason(&whole).ends_with(&format!("{bad} of {} recordings gave no result", paths.len()))
+    );
+}
+
+#[test]
+fn the_table_has_a_row_for_each_recording_and_tells_what_each_found() {
+    let (scratch, paths) = folder("table");
+    let output = meridian(&["replay", &scratch.folder().display().to_string()]);
+    let table = text(&output.stdout);
+    for path in &paths {
+        let row = table.lines().find(|line| line.contains(path.as_str())).expect("it has a row");
+        let alone = meridian(&["replay", path, "--json"]);
+        let found = object(&alone);
+        match (found["azimuth_deg"].as_f64(), found["sigma_deg"].as_f64()) {
+            (Some(azimuth), Some(sigma)) => {
+                assert!(row.contains(&format!("{azimuth:.4}° ± {sigma:.4}°")), "{row}");
+            }
+            (None, Some(sigma)) => assert!(row.contains(&format!("± {sigma:.4}°")), "{row}"),
+            _ => assert!(row.contains(found["status"].as_str().expect("a status")), "{row}"),
+        }
+    }
+    assert!(paths.iter().is_sorted());
+}
+
+#[test]
+fn recordings_that_all_have_a_result_are_a_result() {
+    let (one, other) = (stored("stepwise-circle"), stored("rotating-gyro"));
+    let output = meridian(&["replay", &one, &other, "--json"]);
+    assert_eq!((code(&output), &object(&output)["status"]), (0, &"ok".into()));
+    assert!(object(&output).get("reason").is_none());
+}
+
+#[test]
+fn pages_and_attitudes_of_several_recordings_go_into_a_folder() {
+    let scratch = Scratch::new("pages");
+    let (one, other) = (stored("imu-broad-06"), stored("imu-broad-24"));
+    let (pages, tables) = (scratch.path("pages"), scratch.path("a/tables"));
+    let both = ["replay", &one, &other, "--method", "vertical"];
+    let output = meridian(&[&both[..], &["--report", &pages, "--attitude-out", &tables]].concat());
+    assert_eq!(code(&output), 0, "{}", reason(&output));
+    for name in ["imu-broad-06", "imu-broad-24"] {
+        assert!(scratch.read(&format!("pages/{name}.html")).starts_with("<!DOCTYPE"));
+        assert!(scratch.read(&format!("a/tables/{name}.csv")).starts_with("t_s,"));
+    }
+    assert_eq!(fs::read_dir(&pages).expect("it is there").count(), 2);
+    let file = scratch.path("page.html");
+    assert_misuse(&[&both[..], &["--report", &file]].concat(), "name a folder");
+    let twice = ["replay", &one, &one, "--method", "vertical", "--report", &pages];
+    assert_misuse(&twice, "two recordings would have the file imu-broad-06");
+}
+
+#[test]
+fn standard_input_replays_as_the_file_does_whether_it_is_compressed_or_not() {
+    let scratch = Scratch::new("input");
+    let plain = scratch.with("stage.csv", unpacked("stepwise-circle"));
+    let run = ["run", "--rate", "50", "--dwell", "2", "--hold", "20", "--record"];
+    let (lines, packed) = (scratch.path("run.jsonl"), scratch.path("run.jsonl.gz"));
+    for path in [&lines, &packed] {
+        assert_eq!(code(&meridian(&[&run[..], &[path]].concat())), 0);
+    }
+    for path in [&plain, &stored("stepwise-circle"), &lines, &packed] {
+        let mut file = object(&meridian(&["replay", path, "--json"]));
+        let input = fed(&["replay", "-", "--json"], path);
+        assert_eq!(code(&input), 0, "{path}: {}", reason(&input));
+        file["file"] = "standard input".into();
+        assert_eq!(object(&input), file, "{path}");
+    }
+}
+
+#[test]
+fn standard_input_is_refused_as_a_file_is_and_read_once() {
+    let scratch = Scratch::new("bad-input");
+    let empty = scratch.with("empty", "");
+    let output = fed(&["replay", "-"], &empty);
+    assert_eq!(code(&output), 1);
+    assert!(reason(&output).contains("standard input: the file is empty"), "{}", reason(&output));
+    assert_misuse(&["replay", "-", "-"], "standard input can be read once");
+}

@@ -1,0 +1,47 @@
+//! A run that aligns itself anew tells what it found, beside what it kept, also where it ends while it aligns.
+
+use crate::support::files::Scratch;
+use crate::support::program::{code, meridian, object, reason, text};
+
+/// Runs that end while another alignment is under way, or before one begins.
+const RUNS: [&str; 4] = [
+    "stage --rate 50 --dwell 2 --realign --hold 420",
+    "two-frame --rate 50 --dwell 2 --passes 1 --realign --hold 420",
+    "turntable --rate 50 --turns 3 --realign --hold 480",
+    "vehicle --rate 50 --stops 2 --stop-seconds 30 --realign --hold 420",
+];
+
+#[test]
+fn the_alignment_stands_beside_what_was_kept() {
+    for run in RUNS {
+        let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
+        let output = meridian(&[&arguments[..], &["--json"]].concat());
+        assert_eq!(code(&output), 0, "{run}: {}", reason(&output));
+        let found = object(&output);
+        assert_ne!(found["method"], "kept", "{run}");
+        for key in ["azimuth_deg", "sigma_deg", "error_deg"] {
+            assert!(found[key].is_number() && found["kept"][key].is_number(), "{run}: {key}");
+        }
+        assert!(found["budget"].is_object() && found["positions"].is_u64(), "{run}");
+        let sigmas = found["error_deg"].as_f64().zip(found["sigma_deg"].as_f64());
+        assert!(sigmas.is_some_and(|(error, sigma)| error.abs() < 5.0 * sigma), "{run}");
+        let told = text(&meridian(&arguments).stdout);
+        for part in ["azimuth of body x", "Error budget", "Kept for"] {
+            assert!(told.contains(part), "{run}: {part} in {told}");
+        }
+    }
+}
+
+#[test]
+fn its_replay_says_the_same() {
+    let scratch = Scratch::new("realigned");
+    for run in RUNS {
+        let path = scratch.path("run.jsonl");
+        let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
+        let ran = object(&meridian(&[&arguments[..], &["--json", "--record", &path]].concat()));
+        let replayed = object(&meridian(&["replay", &path, "--json"]));
+        for key in ["method", "azimuth_deg", "sigma_deg", "budget", "kept"] {
+            assert_eq!(ran[key], replayed[key], "{run}: {key}");
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! How much is told: progress without being asked, the log where it is asked for, errors alone where that is.
+
+use crate::support::files::stored;
+use crate::support::program::{assert_misuse, code, meridian, object, text};
+
+/// Runs and replays with a result.
+fn commands() -> Vec<Vec<String>> {
+    let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let stage = stored("stepwise-nudged");
+    vec![
+        words("run --rate 50 --dwell 2 --positions 6 --hold 10"),
+        words("run two-frame --rate 50 --dwell 2 --passes 2"),
+        words("run spin --flight-seconds 0.5"),
+        vec!["replay".to_owned(), stage],
+        words("plan --arw 0.001 --latitude 48 --sigma 0.05"),
+    ]
+}
+
+fn told(arguments: &[String], more: &[&str]) -> std::process::Output {
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).chain(more.to_vec()).collect();
+    let output = meridian(&arguments);
+    assert_eq!(code(&output), 0, "{arguments:?}: {}", text(&output.stderr));
+    output
+}
+
+#[test]
+fn a_quiet_command_with_a_result_says_nothing_on_standard_error_and_two_lines_at_most() {
+    for arguments in commands() {
+        for quiet in ["-q", "--quiet"] {
+            let output = told(&arguments, &[quiet]);
+            assert_eq!(text(&output.stderr), "", "{arguments:?}");
+            let lines = text(&output.stdout).lines().count();
+            assert!((1..=2).contains(&lines), "{arguments:?}: {}", text(&output.stdout));
+        }
+    }
+}
+
+#[test]
+fn the_log_of_a_run_is_shown_only_where_it_is_asked_for() {
+    for arguments in commands().iter().take(3) {
+        let usual = text(&told(arguments, &[]).stderr);
+        let verbose = text(&told(arguments, &["-v"]).stderr);
+        let part = "identity and self-test passed";
+        assert!(!usual.contains(part) && verbose.contains(part), "{arguments:?}: {usual}");
+        assert!(usual.lines().all(|line| line.contains(" %, ")), "{arguments:?}: {usual}");
+    }
+}
+
+#[test]
+fn progress_has_its_part_and_the_time_that_is_left_from_the_first_line() {
+    for arguments in commands().iter().take(2) {
+        let usual = text(&told(arguments, &[]).stderr);
+        let first = usual.lines().next().unwrap_or_default();
+        let rest = first.split(" %, ").nth(1).unwrap_or_default();
+        let left = rest.split(' ').next().unwrap_or_default();
+        let digits = left.split(':').all(|part| part.parse::<u32>().is_ok());
+        assert!(digits && rest.contains(" left"), "{arguments:?}: {usual}");
+    }
+}
+
+#[test]
+fn who_reads_objects_gets_no_progress_and_the_same_object_however_much_is_told() {
+    for arguments in commands() {
+        let usual = told(&arguments, &["--json"]);
+        assert_eq!(text(&usual.stderr), "", "{arguments:?}");
+        for how in ["-v", "-q"] {
+            assert_eq!(object(&told(&arguments, &["--json", how])), object(&usual));
+        }
+    }
+}
+
+#[test]
+fn a_refusal_is_said_to_a_quiet_command_too() {
+    let stage = stored("stepwise-circle");
+    let output = meridian(&["replay", &stage, "--latitude", "86", "-q"]);
+    assert_eq!(code(&output), 1);
+    assert_eq!(text(&output.stderr).lines().count(), 1);
+    assert!(text(&output.stderr).contains("latitude 86.00° is beyond ±85°"));
+}
+
+#[test]
+fn quiet_and_verbose_do_not_go_together_wherever_they_stand() {
+    for wrong in [&["-q", "-v"][..], &["-v", "run", "-q"], &["run", "--quiet", "--verbose"]] {
+        assert_misuse(wrong, "--quiet");
+    }
+}
+
+#[test]
+fn options_of_every_command_name_no_platform() {
+    for before in [&[][..], &["run"], &["run", "stage"]] {
+        let output = meridian(&[before, &["-q"]].concat());
+        assert_eq!(output, meridian(&["run", "stage", "-q"]));
+    }
+}
