@@ -57,17 +57,34 @@ impl Default for VirtualClock {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cadence {
     /// From when periods are counted.
-    pub(crate) since: Instant,
+    since: Instant,
     /// How many periods after that the next output comes.
-    pub(crate) count: u64,
+    count: u64,
     /// Outputs per second, Hz, > 0.
-    pub(crate) hertz: f64,
+    hertz: f64,
+    /// When the next output comes: it is asked for far more often than it changes.
+    next: Instant,
 }
 
 impl Cadence {
+    /// Outputs whose next one comes so many periods after a moment.
+    pub(crate) fn new(since: Instant, count: u64, hertz: f64) -> Self {
+        Self { since, count, hertz, next: period(since, count, hertz) }
+    }
+
     /// When the next output comes.
     pub(crate) fn next(&self) -> Instant {
-        period(self.since, self.count, self.hertz)
+        self.next
+    }
+
+    /// Outputs per second, Hz.
+    pub(crate) fn hertz(&self) -> f64 {
+        self.hertz
+    }
+
+    /// The next output has come.
+    pub(crate) fn pass(&mut self) {
+        *self = Self::new(self.since, self.count + 1, self.hertz);
     }
 }
 

@@ -228,7 +228,7 @@ pub fn suggestion(noise: GyroNoise) -> Option<(Planned, String)> {
     let Planned { burov, optimum, .. } = &planned;
     let burov = burov.map(|burov| {
         let OfBurov { positions, rate_error_deg_h: error, .. } = burov;
-        format!("; Burov's eq. (1): {positions} positions, rate error {error:.3e} °/h")
+        format!("; Burov's autocompensation: {positions} positions, rate error {error:.3e} °/h")
     });
     let words = format!(
         "in {SUGGESTED_SECONDS} s with {SUGGESTED_ROTATION} s a rotation: {} positions of {:.2} s \

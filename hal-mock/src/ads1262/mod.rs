@@ -155,7 +155,7 @@ impl Ads1262 {
         let (latency, hertz) = (timing::latency(filter, rate, delay), timing::hertz(rate));
         self.clear();
         if !self.chip_fault.is_dead {
-            self.running = Some(Cadence { since: at + latency, count: 0, hertz });
+            self.running = Some(Cadence::new(at + latency, 0, hertz));
         }
     }
 
@@ -203,7 +203,7 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
             Selected::Gyro(sign) => sign * environment.volts(now),
             Selected::Own(volts) => volts,
         };
-        running.count += 1;
+        running.pass();
         let (_, count) = self.ended;
         self.ended = (Some(now), count.wrapping_add(1));
         self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);

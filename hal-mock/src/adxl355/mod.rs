@@ -178,8 +178,8 @@ impl Adxl355 {
         let now = measuring.next();
         let force_g = environment.force_g(now);
         let felt = Felt { landed: now, force_g, temperature_c: environment.temperature_c(now) };
-        measuring.count += 1;
-        self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
+        measuring.pass();
+        self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz()) as u64));
         self.measuring = Some(measuring);
         self.release();
         if self.course.is_selected {
@@ -330,7 +330,7 @@ impl Adxl355 {
     fn switch(&mut self, now: Instant) {
         if self.at(POWER_CTL) & STANDBY == 0 {
             let hertz = 4000.0 / f64::from(1_u32 << (self.at(FILTER) & 0x0F));
-            self.measuring.get_or_insert(Cadence { since: now, count: 1, hertz });
+            self.measuring.get_or_insert(Cadence::new(now, 1, hertz));
         } else {
             self.measuring = None;
             self.waiting = None;

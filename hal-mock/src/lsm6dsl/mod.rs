@@ -141,7 +141,7 @@ impl Lsm6dsl {
             environment.rate_rad_s(now).map(|rate| (rate.to_degrees() + pushed) * 1e3 / unit)
         };
         let Some(measuring) = &mut self.measuring[sensor] else { return };
-        measuring.outputs.count += 1;
+        measuring.outputs.pass();
         let is_settled = now >= measuring.settled;
         let first = [OUTX_L_XL, OUTX_L_G][sensor];
         for (axis, count) in (0..).zip(counts) {
@@ -228,7 +228,7 @@ impl Lsm6dsl {
     fn switch(&mut self, sensor: usize, now: Instant) {
         let control = self.at([CTRL1_XL, CTRL2_G][sensor]);
         self.measuring[sensor] = hertz(control).map(|hertz| Measuring {
-            outputs: Cadence { since: now, count: 1, hertz: hertz * self.clock },
+            outputs: Cadence::new(now, 1, hertz * self.clock),
             settled: now + TURN_ON,
         });
     }

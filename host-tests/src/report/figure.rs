@@ -182,10 +182,42 @@ impl From<(f64, f64)> for Point {
     }
 }
 
+/// Most points of a series that a figure draws.
+const MOST: usize = 1200;
+
+/// The least and the greatest point of a stretch, in their order; its end where it is interrupted.
+fn extremes(stretch: &[Point]) -> Vec<Point> {
+    let is_broken = |point: &&Point| !point.x.is_finite() || !point.y.is_finite();
+    let places = stretch.iter().enumerate().filter(|(_, point)| !is_broken(point));
+    let by_height = |a: &(usize, &Point), b: &(usize, &Point)| a.1.y.total_cmp(&b.1.y);
+    let least = places.clone().min_by(by_height).map(|(place, _)| place);
+    let greatest = places.max_by(by_height).map(|(place, _)| place);
+    let mut kept: Vec<usize> = [least, greatest].into_iter().flatten().collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let broken = stretch.iter().find(is_broken);
+    kept.into_iter().map(|place| stretch[place]).chain(broken.copied()).collect()
+}
+
 /// Most points of a curve of which more could not be distinguished.
 pub const POINTS: usize = 600;
 
 impl Series {
+    /// As many of the points as can be distinguished: of a curve the least and the greatest of each stretch, so that no
+    /// peak is lost; of dots and bands points at even distances in their order.
+    pub(super) fn distinguished(&self) -> Vec<Point> {
+        if self.points.len() <= MOST {
+            return self.points.clone();
+        }
+        let is_curve =
+            !matches!(self.style, Style::Points | Style::Hollow | Style::Pale | Style::Band);
+        if !is_curve {
+            return self.points.iter().step_by(self.points.len().div_ceil(MOST)).copied().collect();
+        }
+        let stretches = self.points.chunks(self.points.len().div_ceil(MOST / 2));
+        stretches.flat_map(extremes).collect()
+    }
+
     /// A curve through (x, y).
     pub fn new(
         name: &str,

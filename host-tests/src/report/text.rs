@@ -60,8 +60,8 @@ fn of_summary(summary: &Summary, look: Look) -> String {
     let mut lines: Vec<[String; 2]> = Vec::new();
     lines.extend(found.iter().map(|[what, is]| [what.clone(), look.coloured(is, "1")]));
     lines.extend(named("reason", reasons));
-    lines.extend(named("noted", remarks));
     if look.extent != Extent::Result {
+        lines.extend(named("noted", remarks));
         lines.extend(facts.iter().cloned());
     }
     if look.extent == Extent::Whole {

@@ -112,7 +112,7 @@ fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
 fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let of_run = |run: &TurntableRun| {
         let (session, assumed) = (run.replay.clone(), Vec::new());
-        let replay = rotating::Replay { session, zero_s: 0.0, assumed };
+        let replay = rotating::Replay { session, zero_s: 0.0, assumed, is_followed: false };
         reported(&replay, &replay.session.conclusion())
     };
     let plain = Trial::of(scenario).fault(fault).run().expect("it is possible");

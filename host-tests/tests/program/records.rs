@@ -121,11 +121,13 @@ fn text_and_page_of_replayed_inputs_say_what_was_kept() {
     let run = ["run", "turntable", "--rate=50", "--turns=3", "--hold=60", "--record", &path];
     let said = text(&meridian(&run).stdout);
     let (output, drawn) = page(&["replay", &path]);
-    // Below the title everything but how the board did.
-    let said = said.split_once("\n  The simulated board").map_or("", |(said, _)| said);
-    let below = |text: &str| text.trim().lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    // Between the title and what else there is.
+    let below = |text: &str| {
+        let (said, _) = text.split_once("\n  --verbose adds").expect("there is more");
+        said.trim().lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+    };
     let replayed = text(&output.stdout);
-    assert_eq!(below(&replayed), below(said));
+    assert_eq!(below(&replayed), below(&said));
     assert!(replayed.contains(&format!("True north found in {path}")), "{replayed}");
     assert_drawn(&drawn, &["Error of the kept azimuth", "true pitch"]);
 }

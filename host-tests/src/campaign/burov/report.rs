@@ -63,7 +63,7 @@ fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) ->
 }
 
 fn over_positions(title: &str, label: &str, curve: Vec<(f64, f64)>) -> Part {
-    let series = Series::new("eq. (1)", Style::LineAndPoints, curve);
+    let series = Series::new("autocompensation", Style::LineAndPoints, curve);
     Figure::new(title, ["number of positions n", ""], [label, "°/h"], [series]).into()
 }
 
@@ -74,7 +74,7 @@ fn change(errors: &[(u32, f64)]) -> Vec<(f64, f64)> {
 
 fn of_curve(errors: &[(u32, f64)]) -> Part {
     let near: Vec<_> = errors.iter().filter(|(n, _)| NEAR.contains(n)).collect();
-    Columns::of("Burov, eq. (1): error of a rate after autocompensation, OIUS-1000", &near)
+    Columns::of("Burov: error of a rate after autocompensation, OIUS-1000", &near)
         .column("positions n", |(n, _)| n)
         .fixed("Δω, 10⁻³ °/h, 1σ", 4, |(_, error)| error * 1e3)
         .into()

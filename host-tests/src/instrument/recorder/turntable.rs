@@ -31,9 +31,8 @@ impl Recorded for TurntableScenario {
         writeln!(head, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
         recording::Given::new(setting, procedure, ended).write(to, &head)?;
         writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;
-        let start = of.first().map_or(0.0, |first| first.stage.rad());
         turning_rows(of).iter().try_for_each(|it| {
-            let (angle, is_new) = (start + it.stage_rad, f64::from(it.force_is_new));
+            let (angle, is_new) = (it.stage_rad, f64::from(it.force_is_new));
             let [along, across] = [it.force_m_s2, it.across_m_s2.unwrap_or_default()];
             let turning = it.stage_rate_rad_s;
             row(to, &[it.time_s, angle, turning, it.rate_rad_s, along, across, is_new])
@@ -62,11 +61,12 @@ pub fn given_by<T: Store>(scenario: &TurntableScenario, store: &mut T) -> Option
     Some(given)
 }
 
-/// The rows of a recording of these samples, their angles from that of the first one on: whole turns counted, the
+/// The rows of a recording of these samples, their angles from that of the first one on with whole turns counted, the
 /// platform's rate from sample to sample, the force the latest.
 #[must_use]
 pub fn turning_rows(samples: &[Sample]) -> Vec<RotatingRow> {
     let (mut steps, mut force) = (0, [0.0; 3]);
+    let start = samples.first().map_or(0.0, |first| first.stage.rad());
     let before = samples.first().into_iter().chain(samples);
     let row = |((line, sample), before): ((u64, &Sample), &Sample)| {
         let turned = (sample.stage - before.stage).0.cast_signed();
@@ -76,7 +76,7 @@ pub fn turning_rows(samples: &[Sample]) -> Vec<RotatingRow> {
         RotatingRow {
             line,
             time_s: seconds(sample.time),
-            stage_rad: steps as f64 * Angle::STEP,
+            stage_rad: start + steps as f64 * Angle::STEP,
             stage_rate_rad_s: f64::from(turned) * Angle::STEP / lasted_s,
             rate_rad_s: rate(sample.rate),
             force_m_s2: force[0],

@@ -84,11 +84,11 @@ impl Replay {
     /// The session once more, until a time since its zero, with the stops that it has found until then.
     pub(crate) fn until(&self, rows: &[ImuRow], end: Seconds) -> Option<Session> {
         let (setting, procedure) = (self.session.setting, self.session.procedure.clone());
-        let until = |stop: &&Stop| stop.to.0 <= end.0;
-        let stops = self.session.stops().iter().filter(until);
+        let stops = self.session.stops().iter().filter(|stop| stop.from.0 < end.0);
+        let until = |stop: &Stop| [stop.from, Seconds(stop.to.0.min(end.0))];
         let rests = match procedure.rests {
             Rests::Whole => Rests::Whole,
-            _ => Rests::Stated(stops.clone().map(|stop| [stop.from, stop.to]).collect()),
+            _ => Rests::Stated(stops.clone().map(until).collect()),
         };
         let displacements = stops.map_while(|stop| stop.displacement).collect();
         let period_s = procedure.sample_seconds;

@@ -6,12 +6,13 @@ use orientation::planner::FEWEST;
 
 use super::{degrees, noise_in_words};
 use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
-use crate::report::{Lines, Part, Report};
+use crate::report::{Lines, Part, Report, Summary};
 
 /// The report for terminal and page: the answer, what was asked, and both schedules.
 pub fn report(request: &Request, planned: &Planned) -> Report {
-    let parts = [asked(request), burov(planned), optimum(planned)].map(Part::from);
-    Report::new(answer(planned), parts)
+    let parts = [optimum(planned), burov(planned)].map(Part::from);
+    let summary = Summary { facts: asked(request).lines, ..Summary::default() };
+    Report::new(answer(planned), parts).headed(summary)
 }
 
 /// The answer in a line: the best schedule, its σ, and its time.
@@ -26,7 +27,7 @@ fn sigmas(sigma_deg: f64) -> String {
 }
 
 fn burov(planned: &Planned) -> Lines {
-    let lines = Lines::new("Burov's eq. (1): the error of a rate, 1σ");
+    let lines = Lines::new("Burov's autocompensation: the error of a rate, 1σ");
     let Some(burov) = &planned.burov else {
         let least = planned.burov_least_sigma_deg.unwrap_or(f64::NAN);
         return lines.with("out of reach", format!(

@@ -34,7 +34,7 @@ fn autocompensation(request: &Request, seconds: f64) -> Figure {
     let best = best.map(|best| (f64::from(best.positions), best.rate_error.degrees_per_hour()));
     let series =
         [Series::new("rate error", Style::Line, curve), Series::new("best", Style::Points, best)];
-    let title = format!("Burov's eq. (1) in {seconds:.0} s");
+    let title = format!("Burov's autocompensation in {seconds:.0} s");
     Figure::new(title, ["number of positions", ""], ["rate error, 1σ", "°/h"], series)
 }
 

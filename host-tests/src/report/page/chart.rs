@@ -13,6 +13,11 @@ use crate::report::{Figure, Point, Scale, Series, Shape, Style};
 const SIZE: f64 = 10_000.0;
 /// Half the width of an error bar's ends.
 const BAR: i64 = 40;
+/// Numbers that an axis bears at most, and that of a low figure.
+pub(super) const TICKS: f64 = 8.0;
+const LOW_TICKS: f64 = 4.0;
+/// Where the right end of an axis begins, %.
+const END: f64 = 94.0;
 /// How many colours the page's style has for series.
 const COLOURS: usize = 8;
 /// Digits of a value under the pointer.
@@ -34,6 +39,9 @@ struct Placed {
 
 /// The figure with its heading, its legend and the numbers behind it.
 pub(super) fn figure(figure: &Figure) -> String {
+    let thinned = |series: &Series| Series { points: series.distinguished(), ..series.clone() };
+    let series = figure.series.iter().map(thinned).collect();
+    let figure = &Figure { series, ..figure.clone() };
     let heading = element("figcaption", &figure.title);
     let Some(frame) = Frame::around(figure) else {
         let nothing = element("p", "There are no points to draw.");
@@ -57,9 +65,10 @@ impl Frame {
             let [low, high] = limits.unwrap_or([y; 2]);
             [y, low, high]
         });
+        let ticks = if figure.shape == Shape::Low { LOW_TICKS } else { TICKS };
         let mut frame = Self {
-            x: Span::of(&figure.x, points().map(|point| point.x))?,
-            y: Span::of(&figure.y, heights)?,
+            x: Span::of(&figure.x, TICKS, points().map(|point| point.x))?,
+            y: Span::of(&figure.y, ticks, heights)?,
         };
         if figure.shape == Shape::Map {
             Span::match_units(&mut frame.x, &mut frame.y);
@@ -108,12 +117,10 @@ impl Frame {
 
     /// The numbers below the horizontal axis; a phone leaves out every other one.
     fn x_labels(&self) -> String {
-        let labels = self.x.major.iter().enumerate().map(|(index, place)| {
-            let left = 100.0 * self.x.part(*place);
-            let class = if index % 2 == 1 { " class=\"odd\"" } else { "" };
-            let label = escaped(&self.x.label(*place));
-            format!("<span{class} style=\"left:{left:.2}%\">{label}</span>")
-        });
+        let labels =
+            self.x.major.iter().enumerate().map(|(index, place)| {
+                tick(index, 100.0 * self.x.part(*place), &self.x.label(*place))
+            });
         labels.collect()
     }
 
@@ -233,6 +240,13 @@ impl Frame {
             "series": series,
         })
     }
+}
+
+/// A number below an axis, at so many per cent of its length. At the right end it stands left of its place.
+pub(super) fn tick(index: usize, left: f64, label: &str) -> String {
+    let odd = if index % 2 == 1 { "odd " } else { "" };
+    let end = if left > END { "end" } else { "" };
+    format!("<span class=\"{odd}{end}\" style=\"left:{left:.2}%\">{}</span>", escaped(label))
 }
 
 /// A line through these corners, each from the one before.

@@ -8,9 +8,6 @@ use crate::report::{Axis, Scale};
 /// The part of its reach that an axis leaves free at each end.
 const MARGIN: f64 = 0.03;
 
-/// Ticks that an axis bears at most.
-const TICKS: f64 = 8.0;
-
 /// Ticks that a logarithmic axis bears at least.
 const FEWEST_TICKS: usize = 3;
 
@@ -32,6 +29,8 @@ pub(super) struct Span {
     /// Where a faint line stands.
     pub minor: Vec<f64>,
     scale: Scale,
+    /// Ticks that it bears at most.
+    most: f64,
     step: f64,
     /// Whether the ticks of a logarithmic axis are multiples of powers of ten.
     is_in_powers: bool,
@@ -47,8 +46,8 @@ pub(super) fn place(scale: Scale, value: f64) -> f64 {
 }
 
 impl Span {
-    /// An axis for these places, or as far as it is told to reach; `None` where no place is finite.
-    pub fn of(axis: &Axis, places: impl Iterator<Item = f64>) -> Option<Self> {
+    /// An axis of at most so many ticks for these places, or as far as it is told to reach; `None` where no place is finite.
+    pub fn of(axis: &Axis, ticks: f64, places: impl Iterator<Item = f64>) -> Option<Self> {
         let finite = places.filter(|place| place.is_finite());
         let reach = |[low, high]: [f64; 2], place| [f64::min(low, place), f64::max(high, place)];
         let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], reach);
@@ -57,11 +56,11 @@ impl Span {
         }
         if let Some(reach) = axis.reach {
             let [low, high] = reach.map(|value| place(axis.scale, value));
-            return Some(Self::between(axis.scale, low, high));
+            return Some(Self::between(axis.scale, ticks, [low, high]));
         }
         let width = high - low;
         let margin = if width > 0.0 { MARGIN * width } else { half_width(axis.scale, low) };
-        Some(Self::between(axis.scale, low - margin, high + margin))
+        Some(Self::between(axis.scale, ticks, [low - margin, high + margin]))
     }
 
     /// Widens the shorter of two axes about its middle until a unit is as long on both, in a square.
@@ -69,7 +68,8 @@ impl Span {
         let width = (x.high - x.low).max(y.high - y.low);
         for span in [x, y] {
             let middle = 0.5 * (span.low + span.high);
-            *span = Self::between(span.scale, middle - 0.5 * width, middle + 0.5 * width);
+            let reach = [middle - 0.5 * width, middle + 0.5 * width];
+            *span = Self::between(span.scale, span.most, reach);
         }
     }
 
@@ -93,10 +93,10 @@ impl Span {
     }
 
     /// An axis that reaches so far.
-    fn between(scale: Scale, low: f64, high: f64) -> Self {
-        let step = round_step((high - low) / TICKS);
+    fn between(scale: Scale, most: f64, [low, high]: [f64; 2]) -> Self {
+        let step = round_step((high - low) / most);
         let (major, minor) = (Vec::new(), Vec::new());
-        let span = Self { low, high, major, minor, scale, step, is_in_powers: false };
+        let span = Self { low, high, major, minor, scale, most, step, is_in_powers: false };
         match scale {
             Scale::Linear => Self { major: ticks(low, high, step), ..span },
             Scale::Logarithmic => span.logarithmic(),
@@ -116,7 +116,7 @@ impl Span {
             self.major = ticks(self.low, self.high, self.step);
         } else if self.major.len() < FEWEST_TICKS {
             let [low, high] = [self.low, self.high].map(|place| 10_f64.powf(place));
-            self.step = round_step((high - low) / TICKS);
+            self.step = round_step((high - low) / self.most);
             self.is_in_powers = false;
             self.major = ticks(low, high, self.step).into_iter().map(f64::log10).collect();
         }

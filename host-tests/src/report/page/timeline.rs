@@ -1,5 +1,6 @@
 //! Draws what was done when: lanes over a common time.
 
+use super::chart::{TICKS, tick};
 use super::markup::{element, escaped};
 use super::span::Span;
 use crate::report::{Axis, Kind, Lane, Stretch, Timeline};
@@ -11,7 +12,9 @@ const LEAST: f64 = 0.3;
 pub(super) fn timeline(timeline: &Timeline) -> String {
     let spans = || timeline.lanes.iter().flat_map(|lane| &lane.spans);
     let times = spans().flat_map(|span| [span.from_s, span.to_s]);
-    let Some(span) = Span::of(&Axis::from(["time", "s"]), times) else { return String::new() };
+    let Some(span) = Span::of(&Axis::from(["time", "s"]), TICKS, times) else {
+        return String::new();
+    };
     let lanes: String = timeline.lanes.iter().map(|lane| of_lane(lane, &span)).collect();
     let heading = element("figcaption", &timeline.title);
     let (legend, labels) = (legend(timeline), labels(&span));
@@ -58,10 +61,10 @@ fn of_stretch(stretch: &Stretch, span: &Span) -> String {
 
 /// The times below the lanes; a phone leaves out every other one.
 fn labels(span: &Span) -> String {
-    let labels = span.major.iter().enumerate().map(|(index, place)| {
-        let left = 100.0 * span.part(*place);
-        let class = if index % 2 == 1 { " class=\"odd\"" } else { "" };
-        format!("<span{class} style=\"left:{left:.2}%\">{}</span>", span.label(*place))
-    });
+    let labels = span
+        .major
+        .iter()
+        .enumerate()
+        .map(|(index, place)| tick(index, 100.0 * span.part(*place), &span.label(*place)));
     labels.collect()
 }

@@ -29,11 +29,12 @@ fn the_kind_chooses_the_method_and_the_object_has_every_figure() {
 
 #[test]
 fn the_block_tells_roll_limit_and_every_method() {
-    let output = meridian(&["replay", &stored("spin-100rps")]);
+    let output = meridian(&["replay", &stored("spin-100rps"), "--verbose"]);
     let block = text(&output.stdout);
     for words in [
         "Roll of the spinning body",
-        "100 turns and 152.50",
+        "152.50",
+        "100 since the beginning",
         "Cramér–Rao",
         "gyro's scale error +",
         "extrema",
@@ -50,7 +51,8 @@ fn the_page_draws_errors_sigma_lift_and_scale() {
     let (_, page) = page(&["replay", &stored("spin-100rps")]);
     let titles = [
         "Roll error of the methods",
-        "between corrections (Fig. 8)",
+        "between corrections (Nekrasova 2017, Fig. 8)",
+        "Error of the roll by phase lock, and its stated 1σ",
         "σ of the roll",
         "Lift",
         "Scale error of the gyro",

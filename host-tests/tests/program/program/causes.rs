@@ -177,7 +177,7 @@ fn a_platform_that_is_nearly_level_tells_what_its_accelerometer_does_not_show() 
     for (name, factor) in [("rotating-gyro", 1.0), ("rotating-gyro", IN_G)] {
         let scratch = Scratch::new("light");
         let path = scratch.with("x.csv", scaled(&unpacked(name), &["a_m_s2"], factor));
-        let reported = text(&meridian(&["replay", &path]).stdout);
+        let reported = text(&meridian(&["replay", &path, "-v"]).stdout);
         for words in ["accelerometer in m/s²", "sense of the platform,"] {
             assert!(reported.contains(words), "{reported}");
         }

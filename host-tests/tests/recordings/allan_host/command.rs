@@ -85,7 +85,7 @@ fn the_curve_is_four_arrays_of_one_length_within_its_limits() {
 
 #[test]
 fn every_number_has_its_unit() {
-    let output = allan(&[&hour()]);
+    let output = allan(&[&hour(), "--verbose"]);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
     for unit in ["arcsec", "°/√h", "°/h", "°/h/√h", "°/h²", "τ, s", "Hz", "68.3 %"] {

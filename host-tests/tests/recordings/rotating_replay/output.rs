@@ -68,7 +68,7 @@ fn numbers_are_reported_where_they_mean_something() {
 
 #[test]
 fn the_block_prints_the_limit_the_misalignment_and_every_stage() {
-    let output = replayed(GYRO, &[]);
+    let output = replayed(GYRO, &["-v"]);
     let text = String::from_utf8_lossy(&output.stdout);
     for words in [
         "azimuth of body x",
@@ -83,7 +83,7 @@ fn the_block_prints_the_limit_the_misalignment_and_every_stage() {
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }
-    let met = replayed(MET, &[]);
+    let met = replayed(MET, &["-v"]);
     let text = String::from_utf8_lossy(&met.stdout);
     assert!(
         text.contains("one speed alone") && text.contains("g-sensitivity and")

@@ -76,7 +76,7 @@ fn numbers_are_reported_where_they_mean_something() {
 
 #[test]
 fn the_block_prints_both_ends_the_paper_and_the_stops() {
-    let output = replayed(THREE, &[]);
+    let output = replayed(THREE, &["-v"]);
     let text = String::from_utf8_lossy(&output.stdout);
     for words in [
         "azimuth of body x",

@@ -83,7 +83,7 @@ fn inclination_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
-    let block = text(&replayed("imu-broad-06", &[]).stdout);
+    let block = text(&replayed("imu-broad-06", &["-v"]).stdout);
     for words in [
         "Pitch and roll kept in",
         "° (1σ)",
@@ -97,7 +97,7 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
     ] {
         assert!(block.contains(words), "{words}: {block}");
     }
-    let known = text(&replayed("imu-broad-06", &["--latitude", "52.5"]).stdout);
+    let known = text(&replayed("imu-broad-06", &["--latitude", "52.5", "-v"]).stdout);
     assert!(!known.contains("latitude 45°"), "{known}");
     // A header that knows its gyros is believed.
     let fog = text(&replayed("drive-fog-1dph", &[]).stdout);

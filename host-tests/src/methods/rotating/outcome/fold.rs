@@ -135,7 +135,8 @@ pub(super) fn figures(
         let (from, to) = used(stretch, average)?;
         let part = Part::between(rows, replay.zero_s + from, replay.zero_s + to, true);
         let speed = stretch.sense.signed(stretch.speed());
-        let rows = &without_unevenness(&conclusion.misalignments, speed, part.rows);
+        let of_turn = |turn| without_unevenness(&conclusion.misalignments, speed, turn);
+        let rows = &each_turn(part.rows).flat_map(of_turn).collect::<Vec<_>>();
         Folded::of(&Part { rows, ..part }, average)
     };
     let folded: Vec<Folded> = stretches.filter_map(folded).collect();
@@ -150,17 +151,24 @@ pub(super) fn figures(
     ]
 }
 
-/// When the turns began and ended that took part, s: where a sensor settles, the first ones did not.
+/// So few turns are all drawn.
+const FEW: usize = 3;
+
+/// When the turns began and ended that took part, s, without the first and the last, at whose ends the platform comes to its
+/// even rate and leaves it, where there are several.
 fn used(stretch: &Stretch, average: &Average) -> Option<(f64, f64)> {
     let [before, after] = average.ends.map(usize::from);
+    let least = usize::from(stretch.turns.len() > FEW);
+    let (before, after) = (before.max(least), after.max(least));
     let turns = stretch.turns.get(before..stretch.turns.len().checked_sub(after)?)?;
     span(turns, stretch.since)
 }
 
-/// Harmonics of the platform's unevenness that a sensor shows.
-const HARMONICS: u32 = 4;
+/// Harmonics of the platform's unevenness that a sensor shows: what passes within a thirtieth of a turn, its encoder's
+/// noise hides.
+const HARMONICS: u32 = 15;
 
-/// The rows of whole turns at a speed, rad/s, without what the sensor shows of the platform's unevenness: each harmonic of
+/// The rows of a turn at a speed, rad/s, without what the sensor shows of the platform's unevenness: each harmonic of
 /// its rate passes the misalignment's response.
 fn without_unevenness(
     all: &[AxisMisalignment],
@@ -169,16 +177,15 @@ fn without_unevenness(
 ) -> Vec<RotatingRow> {
     let mut left = rows.to_vec();
     let Some(found) = misalignment::nearest(all, speed) else { return left };
-    let whole: Vec<&RotatingRow> = each_turn(rows).flatten().collect();
-    let (count, sum) = (whole.len().max(1) as f64, |row: &&RotatingRow| row.stage_rate_rad_s);
-    let (even, share) = (whole.iter().map(sum).sum::<f64>() / count, 2.0 / count);
+    let count = rows.len().max(1) as f64;
+    let even = rows.iter().map(|row| row.stage_rate_rad_s).sum::<f64>() / count;
     for harmonic in 1..=HARMONICS {
         let times = f64::from(harmonic);
         let turned = |row: &RotatingRow| Complex::from_polar(1.0, times * row.stage_rad);
-        let part = |row: &&RotatingRow| turned(row).conj() * (row.stage_rate_rad_s - even);
-        let uneven: Complex<f64> = whole.iter().map(part).sum();
+        let part = |row: &RotatingRow| turned(row).conj() * (row.stage_rate_rad_s - even);
+        let uneven: Complex<f64> = rows.iter().map(part).sum();
         let response = found.response(times * speed);
-        let felt = Complex::new(response.re, response.im) * uneven * share;
+        let felt = Complex::new(response.re, response.im) * uneven * (2.0 / count);
         left.iter_mut().for_each(|row| row.rate_rad_s -= (felt * turned(row)).re);
     }
     left

@@ -13,7 +13,7 @@ use crate::report::{
     Timeline, convergence as figures,
 };
 
-/// How many conclusions are drawn of a vehicle that stands all the time.
+/// How many conclusions are drawn at most.
 const CONCLUSIONS: usize = 16;
 
 /// The way as the forces have it, fitted to the stops; none where no place but the first is known.
@@ -64,7 +64,7 @@ pub(super) fn residuals(replay: &Replay, stops: &[StopDetails]) -> Option<Figure
     is_there.then(|| Figure::over_time(title, ["tilt", "°"], series).shaped(Shape::Low))
 }
 
-/// The azimuth at the end as each further stop, or more and more of a single one, shows it.
+/// The azimuth at the end as more and more of each further stop, or of a single one, shows it.
 pub(super) fn convergence(
     replay: &Replay,
     rows: &[ImuRow],
@@ -72,18 +72,16 @@ pub(super) fn convergence(
     truth_deg: Option<f64>,
 ) -> Vec<Figure> {
     let stops = replay.session.stops();
-    let ends: Vec<Seconds> = match (&replay.session.procedure.rests, stops) {
-        (Rests::Whole, [stop]) => {
-            let part = |part: usize| part as f64 / CONCLUSIONS as f64;
-            (1..=CONCLUSIONS)
-                .map(|index| Seconds(stop.from.0 + stop.seconds().0 * part(index)))
-                .collect()
-        }
-        _ => stops.iter().skip(1).map(|stop| stop.to).collect(),
-    };
+    let first = usize::from(replay.session.procedure.rests != Rests::Whole);
+    let after = stops.get(first..).unwrap_or_default();
+    let parts = (CONCLUSIONS / after.len().max(1)).max(1);
+    let ends = after.iter().flat_map(|stop| {
+        let part = move |part: usize| stop.seconds().0 * part as f64 / parts as f64;
+        (1..=parts).map(move |index| Seconds(stop.from.0 + part(index)))
+    });
     let turned = found.azimuth.angle.0 - found.start.angle.0;
     let milestone = |end: Seconds| milestone(replay, rows, end, turned);
-    let all: Vec<Milestone> = ends.into_iter().filter_map(milestone).collect();
+    let all: Vec<Milestone> = ends.filter_map(milestone).collect();
     figures("Azimuth at the end", &all, truth_deg)
 }
 
