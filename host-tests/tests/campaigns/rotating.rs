@@ -1,4 +1,4 @@
-//! The campaign of a turning platform: the figures of equations.md §4 over azimuths and unevenness phases, and a
+//! The campaign of a turning platform: its errors after each stage over azimuths and unevenness phases, and a
 //! molecular-electronic sensor at one speed and two, as `ACCURACY.md` prints them.
 
 use std::f64::consts::TAU;
