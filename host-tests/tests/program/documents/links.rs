@@ -1,5 +1,7 @@
 //! What the pages refer to is there.
 
+use std::path::Path;
+
 use super::{page, place};
 
 /// The pages, by their paths from the top.
@@ -25,7 +27,8 @@ fn anchor(heading: &str) -> String {
 fn targets(text: &str) -> impl Iterator<Item = &str> {
     let links = text.match_indices("](").map(|(at, _)| &text[at + 2..]);
     let targets = links.filter_map(|behind| behind.split(')').next());
-    targets.filter(|target| !target.starts_with("http") && !target.ends_with(".png"))
+    let is_picture = |target: &str| Path::new(target).extension().is_some_and(|it| it == "png");
+    targets.filter(move |target| !target.starts_with("http") && !is_picture(target))
 }
 
 #[test]
