@@ -2,7 +2,7 @@
 
 A class is met where no answer is beyond five of its own standard deviations and nine of ten harmless faults are
 answered. Some classes are not met: a fault that shifts the azimuth by five of its standard deviations may be hardly
-greater than its own. They may be no more, and no worse, than the README states; every other class must be met.
+greater than its own. They may be no more, and no worse, than that campaign's README states; every other class must be met.
 """
 
 import json

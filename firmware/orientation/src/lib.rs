@@ -127,6 +127,18 @@
 //! | sway compensation | subtraction of the base's motion, measured by coarse sensors, from the precise gyro's rate (Burov) | [`signal::sway`] |
 //! | error budget | contributions to the standard deviation of an azimuth; their root sum of squares is σ | [`alignment::budget`] |
 //! | autocompensation | cancelling a gyro's drift by turning it between positions, and the best schedule for that (Burov) | [`planner`], [`planner::burov`] |
+//!
+//! # Sources
+//! Papers are cited by author and year; what each gave is said where it is used.
+//!
+//! | cited as | source |
+//! |---|---|
+//! | Sokolov 2019 | S. Sokolov, A. Novikov, V. Ivetić, *Determining the Initial Orientation for Navigation and Measurement Systems of Mobile Apparatus in Reforestation*, 2019 |
+//! | Burov | D. A. Burov, E. I. Verzunov, *Creation of Orientation Systems for Mobile Robots*; its text states no year |
+//! | MET 2018 | a study of azimuth errors in the dynamic scheme of north finding by a molecular-electronic (MET) angular motion sensor; the text that was at hand states neither authors nor title, and its formulas were lost: they are derived anew |
+//! | Szymanowski 2003 | J. Szymanowski, J. Grzelak, S. Popowski, *Static Initial Azimuth Update Method in Land Navigation Systems*, Annual of Navigation 6/2003 |
+//! | Nekrasova 2017 | M. Nekrasova, V. Uspenskiy, *Improving the Accuracy of Determining Orientation of a Rapidly Rotating Object* |
+//! | IEEE Std 952-1997 | the gyro's noise model and its Allan variance |
 #![no_std]
 #![forbid(unsafe_code)]
 

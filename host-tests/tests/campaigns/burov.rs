@@ -1,5 +1,5 @@
 //! Burov's paper by simulation: its example, schedules under drift, its five classes, and the
-//! figures that the README prints of them.
+//! figures that `ACCURACY.md` prints of them.
 
 use host::campaign::burov::{classes, devices, drift};
 use host::campaign::statistics::NORMAL_COVERAGE;
@@ -73,7 +73,7 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass(extent: Extent
             found.gain
         ));
     }
-    extent.assert_in_readme(&rows);
+    extent.assert_in_accuracy(&rows);
 }
 
 fn each_of_the_five_classes_is_met_by_its_gyro(extent: Extent) {
@@ -92,5 +92,5 @@ fn each_of_the_five_classes_is_met_by_its_gyro(extent: Extent) {
             row.class.name, row.class.wanted_deg, row.class.minutes, row.three_rms_deg
         )
     });
-    extent.assert_in_readme(&lines.collect::<Vec<_>>());
+    extent.assert_in_accuracy(&lines.collect::<Vec<_>>());
 }

@@ -1,4 +1,4 @@
-//! Whole instruments on simulated chips: many healthy boards, as the README prints them, and every fault of every chip.
+//! Whole instruments on simulated chips: many healthy boards, as `ACCURACY.md` prints them, and every fault of every chip.
 
 use host::campaign::faults::{self, WRONG_SIGMAS};
 use host::campaign::instrument::{self, Runs};
@@ -50,7 +50,7 @@ fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts(ext
         "| 24 positions of 15°, the first once more | {:.4}° | {:.4}° | {ratio:.3} | {one:.1}, {two:.1}, {three:.1} % |",
         found.rms_deg, found.limit_deg
     );
-    extent.assert_in_readme(&[row]);
+    extent.assert_in_accuracy(&[row]);
 }
 
 /// What a fault must come to: an azimuth, or a refusal whose reason says this.

@@ -1,4 +1,4 @@
-//! `campaign keep`: Burov's classes half an hour after their alignment as the README prints them, its limit, an
+//! `campaign keep`: Burov's classes half an hour after their alignment as `ACCURACY.md` prints them, its limit, an
 //! azimuth that is stored on a base that turns, and what it prints.
 
 use std::f64::consts::{LN_2, PI};
@@ -109,7 +109,7 @@ const RUNS: usize = 200;
 /// Classes; the rows after them stand for comparison.
 const CLASSES: usize = 5;
 
-/// As the README has it.
+/// As `ACCURACY.md` has it.
 fn line(row: &Row) -> String {
     let covered = |spread: &Spread| {
         let [one, two, three] = spread.coverage_percent;
@@ -141,7 +141,7 @@ campaigns! { each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_
 fn each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_covers_them(extent: Extent) {
     let runs = extent.of(RUNS);
     let rows: Vec<Row> = (0..CLASSES).map(|case| keep::row(case, runs, &|| {})).collect();
-    extent.assert_in_readme(&rows.iter().map(line).collect::<Vec<_>>());
+    extent.assert_in_accuracy(&rows.iter().map(line).collect::<Vec<_>>());
     for row in &rows {
         assert!(row.is_wanted && row.is_met && row.lost == 0, "{row:?}");
     }

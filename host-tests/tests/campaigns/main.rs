@@ -1,4 +1,4 @@
-//! Campaigns: a tenth of each in `.ci/run`, the whole of it, with the README's figures, in `.ci/full`.
+//! Campaigns: a tenth of each in `.ci/run`, the whole of it, with the figures of `ACCURACY.md`, in `.ci/full`.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 #[path = "../support/mod.rs"]

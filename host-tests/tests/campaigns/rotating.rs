@@ -1,5 +1,5 @@
-//! The campaign of a turning platform: the figures of equations.md §4 over azimuths and unevenness phases, and a
-//! molecular-electronic sensor at one speed and two, as the README prints them.
+//! The campaign of a turning platform: its errors after each stage over azimuths and unevenness phases, and a
+//! molecular-electronic sensor at one speed and two, as `ACCURACY.md` prints them.
 
 use std::f64::consts::TAU;
 
@@ -46,7 +46,7 @@ fn a_flat_gyro_reaches_its_limit_after_every_stage_of_compensation(extent: Exten
             percent(precision)
         ));
     }
-    extent.assert_in_readme(&rows);
+    extent.assert_in_accuracy(&rows);
 }
 
 fn each_stage_leaves_what_equations_md_says_of_it(rows: &[stages::Row]) {
@@ -103,7 +103,7 @@ fn two_speeds_free_a_molecular_electronic_sensor_of_its_g_sensitivity(extent: Ex
             precision.ratio
         ));
     }
-    extent.assert_in_readme(&rows);
+    extent.assert_in_accuracy(&rows);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Sokolov's experiment in full, and the figures that the README prints of it.
+//! Sokolov's experiment in full, and the figures that `ACCURACY.md` prints of it.
 
 use host::campaign::sokolov::{FixedPoint, Table, Turn, fixed_point, tabulate};
 use host::campaign::statistics::{NORMAL_COVERAGE, coverage, least, rms};
@@ -26,7 +26,7 @@ fn check_precision(turn: Turn, extent: Extent) -> FixedPoint {
     result
 }
 
-fn row_of_readme(name: &str, result: &FixedPoint) -> String {
+fn row_of_accuracy(name: &str, result: &FixedPoint) -> String {
     let [one, two, three] = result.precision.coverage_percent;
     format!(
         "| {name} | {:.0}″ | {:.0}″ | {:.3} | {one:.1}, {two:.1}, {three:.1} % |",
@@ -40,14 +40,14 @@ fn maximum_likelihood_reaches_the_limit_on_the_papers_arc(extent: Extent) {
     let result = check_precision(Turn::Arc, extent);
     // The limit for a known Earth rate, computed apart from this project: 290″.
     assert!((3600.0 * result.precision.limit_deg - 290.0).abs() < 1.5, "{result:?}");
-    extent.assert_in_readme(&[row_of_readme("28° arc, 60 steps of 28′", &result)]);
+    extent.assert_in_accuracy(&[row_of_accuracy("28° arc, 60 steps of 28′", &result)]);
 }
 
 fn maximum_likelihood_reaches_the_limit_on_the_full_circle(extent: Extent) {
     let result = check_precision(Turn::Circle, extent);
     // √2 N/(Ω_h √T) for 60 s, computed apart from this project: 56″.
     assert!((3600.0 * result.precision.limit_deg - 56.0).abs() < 0.5, "{result:?}");
-    extent.assert_in_readme(&[row_of_readme("full circle, 60 steps of 6°", &result)]);
+    extent.assert_in_accuracy(&[row_of_accuracy("full circle, 60 steps of 6°", &result)]);
 }
 
 /// RMS of a criterion, ″.

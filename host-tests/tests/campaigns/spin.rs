@@ -1,10 +1,10 @@
-//! The campaign of spinning bodies as the README prints it: the paper's second, and flights with noise.
+//! The campaign of spinning bodies as `ACCURACY.md` prints it: the paper's second, and flights with noise.
 
 use host::campaign::spin::cases::{self, Row, Spot};
 use host::campaign::spin::paper;
 use host::campaign::statistics::Spread;
 
-use crate::support::campaign::{Extent, assert_in_readme, campaigns};
+use crate::support::campaign::{Extent, assert_in_accuracy, campaigns};
 
 /// Flights in each row.
 const RUNS: usize = 200;
@@ -19,7 +19,7 @@ fn the_papers_second_gives_its_figures() {
     let [extrema, interpolated, locked] = [0, 1, 2].map(|index: usize| paper.methods[index].1);
     assert!(extrema < 1.1 && interpolated < 0.06 && locked < 0.002, "{paper:?}");
     assert!(paper.scale_miss.abs() < 1e-7, "{paper:?}");
-    assert_in_readme(&[format!(
+    assert_in_accuracy(&[format!(
         "36.1° after a second without correction, {extrema:.2}° RMS with corrections at bare extrema, {interpolated:.3}° \
          interpolated, {locked:.5}° by phase lock"
     )]);
@@ -62,5 +62,5 @@ fn noise_a_weak_gyro_and_a_missing_lift_stay_within_sigma_and_lose_no_turn(exten
         let [extrema, interpolated, locked] = row.rms_deg;
         assert!(extrema > 90.0 && interpolated > 90.0 && locked < 0.25, "{row:?}");
     }
-    extent.assert_in_readme(&rows.iter().flat_map(text).collect::<Vec<_>>());
+    extent.assert_in_accuracy(&rows.iter().flat_map(text).collect::<Vec<_>>());
 }

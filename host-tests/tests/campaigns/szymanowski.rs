@@ -6,9 +6,9 @@ use host::campaign::szymanowski::{drives, parked};
 use crate::support::campaign::{Extent, campaigns};
 use crate::support::program::{assert_drawn, meridian, object, page, text};
 
-/// Of each row, those that the README does not print too.
+/// Of each row, those that `ACCURACY.md` does not print too.
 const FEW: usize = 6;
-/// Drives, and parked vehicles, as the README prints them.
+/// Drives, and parked vehicles, as `ACCURACY.md` prints them.
 const RUNS: [usize; 2] = [400, 200];
 
 #[test]
@@ -89,7 +89,7 @@ fn rest_rates_and_third_stops_take_the_gyros_biases_off_the_azimuth(extent: Exte
             figures(precision)
         ));
     }
-    extent.assert_in_readme(&rows);
+    extent.assert_in_accuracy(&rows);
 }
 
 fn sway_and_doors_cost_an_azimuth_from_inertial_space_less_than_half_as_much_again(extent: Extent) {
@@ -104,5 +104,5 @@ fn sway_and_doors_cost_an_azimuth_from_inertial_space_less_than_half_as_much_aga
         let figures = figures(&row.precision);
         format!("| {} | {:.2}° | {figures}", row.case, row.averaging_rms_deg)
     });
-    extent.assert_in_readme(&text);
+    extent.assert_in_accuracy(&text);
 }

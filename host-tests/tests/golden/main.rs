@@ -203,9 +203,12 @@ fn describe(text: &mut String, row: &Row) {
         .expect("memory takes it");
 }
 
+/// What `README.md` says of the keys.
 fn readme() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    fs::read_to_string(path).expect("the list is there")
+    let text = fs::read_to_string(path).expect("the page is there");
+    let (_, keys) = text.split_once("\n## Keys of the objects\n").expect("the list is there");
+    keys.to_owned()
 }
 
 /// The keys that a text has between its code marks.
@@ -225,9 +228,12 @@ fn listed() -> [BTreeSet<String>; 2] {
 /// The keys without an asterisk that an object of a method has.
 fn needed(method: &str) -> Vec<String> {
     let text = readme();
-    let sections: Vec<&str> = text.split("\n## ").collect();
-    let of_all = sections[0].lines().map(|row| (row, true));
-    let of_methods = sections[1].lines().map(|row| {
+    let section = |heading: &str| {
+        let found = text.split("\n### ").find(|section| section.starts_with(heading));
+        found.expect("the section is there").lines()
+    };
+    let of_all = section("What every method has").map(|row| (row, true));
+    let of_methods = section("What a method adds").map(|row| {
         let methods = row.split('|').nth(2).unwrap_or_default();
         (row, methods.split(',').any(|named| named.trim() == method))
     });

@@ -1,4 +1,5 @@
-//! The `meridian` program as a user meets it: output, exit codes, mistakes, pages, and what `emulate` makes of its images.
+//! The `meridian` program as a user meets it: output, exit codes, mistakes, pages, what `emulate` makes of its images, and what
+//! the documents say of it.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 #[path = "../support/mod.rs"]
@@ -6,6 +7,7 @@ mod support;
 
 mod angles;
 mod command_line;
+mod documents;
 mod emulate;
 mod help;
 mod interrupted;

@@ -88,8 +88,6 @@ fn assert_fold(name: &str, page: &str) {
 
 #[test]
 fn the_pages_of_simulated_runs_show_fits_within_error_bars_too() {
-    let (_, turntable) = page(&["run", "turntable", "--seed", "3", "--hold", "0"]);
-    assert_fold("a turntable", &turntable);
     for carrier in ["stage", "two-frame"] {
         let (_, page) = page(&["run", carrier, "--seed", "3", "--hold", "0"]);
         let residuals = series(&figure(&page, "What the fit leaves"), "measured less");

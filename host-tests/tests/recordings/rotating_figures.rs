@@ -91,7 +91,7 @@ fn at(lines: &[Line], frequency: f64) -> f64 {
     nearest.expect("there are lines").amplitude
 }
 
-/// −sin of the 0.8° of which the recordings of equations.md §4 are made.
+/// −sin of the 0.8° of which the recordings of a turning platform are made.
 const MISALIGNMENT: f64 = -0.013_962_2;
 
 #[test]

@@ -1,6 +1,6 @@
 //! Campaigns: one body, which runs in a tenth in `.ci/run` and whole in `.ci/full`; `cargo test` leaves it out.
 //!
-//! The figures of the README are those of the whole. Seeds are fixed, so what passes once passes always. A
+//! The figures of `ACCURACY.md` are those of the whole. Seeds are fixed, so what passes once passes always. A
 //! bound of chance is four standard errors of the sample that it is of.
 
 use std::fs;
@@ -30,12 +30,12 @@ impl Extent {
         }
     }
 
-    /// The README has these rows, if the campaign was whole.
+    /// `ACCURACY.md` has these rows, if the campaign was whole.
     #[track_caller]
-    pub fn assert_in_readme(self, rows: &[String]) {
+    pub fn assert_in_accuracy(self, rows: &[String]) {
         println!("{}", rows.join("\n"));
         if self == Self::Whole {
-            assert_in_readme(rows);
+            assert_in_accuracy(rows);
         }
     }
 
@@ -71,13 +71,13 @@ impl Extent {
     }
 }
 
-/// The README has these rows.
+/// `ACCURACY.md` has these rows.
 #[track_caller]
-pub fn assert_in_readme(rows: &[String]) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
-    let readme = fs::read_to_string(path).expect("the README is there");
-    let lacks: Vec<_> = rows.iter().filter(|row| !readme.contains(*row)).collect();
-    assert!(lacks.is_empty(), "the README lacks {lacks:#?}");
+pub fn assert_in_accuracy(rows: &[String]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("ACCURACY.md");
+    let page = fs::read_to_string(path).expect("the page is there");
+    let lacks: Vec<_> = rows.iter().filter(|row| !page.contains(*row)).collect();
+    assert!(lacks.is_empty(), "ACCURACY.md lacks {lacks:#?}");
 }
 
 /// Two tests of one body, `fn(Extent)`: in a tenth, and whole.

@@ -63,7 +63,7 @@ const MOTORS: Pin = Pin::named(b"PD2");
 const TWO_WIRES: [Pin; 2] = [Pin::named(b"PB10"), Pin::named(b"PB11")];
 /// The pin to which the virtual COM port sends, which drives its wire at all times.
 const LINK: Pin = Pin::named(b"PB7");
-/// Rate of the virtual COM port at the other side of the link, baud, as the README states it.
+/// Rate of the virtual COM port at the other side of the link, baud, as `firmware/README.md` states it.
 const BAUD: u32 = 115_200;
 /// By how much of its rate that of a frame of ten bits may differ, %: a bit is read in its middle, and the last one by the
 /// clock that its start has set (RM0351, 40.5.5).

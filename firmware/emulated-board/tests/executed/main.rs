@@ -2,11 +2,11 @@
 //! fault does is in `tests/faults`.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+mod budget;
 mod clocks;
 mod conclusion;
 mod cost;
 mod course;
-mod readme;
 mod rules;
 mod settings;
 mod sound;

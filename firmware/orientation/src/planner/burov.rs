@@ -1,8 +1,8 @@
 //! Burov's optimisation: the best number of positions in a given time, and the time for a wanted
 //! rate error.
 //!
-//! Source: Burov, eq. (1). A gyro is turned between n positions in a total time `t_GC`, each
-//! rotation taking `t_rot`; its rate error after autocompensation is
+//! A gyro is turned between n positions in a total time `t_GC`, each rotation taking `t_rot`; its rate
+//! error after autocompensation is (Burov)
 //!
 //! ```text
 //! Δω(n)² = R²(t_GC + t_rot)²/(2n²) + K²(t_GC + t_rot)/(3n) + N²/t_w + 3Q²/t_w²,

@@ -1,9 +1,21 @@
 //! Planner: which positions, in which order and for how long suit a gyro's noise best.
 //!
-//! [`burov`] is the paper's optimisation of autocompensation (Burov, eq. 1). [`for_time`] and
-//! [`for_sigma`] optimise this project's own estimator: the covariance of the fit itself, under the
-//! measured noise, is compared over orders of positions, passes and the time that the stage needs
-//! to turn.
+//! ```text
+//!  Q N B K R ─▶ orders × passes × dwell ─▶ prediction: σ of the fit ─least─▶ Plan
+//!  time of a rotation ──▲   total time, or wanted σ ──▲
+//! ```
+//!
+//! More positions cancel more of a gyro's drift (autocompensation), but each rotation costs time in
+//! which nothing is measured. [`burov`] is Burov's optimum of the two. [`for_time`] and [`for_sigma`]
+//! optimise the fit of [`crate::alignment::stepwise`] itself: with J the derivatives of the dwells'
+//! means and C the covariance of their noise, the variance of an azimuth is
+//!
+//! ```text
+//! σ_A² = [(Jᵀ C⁻¹ J)⁻¹]_AA
+//! ```
+//!
+//! It is compared over orders of positions, numbers of passes and the time that the stage needs to
+//! turn.
 
 pub mod burov;
 pub mod order;

@@ -5,11 +5,21 @@
 //!  y, z forces ─▶ extrema ─γ := γₑ──▲   or   ─▶ sums of a turn ─▶ phase, scale ─▲
 //! ```
 //!
-//! The lift q supports the body, so the accelerometers measure it as `a_y = q cos γ − ρ_y ω²` and
-//! `a_z = −q sin γ − ρ_z ω²` (the paper's equation 3; ρ is their distance from the axis). The gyro
-//! alone loses the angle by its scale error: at 100 turns a second and 0.1 %, 36° in a second.
+//! The lift q supports the body. With the roll γ, the rate ω and the distances `ρ_y` and `ρ_z` of the
+//! accelerometers from the axis, they measure
 //!
-//! Axes are the paper's: x forward, y up and z right at roll zero, roll clockwise seen from behind.
+//! ```text
+//!        y ▲ ↖ lift q     a_y =  q cos γ − ρ_y ω²
+//!          │╲γ            a_z = −q sin γ − ρ_z ω²
+//!          ●───▶ z
+//! ```
+//!
+//! The gyro alone loses the angle by its scale error δk, which makes `δγ = δk ∫ω dt`: at 100 turns a
+//! second and 0.1 %, 36° in a second. The forces correct it. At an extremum of either force the roll
+//! is a multiple of 90°, as Nekrasova 2017 uses it; the phase of both forces over a turn uses every
+//! sample, and from turn to turn shows δk, which then holds where the lift fades.
+//!
+//! Axes are those of Nekrasova 2017: x forward, y up and z right at roll zero, roll clockwise seen from behind.
 //! On the axes of the rest of this crate the force to the right is `a_z`, the force down `−a_y`.
 
 pub(crate) mod attitude;

@@ -1,5 +1,5 @@
 //! Zero-velocity detection: whether a vehicle stands, by the stop criteria of Szymanowski 2003 on
-//! low-pass averages (eqs. 11 and 12).
+//! low-pass averages.
 //!
 //! Kryt1 = Ω − |ω| compares the mean rate with the Earth's, Kryt2 = g − |f| the mean specific force
 //! with gravity. Kryt2 alone takes steady driving for a stop, so either both must hold, or Kryt1

@@ -1,4 +1,4 @@
-//! Holds the roll of a spinning body (equations.md §6) to closed forms and to what may go wrong.
+//! Holds the roll of a spinning body to closed forms and to what may go wrong.
 
 mod faults;
 mod lock;

@@ -1,5 +1,5 @@
 //! Holds the north finder on a platform that turns all the time to closed forms, to plain arithmetic
-//! written here, and to the truth of a simulated platform (equations.md §4).
+//! written here, and to the truth of a simulated platform.
 
 mod integrity;
 mod met;

@@ -123,7 +123,7 @@ const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 #[test]
 fn a_wrong_azimuth_makes_twice_the_horizontal_earth_rate_times_the_sine_of_half_of_it() {
-    // W = U/T for times in which the Earth turns little (Szymanowski, equations.md §5).
+    // W = U/T for times in which the Earth turns little (Szymanowski 2003).
     let latitude = Latitude::from_degrees(52.0).expect("a latitude");
     let place = Place::new(latitude);
     for seconds in [180.0, 600.0] {

@@ -1,4 +1,4 @@
-//! Holds azimuth from stops (equations.md §5) to closed forms, to scipy, and to simulated vehicles.
+//! Holds azimuth from stops to closed forms, to scipy, and to simulated vehicles.
 
 mod criteria;
 mod drives;

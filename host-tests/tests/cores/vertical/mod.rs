@@ -1,4 +1,4 @@
-//! Holds pitch, roll and the kept azimuth (equations.md §3, §7) to closed forms and to what may go wrong.
+//! Holds pitch, roll and the kept azimuth to closed forms and to what may go wrong.
 
 mod attitude;
 mod faults;

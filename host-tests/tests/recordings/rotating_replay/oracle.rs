@@ -1,5 +1,5 @@
-//! North from a turning platform once more, in plain `f64` on the rows as they are: equations.md §4
-//! word for word, with nothing of the core's.
+//! North from a turning platform once more, in plain `f64` on the rows as they are: the equations of
+//! `orientation::alignment::rotating` word for word, with nothing of the core's.
 
 use host::recording::RotatingRow;
 

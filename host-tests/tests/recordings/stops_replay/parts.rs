@@ -129,7 +129,7 @@ fn few_rows_are_no_reason_to_panic() {
     }
 }
 
-/// What a body at rest feels of the Earth's rotation and of its own weight: equations.md §0 and §1.
+/// What a body at rest feels of the Earth's rotation and of its own weight.
 fn at_rest(azimuth: f64, pitch: f64, roll: f64, latitude: f64) -> [[f64; 3]; 2] {
     let turned = |[north, east, down]: [f64; 3]| {
         let (sine, cosine) = azimuth.sin_cos();

@@ -5,11 +5,29 @@
 //!                └─modulated─▶ misalignment ▲   accelerometer ─F────────▲
 //! ```
 //!
-//! The gyro's rate is demodulated at the turn: its phasor contains the horizontal Earth rate, E =
-//! `Ω_h` e^{jA}, and everything else that rotates with the platform. The response to the platform's
-//! own unevenness is removed by the axis misalignment; what changes sign with the sense of rotation
-//! cancels between the senses; what falls with the speed is separated by a second speed; tilt is
-//! measured by the accelerometer.
+//! At the encoder angle θ, turning with the rate w in the sense d = ±1, the gyro measures
+//!
+//! ```text
+//! u = Re{ [cos α E + (Ω_v + κ) F + G/(j d w)] e^{jθ} } + sin α (Ω_v − θ̇) + bias + noise
+//!
+//! E = Ω_h e^{jA}   horizontal Earth rate, whose argument is the azimuth A
+//! F                tilt of the platform, read by the accelerometer that turns with the gyro
+//! κ = k_s + j k_o  g-sensitivity of the gyro
+//! G                g-sensitivity that integrates acceleration, of a molecular-electronic sensor
+//! α                axis misalignment: angle between the sensitive axis and the platform's plane
+//! ```
+//!
+//! Whole turns are demodulated, u on cos θ and sin θ: `Q₊` clockwise, `Q₋` the other way. The bias
+//! falls out of them. The response to the platform's own unevenness is removed by the axis
+//! misalignment, which rate-modulated turns show. G changes its sign with the sense of rotation, so
+//! the mean of both senses does not contain it:
+//!
+//! ```text
+//! A = arg[ (Q₊ + Q₋)/2 − (Ω_v + κ) F ]
+//! ```
+//!
+//! A sensor of unknown gain and lag needs both senses for its lag, and two speeds for G, which falls
+//! with the speed ([`molecular`]).
 
 pub mod average;
 mod change;

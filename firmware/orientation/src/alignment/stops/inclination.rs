@@ -1,6 +1,5 @@
 //! Function U(azp): the angle between the vertical that the gyros carried from the first stop and
-//! the levelled one at the last, for any azimuth at the start (Szymanowski 2003, eqs. 9, 10 and
-//! 13).
+//! the levelled one at the last, for any azimuth at the start (Szymanowski 2003).
 //!
 //! The drive is not stored: the rotation measured by the gyros does not depend on the azimuth, so
 //! one vector for each of the two stops is all that is kept. A candidate azimuth enters through the

@@ -8,10 +8,26 @@
 //!                         Earth rotation, displacement ─▶ where up must be ───────────┘
 //! ```
 //!
+//! ```text
+//!        ▲ pole       up at the first stop and up at the second, seen from a frame that does not
+//!  up(0) │  up(t)     turn with the Earth, lie on a cone about the Earth's axis, Ω t apart
+//!      ↖ │ ↗
+//!       ╲│╱           north is where the axis is
+//! ```
+//!
 //! Gravity seen from inertial space turns with the Earth: its directions at two times show where
-//! north is, whatever the vehicle did between, as long as its gyros carried the frame along. The
+//! north is, whatever the vehicle did between, as long as its gyros carried the frame along. Of a
+//! rotation q(t) from the body to the frame frozen at the start, and a force f at rest,
+//!
+//! ```text
+//! up(t) = q(t) f/|f|   must be   R(Ω t) up(0), moved by the known displacement
+//! ```
+//!
+//! R turns about the Earth's axis, and the azimuth at the start says where in the frozen frame that
+//! axis is. An azimuth that is wrong by δ leaves a rate of `2 Ω_h |sin(δ/2)|` between both. The
 //! resolution is set by the gyros: an uncompensated bias B makes an azimuth error of up to B/`Ω_h`,
 //! which stops at different headings remove, because they make the biases observable.
+//! [`inclination`] has the function of the azimuth that Szymanowski 2003 minimises.
 
 mod block;
 pub mod conclusion;

@@ -47,13 +47,13 @@ pub enum Criterion {
     /// Mean-removed least squares n Σd² − (Σd)²: the maximum-likelihood answer for white noise and
     /// a constant drift, and the default.
     MaximumLikelihood,
-    /// Sum of squares of differences Σ(dᵢ₊₁ − dᵢ)² (Sokolov 2019, section 2, after eq. 4).
+    /// Sum of squares of differences Σ(dᵢ₊₁ − dᵢ)² (Sokolov 2019).
     LeastSquares,
     /// Sum of absolute differences Σ|dᵢ₊₁ − dᵢ| (Sokolov 2019).
     LeastAbsolute,
 }
 
-/// Limit by which azimuths are accepted (Sokolov 2019, eq. 4).
+/// Limit by which azimuths are accepted (Sokolov 2019).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// Limit on Σ(dᵢ₊₁ − dᵢ)², in squared table units.

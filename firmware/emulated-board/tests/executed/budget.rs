@@ -1,6 +1,6 @@
-//! What the project's page says of the cost of each carrier's image is what executions show.
+//! What `firmware/BUDGET.md` says of the cost of each carrier's image is what executions show.
 //!
-//! `MERIDIAN_GOLDEN=write cargo test -p emulated-board --test executed readme` writes it anew.
+//! `MERIDIAN_GOLDEN=write cargo test -p emulated-board --test executed budget` writes it anew.
 
 use std::path::PathBuf;
 
@@ -35,7 +35,7 @@ const ROWS: [Row; 5] = [
 
 /// The page.
 fn page() -> PathBuf {
-    root().join("README.md")
+    root().join("firmware/BUDGET.md")
 }
 
 /// A row as the page has it.
@@ -55,7 +55,7 @@ fn figures(line: &str) -> Option<Vec<f64>> {
 }
 
 #[test]
-fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
+fn the_cost_of_each_carriers_image_on_its_page_is_that_of_its_execution() {
     let mut text = std::fs::read_to_string(page()).expect("the page is there");
     let is_written = std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write");
     for (name, of, alike) in ROWS {
@@ -73,7 +73,7 @@ fn the_cost_of_each_carriers_image_in_the_readme_is_that_of_its_execution() {
         let agree = shown.len() == found.len() && shown.iter().zip(found).all(is_alike);
         assert!(
             agree,
-            "{kept}\n{}\nREADME.md; MERIDIAN_GOLDEN=write writes it anew",
+            "{kept}\n{}\nfirmware/BUDGET.md; MERIDIAN_GOLDEN=write writes it anew",
             line(name, &found)
         );
     }
