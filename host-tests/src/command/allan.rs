@@ -57,8 +57,9 @@ fn read(
     let size = file.metadata().map_or(0, |about| about.len() >> 20);
     let progress = (size >= LARGE).then(|| Progress::new(manner, size, "MiB read"));
     let told = |done| {
-        let words = || format!("{done}/{size} MiB read");
-        progress.iter().for_each(|progress| progress.reached((done, size), &words()));
+        if let Some(progress) = &progress {
+            progress.reached((done, size), &format!("{done}/{size} MiB read"));
+        }
     };
     let opened = RestRows::open(name, Metered::new(file, told));
     let opened = opened.map_err(|error| error.message())?;

@@ -11,6 +11,9 @@ use crate::instrument::kept::{Kept, Point};
 use crate::output::degrees;
 use crate::report::{self, Figure, Kind, Lane, Series, Shape, Stretch, Style};
 
+/// The name of a true angle, and the angle, °.
+type Truth = (&'static str, fn(&Point) -> f64);
+
 /// A point with an azimuth: when, s; azimuth, its 1σ and its error, °.
 type Moment<'a> = (&'a Point, f64, [f64; 3]);
 
@@ -87,7 +90,7 @@ fn level(moments: &[Moment<'_>], is_true: bool) -> Figure {
         Series::thinned("pitch", Style::Line, moments, curve(pitch)),
         Series::thinned("roll", Style::Line, moments, curve(roll)),
     ];
-    let truths: [(&str, fn(&Point) -> f64); 2] = [
+    let truths: [Truth; 2] = [
         ("true pitch", |point| degrees(point.truth.pitch_rad)),
         ("true roll", |point| degrees(point.truth.roll_rad)),
     ];
@@ -118,9 +121,10 @@ pub(super) fn lanes(kept: &Kept) -> Vec<Lane> {
     };
     let stretch = |points: &[Point]| {
         let (first, last) = (points.first()?, points.last()?);
-        let words = match last.report.is_at_rest {
-            true => "at rest".to_owned(),
-            false => format!("in motion, {}", last.report.state),
+        let words = if last.report.is_at_rest {
+            "at rest".to_owned()
+        } else {
+            format!("in motion, {}", last.report.state)
         };
         let kind = kind(last);
         Some(Stretch { from_s: first.seconds(), to_s: last.seconds() + 1.0, kind, words })

@@ -1,7 +1,7 @@
 //! What came of an alignment, as data: the keys that all methods share, once each, and what a method adds.
 //!
 //! Every method hands over a [`Finished`] analysis, of a recording or of a simulated run. From it come
-//! the JSON object, the text and the page; text and page are one [`Report`], whose figures only the page
+//! the JSON object, the text and the page; text and page are one [`Report`](crate::report::Report), whose figures only the page
 //! shows.
 
 mod figures;

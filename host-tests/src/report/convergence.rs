@@ -19,6 +19,7 @@ pub struct Milestone {
 const SHOWN: f64 = 12.0;
 
 /// The azimuth over the time, and its σ beside the limit; none of fewer than two milestones. `what` names the azimuth.
+#[must_use]
 pub fn convergence(what: &str, all: &[Milestone], truth_deg: Option<f64>) -> Vec<Figure> {
     let [_, .., last] = all else { return Vec::new() };
     vec![azimuths(what, all, last, truth_deg), sigmas(all)]

@@ -85,7 +85,8 @@ fn of_part(part: &Part, extent: Extent) -> String {
 fn aligned(lines: &[[String; 2]]) -> String {
     let widest = lines.iter().map(|[label, _]| label.chars().count()).max().unwrap_or(0);
     let width = widest.max(LABEL);
-    lines.iter().map(|[label, value]| format!("  {label:<width$} {value}\n")).collect()
+    let line = |[label, value]: &[String; 2]| format!("  {label:<width$} {value}\n");
+    lines.iter().map(line).collect()
 }
 
 fn of_lines(Lines { title, lines }: &Lines) -> String {

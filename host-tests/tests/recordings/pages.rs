@@ -32,7 +32,7 @@ fn assert_normal(name: &str, all: &[f64], parameters: usize) {
     let taken = parameters as f64 / count;
     assert!(square < 1.0 + spread, "{name}: mean square {square} of {count}");
     assert!(
-        square > (1.0 - taken - spread).min(0.5).max(0.02),
+        square > (1.0 - taken - spread).clamp(0.02, 0.5),
         "{name}: mean square {square} of {count}"
     );
     assert!(all.iter().all(|z| z.abs() < 5.0), "{name}: {all:?}");

@@ -134,9 +134,9 @@ fn feed(session: &mut Session, rows: &[RotatingRow]) {
 pub(crate) fn again_until(replay: &Replay, rows: &[RotatingRow]) -> Option<Session> {
     let Session { setting, procedure, .. } = &replay.session;
     if replay.is_followed {
-        return follow(setting.clone(), rows, procedure.sample_seconds.0).ok();
+        return follow(*setting, rows, procedure.sample_seconds.0).ok();
     }
-    let mut session = Session::new(setting.clone(), procedure.clone()).ok()?;
+    let mut session = Session::new(*setting, procedure.clone()).ok()?;
     feed(&mut session, rows);
     session.feed(Input::End);
     Some(session)

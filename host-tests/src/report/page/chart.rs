@@ -177,7 +177,7 @@ impl Frame {
         let line = |class: &str| format!("<path class=\"{class}\" d=\"{}\"/>", self.line(points));
         let dots = |class: &str| format!("<path class=\"{class}\" d=\"{}\"/>", self.dots(points));
         match style {
-            Style::Band => return self.band(points),
+            Style::Band => self.band(points),
             Style::Line => line("line"),
             Style::Dashed => line("line dashed"),
             Style::Dotted => line("line dotted"),

@@ -7,7 +7,7 @@ mod span;
 mod timeline;
 
 use self::markup::{element, escaped};
-use super::{Lines, Part, Report, Shares, Summary, Table};
+use super::{Lines, Part, Report, Share, Shares, Summary, Table};
 
 /// How the page looks, in light and dark, on paper and on a phone.
 const STYLE: &str = include_str!("style.css");
@@ -113,21 +113,22 @@ fn of_lines(Lines { lines, .. }: &Lines) -> String {
     format!("<dl class=\"facts\">\n{lines}</dl>\n")
 }
 
+/// A share with its bar.
+fn of_share(share: &Share) -> String {
+    let (name, value) = (element("td", &share.name), element("td", &share.value));
+    let (percent, width) = (share.in_percent(), share.percent.clamp(0.0, 100.0));
+    format!(
+        "<tr>\n{name}{value}<td><i class=\"bar\" style=\"width:{width:.1}%\"></i>\
+         <span>{percent} %</span></td>\n</tr>\n"
+    )
+}
+
 /// Shares with a bar each, the greatest first.
 fn of_shares(Shares { head, rows, sum, .. }: &Shares) -> String {
     let mut rows: Vec<_> = rows.iter().collect();
     rows.sort_by(|a, b| b.percent.total_cmp(&a.percent));
-    let bars: String = rows
-        .iter()
-        .map(|share| {
-            let (name, value) = (element("td", &share.name), element("td", &share.value));
-            let (percent, width) = (share.in_percent(), share.percent.clamp(0.0, 100.0));
-            format!(
-                "<tr>\n{name}{value}<td><i class=\"bar\" style=\"width:{width:.1}%\"></i>\
-                 <span>{percent} %</span></td>\n</tr>\n"
-            )
-        })
-        .collect();
+    let bars: Vec<String> = rows.into_iter().map(of_share).collect();
+    let bars = bars.concat();
     let [name, value] = sum.each_ref().map(|text| element("td", text));
     let sum = format!("<tr class=\"sum\">\n{name}{value}<td></td>\n</tr>\n");
     format!("<table class=\"shares\">\n{}{bars}{sum}</table>\n", row("th", head, head))

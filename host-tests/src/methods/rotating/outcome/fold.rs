@@ -186,7 +186,9 @@ fn without_unevenness(
         let uneven: Complex<f64> = rows.iter().map(part).sum();
         let response = found.response(times * speed);
         let felt = Complex::new(response.re, response.im) * uneven * (2.0 / count);
-        left.iter_mut().for_each(|row| row.rate_rad_s -= (felt * turned(row)).re);
+        for row in &mut left {
+            row.rate_rad_s -= (felt * turned(row)).re;
+        }
     }
     left
 }

@@ -96,7 +96,7 @@ impl Finished for Replay {
         ];
         let found = at_end(self, outcome.sigma_deg);
         let facts = facts(self, &outcome).lines;
-        Outcome { parts, found, facts, ..outcome }.settled(reason)
+        Outcome { found, facts, parts, ..outcome }.settled(reason)
     }
 
     fn titles(&self) -> [&'static str; 2] {
