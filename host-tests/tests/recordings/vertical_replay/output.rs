@@ -100,7 +100,7 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
     let known = text(&replayed("imu-broad-06", &["--latitude", "52.5", "-v"]).stdout);
     assert!(!known.contains("latitude 45°"), "{known}");
     // A header that knows its gyros is believed.
-    let fog = text(&replayed("drive-fog-1dph", &[]).stdout);
+    let fog = text(&replayed("drive-fog-1dph", &["-v"]).stdout);
     assert!(!fog.contains("gyro noise of") && !fog.contains("gyro biases of"), "{fog}");
     assert!(fog.contains("accelerometer biases of a coarse unit"), "{fog}");
 }

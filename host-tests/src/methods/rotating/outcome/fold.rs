@@ -67,9 +67,16 @@ impl<'a> Folded<'a> {
         let slope = if end > begin { (last - first) / (end - begin) } else { 0.0 };
         let mut sectors = vec![Sector::default(); SECTORS];
         for (turn, [time_s, rate]) in turns.iter().zip(&means) {
-            for rows in turn.chunk_by(|a, b| sector(a) == sector(b)) {
-                let [middle_s, found] = mean(rows);
-                sectors[sector(&rows[0])].0.push(found - rate - slope * (middle_s - time_s));
+            let mut parts = vec![Vec::new(); SECTORS];
+            for row in *turn {
+                parts[sector(row)].push(*row);
+            }
+            // Where a turn ends and begins, a sector's rows are not one after the other.
+            for (part, sector) in
+                parts.iter().zip(&mut sectors).filter(|(part, _)| !part.is_empty())
+            {
+                let [middle_s, found] = mean(part);
+                sector.0.push(found - rate - slope * (middle_s - time_s));
             }
         }
         let variance = variance(&sectors);
@@ -135,8 +142,8 @@ pub(super) fn figures(
         let (from, to) = used(stretch, average)?;
         let part = Part::between(rows, replay.zero_s + from, replay.zero_s + to, true);
         let speed = stretch.sense.signed(stretch.speed());
-        let of_turn = |turn| without_unevenness(&conclusion.misalignments, speed, turn);
-        let rows = &each_turn(part.rows).flat_map(of_turn).collect::<Vec<_>>();
+        let whole: Vec<RotatingRow> = each_turn(part.rows).flatten().copied().collect();
+        let rows = &without_unevenness(&conclusion.misalignments, speed, &whole);
         Folded::of(&Part { rows, ..part }, average)
     };
     let folded: Vec<Folded> = stretches.filter_map(folded).collect();
@@ -164,11 +171,10 @@ fn used(stretch: &Stretch, average: &Average) -> Option<(f64, f64)> {
     span(turns, stretch.since)
 }
 
-/// Harmonics of the platform's unevenness that a sensor shows: what passes within a thirtieth of a turn, its encoder's
-/// noise hides.
-const HARMONICS: u32 = 15;
+/// Harmonics of the platform's unevenness that a sensor shows.
+const HARMONICS: u32 = 4;
 
-/// The rows of a turn at a speed, rad/s, without what the sensor shows of the platform's unevenness: each harmonic of
+/// The rows of whole turns at a speed, rad/s, without what the sensor shows of the platform's unevenness: each harmonic of
 /// its rate passes the misalignment's response.
 fn without_unevenness(
     all: &[AxisMisalignment],
