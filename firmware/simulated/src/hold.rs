@@ -12,7 +12,7 @@ use firmware::ports::Aiding;
 
 /// From power-on to the first position, and from the last one until the vehicle sets off, s: enough for any schedule, with
 /// dwells that are measured again.
-const STANDING_SECONDS: f64 = 50.0;
+const STANDING_SECONDS: f32 = 50.0;
 /// Duration of a stop at which nothing is done, s.
 pub const STOP_SECONDS: f64 = 60.0;
 /// How long a vehicle stands before it is aligned anew by a mechanism, s.
@@ -30,7 +30,7 @@ pub struct Hold {
     pub realigns: bool,
     /// From power-on to the first position, and from the last one until the vehicle sets off, s; of a base on which an
     /// alignment takes about as long as its schedule.
-    pub standing_s: f64,
+    pub standing_s: f32,
     /// Duration of a drive after the alignment, s.
     pub drive_s: f64,
     /// Duration of a stop after the alignment, s; as long as it needs where nothing is stated.

@@ -67,7 +67,7 @@ impl Scenario {
 
     /// Where the base goes after an alignment that takes so many seconds.
     pub fn day(&self, alignment_s: f64) -> Day {
-        let seconds = self.hold.standing_s + alignment_s;
+        let seconds = f64::from(self.hold.standing_s) + alignment_s;
         let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
         let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
         let mut day = Day::standing(latitude_deg, azimuth_deg, stop);

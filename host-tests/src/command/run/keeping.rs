@@ -13,7 +13,7 @@ const USUAL: f64 = 60.0;
 const REALIGNING: f64 = 1800.0;
 /// From power-on until the vehicle sets off, beside the time of a usual alignment, s: room for one dwell that is measured
 /// again.
-const STANDING: f64 = 10.0;
+const STANDING: f32 = 10.0;
 /// When an azimuth from outside comes, s from power-on.
 const HANDED: f64 = 20.0;
 
