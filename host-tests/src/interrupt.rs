@@ -1,12 +1,11 @@
-//! Ctrl-C: it ends the program at once, or, while somebody heeds it, only asks him to come to an end; a second one does not
-//! ask.
+//! Ctrl-C: it ends the program at once, or only asks work that heeds it to come to an end; a second one ends the program.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether an end was asked for.
 static IS_ASKED: AtomicBool = AtomicBool::new(false);
-/// Whether somebody heeds it.
+/// Whether the work that runs heeds it.
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
 /// How far the work is, in words.
 static HOW_FAR: Mutex<String> = Mutex::new(String::new());

@@ -1,8 +1,8 @@
-//! Many pieces of work side by side, until they are done or somebody wants them to end.
+//! Many pieces of work side by side, until all are done or no further one is wanted.
 
 use rayon::prelude::*;
 
-/// Somebody who is told of each piece that is done, from whatever thread, and who may want no further one.
+/// An observer of pieces of work, called from any thread, that may stop further ones.
 pub trait Follower: Sync {
     /// A piece is done.
     fn done(&self);

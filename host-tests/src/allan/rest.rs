@@ -214,7 +214,7 @@ impl Gatherer {
             for sample in batch.drain(..) {
                 gatherer.take(sample);
             }
-            // Once all is read nobody needs it again.
+            // After the last batch the reader has gone, and a vector that comes back is of no use.
             let _ = emptied.send(batch);
         }
         gatherer

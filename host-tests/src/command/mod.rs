@@ -171,7 +171,7 @@ fn as_text(report: &Report, verbosity: Verbosity) -> String {
     report.text(Look { extent, is_coloured: is_coloured() })
 }
 
-/// Whether standard output is a terminal that shows colours, and nobody has asked for none (no-color.org).
+/// Whether standard output is a terminal that shows colours, and `NO_COLOR` (no-color.org) is not set.
 fn is_coloured() -> bool {
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let is_plain = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");

@@ -8,7 +8,7 @@ use orientation::attitude::Trust;
 
 use crate::campaign::faults::notice;
 use crate::instrument::kept::{Kept, Point};
-use crate::output::degrees;
+use crate::output::{azimuth_error, degrees};
 use crate::report::{self, Figure, Kind, Lane, Series, Shape, Stretch, Style};
 
 /// The name of a true angle, and the angle, °.
@@ -43,7 +43,7 @@ fn over_time(title: &str, axis: [&str; 2], series: Vec<Series>) -> Figure {
 fn unwrapped(moments: &[Moment<'_>]) -> Vec<(f64, f64, f64, f64)> {
     let mut before = moments[0].2[0];
     let near = |&(_, at, [azimuth, sigma, error]): &Moment<'_>| {
-        before += (azimuth - before + 180.0).rem_euclid(360.0) - 180.0;
+        before += azimuth_error(azimuth, before);
         (at, before, sigma, before - error)
     };
     moments.iter().map(near).collect()

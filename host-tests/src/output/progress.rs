@@ -24,7 +24,7 @@ const TEMPLATE: &str = "{bar:20} {percent:>3} % {left} {wide_msg}";
 pub struct Progress {
     bar: ProgressBar,
     what: &'static str,
-    /// Whether lines take the place of a bar that nobody would see.
+    /// Whether lines take the place of a bar, where there is no terminal.
     prints_lines: bool,
     printed: AtomicU64,
 }

@@ -1,5 +1,7 @@
 //! How an azimuth came to stand, with its σ against the limit.
 
+use crate::output::azimuth_error;
+
 use super::{Axis, Figure, Point, Series, Shape, Style};
 
 /// An azimuth on the way.
@@ -27,7 +29,7 @@ pub fn convergence(what: &str, all: &[Milestone], truth_deg: Option<f64>) -> Vec
 
 fn azimuths(what: &str, all: &[Milestone], last: &Milestone, truth_deg: Option<f64>) -> Figure {
     let shown = || all.iter().filter(|at| at.sigma_deg <= SHOWN * last.sigma_deg);
-    let near = |azimuth: f64| last.azimuth_deg + short(azimuth - last.azimuth_deg);
+    let near = |azimuth: f64| last.azimuth_deg + azimuth_error(azimuth, last.azimuth_deg);
     let band = shown().map(|at| Point::within(at.time_s, near(at.azimuth_deg), at.sigma_deg));
     let limit =
         |sign: f64| shown().map(move |at| (at.time_s, last.azimuth_deg + sign * at.limit_deg));
@@ -56,9 +58,4 @@ fn sigmas(all: &[Milestone]) -> Figure {
     ];
     let axis = Axis::logarithmic("1σ of the azimuth", "°");
     Figure::over_time("σ and its limit", axis, series).shaped(Shape::Low)
-}
-
-/// An angle the short way, ±180°.
-fn short(angle: f64) -> f64 {
-    (angle + 180.0).rem_euclid(360.0) - 180.0
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::markup::escaped;
+use crate::output::azimuth_error;
 use crate::report::Rose;
 
 /// Radius of the ring with the degrees, in units of the drawing.
@@ -27,7 +28,7 @@ pub(super) fn rose(rose: &Rose) -> String {
     };
     let limits =
         rose.limit_deg.map(|limit| ray("limit", aside(-limit)) + &ray("limit", aside(limit)));
-    let truth = rose.truth_deg.map(|truth| ray("truth", aside(short(truth - azimuth))));
+    let truth = rose.truth_deg.map(|truth| ray("truth", aside(azimuth_error(truth, azimuth))));
     let label = escaped(&format!("azimuth {azimuth:.2}°"));
     let mut svg = format!(
         "<svg class=\"rose\" viewBox=\"-150 -150 300 300\" role=\"img\" aria-label=\"{label}\">\n"
@@ -60,11 +61,6 @@ fn magnification(half: f64) -> f64 {
     let power = 10_f64.powf((WIDE / half).log10().floor());
     let fits = |factor: &f64| factor * power * half <= WIDE;
     [5.0, 2.0, 1.0].into_iter().find(fits).unwrap_or(1.0) * power
-}
-
-/// An angle the short way, ±180°.
-fn short(angle: f64) -> f64 {
-    (angle + 180.0).rem_euclid(360.0) - 180.0
 }
 
 /// A point at a radius in a direction.
