@@ -13,8 +13,9 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use host::interrupt;
 use host::new_file;
-use host::output::manner::{Manner, Verbosity};
+use host::output::manner::Manner;
 use host::output::say;
+use host::report::Verbosity;
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;

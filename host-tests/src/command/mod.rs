@@ -19,9 +19,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::angle::Quantity;
 use host::new_file::NewFile;
 use host::outcome::{self, Finished, Outcome};
-use host::output::manner::{Manner, Verbosity};
+use host::output::manner::Manner;
 use host::recording::{Body, Truth};
-use host::report::{Extent, Look, Report};
+use host::report::{Look, Report, Verbosity};
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use serde::Serialize;
@@ -163,12 +163,7 @@ impl Answer {
 
 /// So much of a report as is asked for, in colours on a terminal.
 fn as_text(report: &Report, verbosity: Verbosity) -> String {
-    let extent = match verbosity {
-        Verbosity::Quiet => Extent::Result,
-        Verbosity::Usual => Extent::Usual,
-        Verbosity::Verbose => Extent::Whole,
-    };
-    report.text(Look { extent, is_coloured: is_coloured() })
+    report.text(Look { verbosity, is_coloured: is_coloured() })
 }
 
 /// Whether standard output is a terminal that shows colours, and `NO_COLOR` (no-color.org) is not set.

@@ -52,12 +52,12 @@ fn unwrapped(moments: &[Moment<'_>]) -> Vec<(f64, f64, f64, f64)> {
 fn azimuth(moments: &[Moment<'_>], is_true: bool) -> Figure {
     let all = unwrapped(moments);
     let mut series = vec![
-        Series::thinned("±1σ", Style::Band, &all, |&(at, azimuth, sigma, _)| {
+        Series::of("±1σ", Style::Band, &all, |&(at, azimuth, sigma, _)| {
             report::Point::within(at, azimuth, sigma)
         }),
-        Series::thinned("kept", Style::Line, &all, |&(at, azimuth, ..)| (at, azimuth)),
+        Series::of("kept", Style::Line, &all, |&(at, azimuth, ..)| (at, azimuth)),
     ];
-    let truth = || Series::thinned("truth", Style::Dashed, &all, |&(at, _, _, truth)| (at, truth));
+    let truth = || Series::of("truth", Style::Dashed, &all, |&(at, _, _, truth)| (at, truth));
     series.extend(is_true.then(truth));
     over_time("Azimuth as it was kept", ["azimuth", "°"], series)
 }
@@ -67,9 +67,9 @@ fn error(moments: &[Moment<'_>]) -> Figure {
         move |&(_, at, [_, sigma, _]): &Moment<'_>| report::Point::within(at, 0.0, times * sigma)
     };
     let series = vec![
-        Series::thinned("±3σ", Style::Band, moments, band(3.0)),
-        Series::thinned("±1σ", Style::Band, moments, band(1.0)),
-        Series::thinned("error", Style::Line, moments, |&(_, at, [.., error])| (at, error)),
+        Series::of("±3σ", Style::Band, moments, band(3.0)),
+        Series::of("±1σ", Style::Band, moments, band(1.0)),
+        Series::of("error", Style::Line, moments, |&(_, at, [.., error])| (at, error)),
     ];
     let title = "Error of the kept azimuth, and its stated 1σ and 3σ";
     over_time(title, ["error", "°"], series).shaped(Shape::Low)
@@ -85,16 +85,16 @@ fn level(moments: &[Moment<'_>], is_true: bool) -> Figure {
     let [pitch, roll]: [fn(&Point) -> f64; 2] =
         [|point| point.report.pitch.degrees(), |point| point.report.roll.degrees()];
     let mut series = vec![
-        Series::thinned("pitch ±1σ", Style::Band, moments, band(pitch)),
-        Series::thinned("roll ±1σ", Style::Band, moments, band(roll)),
-        Series::thinned("pitch", Style::Line, moments, curve(pitch)),
-        Series::thinned("roll", Style::Line, moments, curve(roll)),
+        Series::of("pitch ±1σ", Style::Band, moments, band(pitch)),
+        Series::of("roll ±1σ", Style::Band, moments, band(roll)),
+        Series::of("pitch", Style::Line, moments, curve(pitch)),
+        Series::of("roll", Style::Line, moments, curve(roll)),
     ];
     let truths: [Truth; 2] = [
         ("true pitch", |point| degrees(point.truth.pitch_rad)),
         ("true roll", |point| degrees(point.truth.roll_rad)),
     ];
-    let truths = truths.map(|(name, of)| Series::thinned(name, Style::Dashed, moments, curve(of)));
+    let truths = truths.map(|(name, of)| Series::of(name, Style::Dashed, moments, curve(of)));
     series.extend(truths.into_iter().filter(|_| is_true));
     over_time("Pitch and roll as they were kept", ["angle", "°"], series)
 }
@@ -106,9 +106,9 @@ fn level_errors(moments: &[Moment<'_>]) -> Figure {
         report::Point::within(at, 0.0, point.report.level_sigma.degrees())
     };
     let series = vec![
-        Series::thinned("±1σ", Style::Band, moments, band),
-        Series::thinned("pitch", Style::Line, moments, off(0)),
-        Series::thinned("roll", Style::Line, moments, off(1)),
+        Series::of("±1σ", Style::Band, moments, band),
+        Series::of("pitch", Style::Line, moments, off(0)),
+        Series::of("roll", Style::Line, moments, off(1)),
     ];
     over_time("Errors of pitch and roll", ["error", "°"], series).shaped(Shape::Low)
 }

@@ -2,17 +2,7 @@
 
 use std::io::{IsTerminal as _, stderr};
 
-/// How much is told.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Verbosity {
-    /// Errors, and the shortest form of the result.
-    Quiet,
-    /// Progress, warnings, and the result.
-    #[default]
-    Usual,
-    /// The log of a run, too, and all that stands behind the result.
-    Verbose,
-}
+use crate::report::Verbosity;
 
 /// How a command says what came of it.
 #[derive(Clone, Copy, Debug, Default)]

@@ -182,8 +182,8 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-/// Most points of a series that a figure draws.
-const MOST: usize = 1200;
+/// Most points of a series that a figure draws: more could hardly be distinguished.
+pub const POINTS: usize = 600;
 
 /// The least and the greatest point of a stretch, in their order; its end where it is interrupted.
 fn extremes(stretch: &[Point]) -> Vec<Point> {
@@ -199,23 +199,20 @@ fn extremes(stretch: &[Point]) -> Vec<Point> {
     kept.into_iter().map(|place| stretch[place]).chain(broken.copied()).collect()
 }
 
-/// Most points of a curve of which more could not be distinguished.
-pub const POINTS: usize = 600;
-
 impl Series {
     /// As many of the points as can be distinguished: of a curve the least and the greatest of each stretch, so that no
     /// peak is lost; of dots and bands points at even distances in their order.
     pub(super) fn distinguished(&self) -> Vec<Point> {
-        if self.points.len() <= MOST {
-            return self.points.clone();
+        let (all, step) = (&self.points, self.points.len().div_ceil(POINTS));
+        if step <= 1 {
+            return all.clone();
         }
         let is_curve =
             !matches!(self.style, Style::Points | Style::Hollow | Style::Pale | Style::Band);
         if !is_curve {
-            return self.points.iter().step_by(self.points.len().div_ceil(MOST)).copied().collect();
+            return all.iter().step_by(step).copied().collect();
         }
-        let stretches = self.points.chunks(self.points.len().div_ceil(MOST / 2));
-        stretches.flat_map(extremes).collect()
+        all.chunks(2 * step).flat_map(extremes).collect()
     }
 
     /// A curve through (x, y).
@@ -228,13 +225,13 @@ impl Series {
         Self { name: name.to_owned(), style, points }
     }
 
-    /// A curve of as many points as can be distinguished, evenly taken from all.
-    pub fn thinned<T, P: Into<Point>>(
+    /// A series with a point of each of some rows.
+    pub fn of<T, P: Into<Point>>(
         name: &str,
         style: Style,
         all: &[T],
-        of: impl FnMut(&T) -> P,
+        point: impl FnMut(&T) -> P,
     ) -> Self {
-        Self::new(name, style, all.iter().step_by(all.len().div_ceil(POINTS).max(1)).map(of))
+        Self::new(name, style, all.iter().map(point))
     }
 }

@@ -53,22 +53,23 @@ pub enum Part {
     Detail(Box<Part>),
 }
 
-/// How much of a report is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// What was found.
-    Result,
-    /// What a reader needs who does not look for a fault.
+/// How much is told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Verbosity {
+    /// Errors, and what was found.
+    Quiet,
+    /// Progress, warnings, and what a reader needs who does not look for a fault.
+    #[default]
     Usual,
-    /// Everything.
-    Whole,
+    /// Everything, with the log of a run.
+    Verbose,
 }
 
 /// How a report looks on a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// How much of it is shown.
-    pub extent: Extent,
+    pub verbosity: Verbosity,
     /// Whether colours show what came of it.
     pub is_coloured: bool,
 }
@@ -76,8 +77,8 @@ pub struct Look {
 impl Look {
     /// Without colours.
     #[must_use]
-    pub fn plain(extent: Extent) -> Self {
-        Self { extent, is_coloured: false }
+    pub fn plain(verbosity: Verbosity) -> Self {
+        Self { verbosity, is_coloured: false }
     }
 }
 

@@ -1,6 +1,6 @@
 //! A report as text for a terminal.
 
-use super::{Extent, Grade, Lines, Look, Part, Report, Share, Shares, Summary, Table};
+use super::{Grade, Lines, Look, Part, Report, Share, Shares, Summary, Table, Verbosity};
 
 /// Least width of a label, characters.
 const LABEL: usize = 18;
@@ -11,11 +11,11 @@ pub(super) fn document(report: &Report, look: Look) -> String {
     let mut text = format!("{}\n", look.title(&report.title, grade));
     text.extend(report.subtitle.iter().flat_map(|line| [line.as_str(), "\n"]));
     text.extend(report.summary.iter().map(|summary| of_summary(summary, look)));
-    let is_enough = report.summary.is_some() && look.extent == Extent::Result;
+    let is_enough = report.summary.is_some() && look.verbosity == Verbosity::Quiet;
     for part in report.parts.iter().filter(|_| !is_enough) {
-        text += &of_part(part, look.extent);
+        text += &of_part(part, look.verbosity);
     }
-    if look.extent == Extent::Usual {
+    if look.verbosity == Verbosity::Usual {
         text += &unshown(&report.parts);
     }
     text.trim_end().to_owned()
@@ -60,23 +60,23 @@ fn of_summary(summary: &Summary, look: Look) -> String {
     let mut lines: Vec<[String; 2]> = Vec::new();
     lines.extend(found.iter().map(|[what, is]| [what.clone(), look.coloured(is, "1")]));
     lines.extend(named("reason", reasons));
-    if look.extent != Extent::Result {
+    if look.verbosity != Verbosity::Quiet {
         lines.extend(named("noted", remarks));
         lines.extend(facts.iter().cloned());
     }
-    if look.extent == Extent::Whole {
+    if look.verbosity == Verbosity::Verbose {
         lines.extend(circumstances.iter().cloned());
     }
     aligned(&lines)
 }
 
 /// A part, where it is to be shown.
-fn of_part(part: &Part, extent: Extent) -> String {
+fn of_part(part: &Part, verbosity: Verbosity) -> String {
     match part {
         Part::Lines(lines) => of_lines(lines),
         Part::Table(table) => of_table(table),
-        Part::Shares(shares) => of_table(&table(shares, extent)),
-        Part::Detail(part) if extent == Extent::Whole => of_part(part, extent),
+        Part::Shares(shares) => of_table(&table(shares, verbosity)),
+        Part::Detail(part) if verbosity == Verbosity::Verbose => of_part(part, verbosity),
         Part::Detail(_) | Part::Figure(_) | Part::Timeline(_) => String::new(),
     }
 }
@@ -94,8 +94,8 @@ fn of_lines(Lines { title, lines }: &Lines) -> String {
 }
 
 /// Shares as a table, those that round to nothing only where everything is asked for.
-fn table(Shares { title, head, rows, sum }: &Shares, extent: Extent) -> Table {
-    let shown = rows.iter().filter(|share| extent == Extent::Whole || share.is_seen());
+fn table(Shares { title, head, rows, sum }: &Shares, verbosity: Verbosity) -> Table {
+    let shown = rows.iter().filter(|share| verbosity == Verbosity::Verbose || share.is_seen());
     let cells = |share: &Share| vec![share.name.clone(), share.value.clone(), share.in_percent()];
     let [name, value] = sum.clone();
     let rows = shown.map(cells).chain([vec![name, value, String::new()]]).collect();

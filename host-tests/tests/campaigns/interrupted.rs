@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use host::campaign::{Asked, CAMPAIGNS};
-use host::report::{Extent, Look};
+use host::report::{Look, Verbosity};
 use host::work::{Follower, side_by_side};
 use simulated::fault::Platform;
 
@@ -37,7 +37,7 @@ fn whatever_campaign_ends_early_shows_no_row_without_a_run_and_no_number_that_is
         for most in [0, 1, 3] {
             let few = Few::of(most);
             let done = (campaign.run)(&asked, &few).expect("it runs");
-            let text = done.report.text(Look::plain(Extent::Whole));
+            let text = done.report.text(Look::plain(Verbosity::Verbose));
             for none in ["NaN", "inf", "-0.0 ", "-0.00 "] {
                 assert!(!text.contains(none), "{} after {most}: {none} in {text}", campaign.name);
             }

@@ -23,7 +23,8 @@ use host::recording::{self, Body, Header, Truth};
 use orientation::alignment::Progress;
 use orientation::alignment::stops::session as stops_session;
 use orientation::roll;
-use orientation::units::DEGREE;
+use orientation::signal::Sample;
+use orientation::units::{Angle, DEGREE, Instant};
 use serde_json::Value;
 
 use crate::support::files::Scratch;
@@ -107,6 +108,33 @@ fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
     let frames =
         Trial::of(scenario).fault(fault).record(&mut samples).run().expect("it is possible");
     compare_stage(&plain, scenario, &frames, &samples.taken);
+}
+
+/// Samples a second, of a platform that turns at a rate, rad/s, for a second and rests for another; its encoder is read
+/// with every so-manieth.
+fn turned_and_rested(hz: u64, rate: f64, every: u64) -> Vec<Sample> {
+    let read = |index: u64| (index - index % every).min(hz) as f64 / hz as f64;
+    let sample = |index: u64| Sample {
+        time: Instant(index * 1_000_000 / hz),
+        stage: Angle::from_rad(rate * read(index)),
+        ..Sample::default()
+    };
+    (0..2 * hz).map(sample).collect()
+}
+
+#[test]
+fn the_platforms_rate_is_that_between_two_readings_however_seldom_its_encoder_is_read() {
+    for every in [1, 2, 5, 10] {
+        for rate in [0.8, -0.8, 3.0] {
+            let rows = recorder::turning_rows(&turned_and_rested(400, rate, every));
+            let (turning, rest) = rows.split_at(401);
+            let step = Angle::STEP * 400.0 / every as f64;
+            for row in &turning[1..] {
+                assert!((row.stage_rate_rad_s - rate).abs() < 1.01 * step, "{every}: {row:?}");
+            }
+            assert!(rest.iter().all(|row| row.stage_rate_rad_s == 0.0), "{every}");
+        }
+    }
 }
 
 fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {

@@ -23,7 +23,7 @@ fn normalised(points: &[Vec<f64>]) -> Vec<f64> {
 }
 
 /// Panics unless numbers could be a normal distribution's of variance one: their mean square lies within five of its
-/// standard deviations and what `unseen` parameters take of it, and none beyond 5.
+/// standard deviations and what the parameters take of it, and none beyond 5.
 #[track_caller]
 fn assert_normal(name: &str, all: &[f64], parameters: usize) {
     let count = all.len() as f64;
@@ -93,6 +93,8 @@ fn the_pages_of_simulated_runs_show_fits_within_error_bars_too() {
         let residuals = series(&figure(&page, "What the fit leaves"), "measured less");
         assert_normal(carrier, &normalised(&residuals), 4);
     }
+    let (_, turntable) = page(&["run", "turntable", "--seed", "3", "--hold", "0"]);
+    assert_fold("turntable", &turntable);
     let (_, vehicle) = page(&["run", "vehicle", "--seed", "3", "--hold", "60"]);
     let left = figure(&vehicle, "What the solution leaves of the vertical");
     let all = ["north", "east"].map(|axis| normalised(&series(&left, axis))).concat();

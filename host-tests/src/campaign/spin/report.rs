@@ -78,7 +78,7 @@ fn from(curve: &[(f64, f64)], from_s: f64) -> &[(f64, f64)] {
 
 fn over_time(title: &str, curves: &[(&str, &[(f64, f64)])]) -> Part {
     let of = |(name, curve): &(&str, &[(f64, f64)])| {
-        Series::thinned(name, Style::Line, curve, |point| *point)
+        Series::of(name, Style::Line, curve, |point| *point)
     };
     Figure::over_time(title, ["roll error", "°"], curves.iter().map(of)).into()
 }

@@ -11,7 +11,7 @@ use host::outcome::{Outcome, SCHEMA};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
 use host::output::signed;
-use host::report::{Columns, Extent, Look, Report};
+use host::report::{Columns, Look, Report, Verbosity};
 use host::unwritten;
 use host::work::side_by_side;
 use serde_json::{Value, json};
@@ -221,5 +221,5 @@ fn table(rows: &[Row]) -> String {
         .found("seconds", 0, |row| row.seconds)
         .column("error, °", |row| &row.error);
     let columns = if has_reason { columns.column("reason", |row| &row.reason) } else { columns };
-    Report::new(title, [columns.into()]).text(Look::plain(Extent::Usual))
+    Report::new(title, [columns.into()]).text(Look::plain(Verbosity::Usual))
 }

@@ -62,27 +62,46 @@ pub fn given_by<T: Store>(scenario: &TurntableScenario, store: &mut T) -> Option
 }
 
 /// The rows of a recording of these samples, their angles from that of the first one on with whole turns counted, the
-/// platform's rate from sample to sample, the force the latest.
+/// platform's rate from reading to reading of its encoder, the force the latest.
 #[must_use]
 pub fn turning_rows(samples: &[Sample]) -> Vec<RotatingRow> {
     let (mut steps, mut force) = (0, [0.0; 3]);
     let start = samples.first().map_or(0.0, |first| first.stage.rad());
     let before = samples.first().into_iter().chain(samples);
-    let row = |((line, sample), before): ((u64, &Sample), &Sample)| {
-        let turned = (sample.stage - before.stage).0.cast_signed();
-        let lasted_s = (sample.time.0 - before.time.0).max(1) as f64 * 1e-6;
-        steps += i64::from(turned);
+    let row = |((line, sample), (before, turning)): ((u64, &Sample), (&Sample, f64))| {
+        steps += turned(before, sample);
         force = sample.force.map_or(force, forces);
         RotatingRow {
             line,
             time_s: seconds(sample.time),
             stage_rad: start + steps as f64 * Angle::STEP,
-            stage_rate_rad_s: f64::from(turned) * Angle::STEP / lasted_s,
+            stage_rate_rad_s: turning,
             rate_rad_s: rate(sample.rate),
             force_m_s2: force[0],
             across_m_s2: Some(force[1]),
             force_is_new: sample.force.is_some(),
         }
     };
-    (1..).zip(samples).zip(before).map(row).collect()
+    (1..).zip(samples).zip(before.zip(stage_rates(samples))).map(row).collect()
+}
+
+/// Steps of the angle from one sample to another.
+fn turned(from: &Sample, to: &Sample) -> i64 {
+    i64::from((to.stage - from.stage).0.cast_signed())
+}
+
+/// The platform's rate at each sample, rad/s: an encoder that is read more seldom than the gyro stands between its
+/// readings, so that all samples up to a new reading have the rate since the one before.
+fn stage_rates(samples: &[Sample]) -> Vec<f64> {
+    let mut rates = Vec::with_capacity(samples.len());
+    let mut read = samples.first();
+    for (index, sample) in samples.iter().enumerate() {
+        if let Some(before) = read.filter(|before| before.stage != sample.stage) {
+            let lasted_s = (sample.time.0 - before.time.0).max(1) as f64 * 1e-6;
+            rates.resize(index + 1, turned(before, sample) as f64 * Angle::STEP / lasted_s);
+            read = Some(sample);
+        }
+    }
+    rates.resize(samples.len(), 0.0);
+    rates
 }

@@ -108,23 +108,22 @@ fn inclination(off: &[Off]) -> Figure {
     let tilt = |axis: usize| move |off: &Off| (off.time_s, off.tilts_deg[axis]);
     let limits = |off: &Off| Point::within(off.time_s, 0.0, off.sigma_deg);
     let series = vec![
-        Series::thinned("±σ", Style::Band, off, limits),
-        Series::thinned("about north of the level frame", Style::Line, off, tilt(1)),
-        Series::thinned("about east of the level frame", Style::Line, off, tilt(0)),
-        Series::thinned("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
+        Series::of("±σ", Style::Band, off, limits),
+        Series::of("about north of the level frame", Style::Line, off, tilt(1)),
+        Series::of("about east of the level frame", Style::Line, off, tilt(0)),
+        Series::of("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
     ];
     Figure::over_time("Error of the vertical, where the truth counts", ["tilt", "°"], series)
 }
 
 fn heading(off: &[Off]) -> Figure {
-    let series =
-        vec![Series::thinned("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
+    let series = vec![Series::of("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
     Figure::over_time("Error of the heading after one constant offset", ["heading", "°"], series)
 }
 
 fn sigma(moments: &[Moment]) -> Figure {
     let of = |moment: &Moment| (moment.time_s, degrees(moment.level_sigma));
-    let series = vec![Series::thinned("1σ of pitch and of roll", Style::Line, moments, of)];
+    let series = vec![Series::of("1σ of pitch and of roll", Style::Line, moments, of)];
     Figure::over_time("How good pitch and roll are", ["1σ", "°"], series)
 }
 
@@ -133,8 +132,8 @@ fn level(moments: &[Moment]) -> Figure {
         move |moment: &Moment| (moment.time_s, degrees(angles(moment.attitude)[index]))
     };
     let series = vec![
-        Series::thinned("pitch", Style::Line, moments, of(1)),
-        Series::thinned("roll", Style::Line, moments, of(2)),
+        Series::of("pitch", Style::Line, moments, of(1)),
+        Series::of("roll", Style::Line, moments, of(2)),
     ];
     Figure::over_time("Pitch and roll", ["angle", "°"], series)
 }
@@ -147,10 +146,8 @@ fn biases(moments: &[Moment]) -> Figure {
         let limits =
             move |moment: &Moment| Point::within(moment.time_s, bias(moment), sigma(moment));
         [
-            Series::thinned(&format!("{name} ±σ"), Style::Band, moments, limits),
-            Series::thinned(name, Style::Line, moments, move |moment| {
-                (moment.time_s, bias(moment))
-            }),
+            Series::of(&format!("{name} ±σ"), Style::Band, moments, limits),
+            Series::of(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
         ]
     });
     Figure::over_time("Biases of the gyros as they were learnt", ["bias", "°/h"], series)

@@ -4,7 +4,7 @@ use execution::report::Report;
 use firmware::platform::Platform;
 use host::emulate::executed::{Executed, Options};
 use host::output::executed;
-use host::report::{Extent, Look};
+use host::report::{Look, Verbosity};
 use serde_json::{Value, json};
 
 use crate::support::files::Scratch;
@@ -144,7 +144,7 @@ fn conversions_that_were_lost_at_any_time_are_complained_of_and_in_the_table() {
         let expected = format!("stage: {words} conversions were lost");
         assert_eq!(complaint(&executed), expected);
         let options = Options { seed: 1, cycles: 1.4, afterwards: None, link: None };
-        let table = executed::report(&[executed], &options).text(Look::plain(Extent::Usual));
+        let table = executed::report(&[executed], &options).text(Look::plain(Verbosity::Usual));
         let row = lost.map(|lost| lost.to_string()).join(" + ");
         assert!(table.contains(&row) && table.contains(&expected), "{table}");
     }

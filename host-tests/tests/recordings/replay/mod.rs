@@ -13,7 +13,7 @@ use host::methods::stepwise::{Replay, replay};
 use host::outcome::{self, Finished};
 use host::output::{azimuth_error, columns};
 use host::recording::{Body, Header, StageRow, Truth};
-use host::report::{Extent, Look};
+use host::report::{Look, Verbosity};
 use orientation::alignment::budget::Source;
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stepwise;
@@ -142,7 +142,7 @@ fn an_unknown_g_sensitivity_dominates_and_is_said_to() {
     assert_eq!(fit.budget.dominant(), Some(Source::GSensitivity));
     let (finished, truth) = (&replayed.replay, Truth::default());
     let block = outcome::report("x", &finished.outcome(&truth), finished, Vec::new())
-        .text(Look::plain(Extent::Usual));
+        .text(Look::plain(Verbosity::Usual));
     assert!(block.contains("g-sensitivity dominates: level the platform mechanically"), "{block}");
 }
 

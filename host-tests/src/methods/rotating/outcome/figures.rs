@@ -16,7 +16,7 @@ const MULTIPLES: f64 = 6.0;
 /// How the platform's rate went over time.
 pub(crate) fn profile(part: &Part<'_>) -> Figure {
     let of = |row: &RotatingRow| (row.time_s, row.stage_rate_rad_s);
-    let series = [Series::thinned("encoder", Style::Line, part.rows, of)];
+    let series = [Series::of("encoder", Style::Line, part.rows, of)];
     Figure::over_time(format!("Rate of the platform, {part}"), ["rate", "rad/s"], series)
 }
 

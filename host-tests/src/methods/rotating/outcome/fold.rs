@@ -158,15 +158,9 @@ pub(super) fn figures(
     ]
 }
 
-/// So few turns are all drawn.
-const FEW: usize = 3;
-
-/// When the turns began and ended that took part, s, without the first and the last, at whose ends the platform comes to its
-/// even rate and leaves it, where there are several.
+/// When the turns began and ended that took part, s.
 fn used(stretch: &Stretch, average: &Average) -> Option<(f64, f64)> {
     let [before, after] = average.ends.map(usize::from);
-    let least = usize::from(stretch.turns.len() > FEW);
-    let (before, after) = (before.max(least), after.max(least));
     let turns = stretch.turns.get(before..stretch.turns.len().checked_sub(after)?)?;
     span(turns, stretch.since)
 }

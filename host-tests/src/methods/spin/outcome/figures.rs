@@ -41,8 +41,8 @@ pub(crate) fn error(replay: &Replay, truth: &Truth) -> Option<Figure> {
         .collect();
     let band = |(time_s, _, sigma): &(f64, f64, f64)| report::Point::within(*time_s, 0.0, *sigma);
     let series = [
-        Series::thinned("±1σ", Style::Band, &all, band),
-        Series::thinned("error", Style::Line, &all, |(time_s, error, _)| (*time_s, *error)),
+        Series::of("±1σ", Style::Band, &all, band),
+        Series::of("error", Style::Line, &all, |(time_s, error, _)| (*time_s, *error)),
     ];
     let title = "Error of the roll by phase lock, and its stated 1σ";
     Some(Figure::over_time(title, ["roll error", "°"], series))
@@ -58,7 +58,7 @@ fn curve(track: &Track, truth: &Truth, from_s: f64) -> Option<Series> {
     let errors = Errors::of(track, &truth.roll_rad)?;
     let all = track.over_time(&errors.wrapped_rad);
     let from = all.partition_point(|(time_s, _)| *time_s < from_s);
-    Some(Series::thinned(name(track.method), Style::Line, &all[from..], |point| *point))
+    Some(Series::of(name(track.method), Style::Line, &all[from..], |point| *point))
 }
 
 /// σ of the answer, the bound, and the size of the error where the truth is there.
@@ -69,11 +69,11 @@ pub(crate) fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
     if let Some(errors) = Errors::of(answer, &truth.roll_rad) {
         let all = answer.over_time(&errors.wrapped_rad);
         let size = |(time_s, error): &(f64, f64)| (*time_s, error.abs());
-        series.insert(0, Series::thinned("size of the error", Style::Line, &all, size));
+        series.insert(0, Series::of("size of the error", Style::Line, &all, size));
     }
     if let Some(bounds) = &replay.bounds {
         let all = answer.over_time(bounds);
-        series.push(Series::thinned("limit (Cramér–Rao)", Style::Dashed, &all, |point| *point));
+        series.push(Series::of("limit (Cramér–Rao)", Style::Dashed, &all, |point| *point));
     }
     Figure::over_time("σ of the roll", Axis::logarithmic("roll", "°"), series)
 }

@@ -68,6 +68,37 @@ fn white_sigma(dwell: &Dwell, angle_random_walk: f64) -> f64 {
     dwell.stated_variance.get().unwrap_or_else(white).sqrt()
 }
 
+/// What the subtraction of the base's sway leaves in a dwell's mean rate.
+struct SwayNoise {
+    /// 1σ in the mean of `seconds`, rad/s.
+    sigma: f64,
+    /// Median length of a dwell, s.
+    seconds: f64,
+    /// That σ over the one from the gyro's own white noise.
+    ratio: f64,
+}
+
+impl SwayNoise {
+    /// Of the dwells that took part; none where nothing is subtracted.
+    fn of(session: &Session, conclusion: &Conclusion, kept: &[&Dwell]) -> Option<Self> {
+        let mut lengths: Vec<f64> = kept.iter().map(|dwell| dwell.seconds.0).collect();
+        lengths.sort_unstable_by(f64::total_cmp);
+        let seconds = *lengths.get(lengths.len() / 2)?;
+        let sigma = session.setting.sway.mean_variance(seconds).sqrt();
+        let own = conclusion.angle_random_walk.0 / seconds.sqrt();
+        (sigma > 0.0).then_some(Self { sigma, seconds, ratio: sigma / own })
+    }
+
+    fn in_words(&self) -> [String; 2] {
+        let Self { sigma, seconds, ratio } = self;
+        let sigma = degrees_per_hour(*sigma);
+        let words = format!(
+            "subtracted; the base's coarse IMU brings {sigma:.2} °/h (1σ) into {seconds:.0} s, {ratio:.1} times the gyro's noise"
+        );
+        ["sway of the base".to_owned(), words]
+    }
+}
+
 impl Replay {
     /// Number, dwell and angle of each dwell that was left out.
     fn excluded(&self, conclusion: &Conclusion) -> Vec<Excluded> {
@@ -168,11 +199,16 @@ impl Finished for Replay {
         let fit = conclusion.fit.as_ref();
         let seen = fit.filter(|fit| !fit.model.is_single_axis);
         let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
-        let details = DwellDetails::all(&self.session, conclusion);
-        let parts = vec![Part::from(self.lines(conclusion)).detail(), table(&details).detail()];
+        let dwell_details = DwellDetails::all(&self.session, conclusion);
+        let parts =
+            vec![Part::from(self.lines(conclusion)).detail(), table(&dwell_details).detail()];
         let dwells = self.session.dwells().iter().zip(&conclusion.disturbances);
         let kept: Vec<&Dwell> =
             dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
+        let sway = SwayNoise::of(&self.session, conclusion, &kept);
+        let sway_deg_h = sway.as_ref().map(|sway| degrees_per_hour(sway.sigma));
+        let details =
+            self.details(conclusion, &dwell_details).with_found("sway_sigma_deg_h", sway_deg_h);
         Outcome {
             limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| fit.limit.degrees()),
             pitch_deg: tilt.map(|tilt| tilt.pitch().degrees()),
@@ -187,7 +223,8 @@ impl Finished for Replay {
             }),
             assumed: self.assumed.clone(),
             circumstances: self.circumstances(&kept),
-            ..Outcome::new(self.method, self.details(conclusion, &details), parts)
+            facts: sway.iter().map(SwayNoise::in_words).collect(),
+            ..Outcome::new(self.method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }

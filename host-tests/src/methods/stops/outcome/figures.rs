@@ -74,8 +74,8 @@ fn criterion(
     let sizes = || values.iter().map(|(_, [size, _])| *size).filter(|size| *size > 0.0);
     let [low, high] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)];
     let mut series = vec![
-        Series::thinned(label, Style::Line, &values, |(time, [size, _])| (*time, *size)),
-        Series::thinned("threshold", Style::Dashed, &values, |(time, [_, limit])| (*time, *limit)),
+        Series::of(label, Style::Line, &values, |(time, [size, _])| (*time, *size)),
+        Series::of("threshold", Style::Dashed, &values, |(time, [_, limit])| (*time, *limit)),
     ];
     series.extend(replay.session.stops().iter().enumerate().map(|(index, stop)| {
         let edge =
