@@ -38,7 +38,7 @@ pub struct Request {
     pub wanted: Wanted,
 }
 
-/// Burov's schedule, eq. (1).
+/// Burov's schedule: the number of positions of the least rate error, as [`orientation::planner::burov`] has it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OfBurov {
     /// Number of positions n.
@@ -47,9 +47,9 @@ pub struct OfBurov {
     pub dwell_s: f64,
     /// Total time, s.
     pub seconds: f64,
-    /// Δω(n) of eq. (1), the 1σ of a rate, °/h.
+    /// Its rate error Δω(n), 1σ, °/h.
     pub rate_error_deg_h: f64,
-    /// B√(2 ln 2/π), which eq. (1) leaves out, °/h.
+    /// B√(2 ln 2/π), which Δω(n) leaves out, °/h.
     pub flicker_deg_h: f64,
     /// Both together over `Ω_h`: the 1σ of an azimuth whose half is known and which is read off one
     /// axis, °.

@@ -1,4 +1,4 @@
-//! Amplitude spectra, for the figures of papers/004: how much of each frequency is in a signal.
+//! Amplitude spectra, as the figures of MET 2018 have them: how much of each frequency is in a signal.
 //!
 //! One-sided and amplitude-correct: a sinusoid of amplitude a on a line of the spectrum shows as a,
 //! whatever the window. The mean is taken off first, since a gyro's response to the turn is a

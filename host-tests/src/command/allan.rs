@@ -1,6 +1,6 @@
 //! `meridian allan`: the noise of a gyro at rest.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use host::allan::analysis::Analysis;
@@ -10,19 +10,17 @@ use host::output::allan::Shown;
 use host::output::manner::Manner;
 use host::output::progress::Progress;
 use host::planning::suggestion;
-use host::recording::{self, Metered, RestRows, Warning};
+use host::recording::{self, RestRows, Warning};
 use orientation::noise::fit::FitError;
 
 use super::files::Written;
+use super::source::Source;
 use super::{Answer, Failure, OUTPUT, files};
-
-/// Size of a file, MiB, from which it is told how far it is read.
-const LARGE: u64 = 64;
 
 /// The recording, and which of its columns is analysed.
 #[derive(Args)]
 pub struct AllanOptions {
-    /// The recording of kind `static`, CSV, also gzip-compressed.
+    /// The recording of kind `static`, CSV, also gzip-compressed; `-` is standard input.
     file: PathBuf,
     /// The column with the rate; the default is `g_rad_s`, else `gx_rad_s`.
     #[arg(long, value_name = "NAME")]
@@ -35,37 +33,32 @@ pub struct AllanOptions {
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let page = Written::page(options.report.as_ref());
-    files::check(Some(&options.file), &[page]).map_err(Failure::misuse)?;
+    let source = Source::of(&options.file);
+    files::check(source.path(), &[page]).map_err(Failure::misuse)?;
     let page = files::opened("the report", options.report.as_ref())?;
-    let name = options.file.display().to_string();
+    let name = source.name();
     let mut warnings = Vec::new();
-    let rest = read(options, manner, &name, &mut warnings);
-    let warnings = recording::warning_lines(&warnings, &options.file);
+    let progress = Progress::new(manner, 0, "reading");
+    let rest = read(&source, options.column.as_deref(), &progress, &mut warnings);
+    progress.finish();
+    let warnings = recording::warning_lines(&warnings, Path::new(&name));
     rest.and_then(|rest| analyse(&name, &rest, page, manner))
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
 }
 
-/// Reads the record, and tells how far it is where that takes its time.
+/// Reads a column of the record, and tells how far it is.
 fn read(
-    options: &AllanOptions,
-    manner: Manner,
-    name: &str,
+    source: &Source,
+    column: Option<&str>,
+    progress: &Progress,
     warnings: &mut Vec<Warning>,
 ) -> Result<Rest, String> {
-    let file = recording::open(&options.file).map_err(|error| error.message())?;
-    let size = file.metadata().map_or(0, |about| about.len() >> 20);
-    let progress = (size >= LARGE).then(|| Progress::new(manner, size, "MiB read"));
-    let told = |done| {
-        if let Some(progress) = &progress {
-            progress.reached((done, size), &format!("{done}/{size} MiB read"));
-        }
-    };
-    let opened = RestRows::open(name, Metered::new(file, told));
-    let opened = opened.map_err(|error| error.message())?;
-    let rest = Rest::read(opened, options.column.as_deref(), warnings);
-    progress.iter().for_each(Progress::finish);
-    rest.map_err(|error| match error {
+    let name = source.name();
+    let unread = |error| recording::unread(&name, &error).message();
+    let (reader, _) = source.open(Some(progress)).map_err(unread)?;
+    let opened = RestRows::open(&name, reader).map_err(|error| error.message())?;
+    Rest::read(opened, column, warnings).map_err(|error| match error {
         RestError::Read(error) => error.message(),
         error => format!("{name}: {error}"),
     })

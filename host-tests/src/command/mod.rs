@@ -11,6 +11,7 @@ pub mod plan;
 pub mod replay;
 pub mod run;
 pub mod shell;
+mod source;
 pub mod stated;
 
 use std::io::{IsTerminal as _, Write};

@@ -19,7 +19,6 @@ mod given;
 mod header;
 pub mod inputs;
 mod lines;
-mod metered;
 mod number;
 pub mod period;
 mod problem;
@@ -44,7 +43,6 @@ pub(crate) use given::rate;
 pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS, MAX_STREAMED_ROWS};
-pub use metered::Metered;
 pub use problem::Problem;
 pub use range::{Range, Short};
 pub use rows::{
@@ -183,7 +181,7 @@ pub fn read(path: &Path) -> Result<Recording, ReadError> {
 ///
 /// # Errors
 /// [`ReadError`] that names it.
-pub fn open(path: &Path) -> Result<File, ReadError> {
+fn open(path: &Path) -> Result<File, ReadError> {
     File::open(path).map_err(|error| unread(&path.display().to_string(), &error))
 }
 

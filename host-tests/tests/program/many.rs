@@ -131,6 +131,19 @@ fn standard_input_replays_as_the_file_does_whether_it_is_compressed_or_not() {
 }
 
 #[test]
+fn standard_input_is_analysed_as_the_file_is_whether_it_is_compressed_or_not() {
+    let scratch = Scratch::new("allan-input");
+    let plain = scratch.with("hour.csv", unpacked("static-gyro-1h"));
+    for path in [&plain, &stored("static-gyro-1h")] {
+        let mut file = object(&meridian(&["allan", path, "--json"]));
+        let input = fed(&["allan", "-", "--json"], path);
+        assert_eq!(code(&input), 0, "{path}: {}", reason(&input));
+        file["file"] = "standard input".into();
+        assert_eq!(object(&input), file, "{path}");
+    }
+}
+
+#[test]
 fn standard_input_is_refused_as_a_file_is_and_read_once() {
     let scratch = Scratch::new("bad-input");
     let empty = scratch.with("empty", "");

@@ -34,7 +34,7 @@ pub struct Device {
     pub gyro: Grade,
     /// Best number of positions.
     pub positions: u32,
-    /// Δω of eq. (1), °/h, 1σ.
+    /// Burov's rate error Δω(n), as [`orientation::planner::burov`] has it, °/h, 1σ.
     pub rate_error_deg_h: f64,
     /// Rate error with the flicker floor B√(2 ln 2/π), °/h, 1σ.
     pub with_flicker_deg_h: f64,

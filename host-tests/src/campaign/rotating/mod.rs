@@ -1,4 +1,4 @@
-//! Dynamic north finding by simulation: papers/004 with the figures of equations.md §4.
+//! Dynamic north finding by simulation: the study of a molecular-electronic sensor on a turning platform (MET 2018), its formulas derived anew.
 
 pub mod molecular;
 pub mod motor;

@@ -13,7 +13,7 @@ use crate::campaign::statistics::{Precision, greatest, rms};
 use crate::campaign::{Tick, azimuth_deg, one_by_one, over};
 use crate::output::azimuth_error;
 
-/// Speed, turns a second: that of papers/004's last figure.
+/// Speed, turns a second: that of the last figure of MET 2018.
 pub const TURN_HZ: f64 = 0.137;
 /// Time each way, s.
 pub const SECONDS: f64 = 200.0;

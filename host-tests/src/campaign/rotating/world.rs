@@ -18,7 +18,7 @@ use super::motor::Motor;
 use crate::recording::RotatingRow;
 use crate::simulate::stage_path;
 
-/// Latitude, °: that of papers/004's laboratory.
+/// Latitude, °: that of the laboratory of MET 2018.
 pub const LATITUDE_DEG: f64 = 55.75;
 /// Sample rate, Hz: the noise of a turn does not depend on it; at fewer the motion between two samples does not follow a line.
 pub const RATE_HZ: f64 = 200.0;

@@ -17,7 +17,7 @@ use host::work::side_by_side;
 use serde_json::{Value, json};
 
 use super::one::One;
-use super::source::Source;
+use crate::command::source::Source;
 use crate::command::{Answer, Failure, Output};
 
 /// Longest reason in the table, characters.

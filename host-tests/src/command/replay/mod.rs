@@ -2,7 +2,6 @@
 
 mod many;
 mod one;
-mod source;
 
 use std::path::PathBuf;
 
@@ -17,8 +16,8 @@ use orientation::earth::Latitude;
 
 use self::many::Folders;
 use self::one::One;
-use self::source::Source;
 use super::files::{self, Written};
+use super::source::Source;
 use super::stated::{Stated, long};
 use super::{Answer, Failure, HALVES, OUTPUT, latitude, named, registered, sigma};
 

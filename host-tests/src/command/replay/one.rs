@@ -15,8 +15,8 @@ use host::recording::inputs::Reader;
 use host::recording::{self, Body, Truth};
 use orientation::alignment::stepwise::session::Session;
 
-use super::source::Source;
 use super::{ReplayOptions, beside_inputs, check};
+use crate::command::source::Source;
 use crate::command::stated::Stated;
 use crate::command::{Answer, Failure, Shown, explained};
 

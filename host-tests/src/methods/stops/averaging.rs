@@ -22,7 +22,7 @@ impl Averages {
     #[must_use]
     pub fn azimuth(&self) -> f64 {
         let [x, y, z] = self.force_m_s2.map(|force| -force);
-        // Pitch and roll of equations.md §1, then the rate on level axes that point where the body does.
+        // Roll and pitch from the force, atan2(f_y, f_z) and atan2(−f_x, √(f_y² + f_z²)), then the rate on level axes that point where the body does.
         let (roll, pitch) = (y.atan2(z), (-x).atan2(y.hypot(z)));
         let [forward, right, down] = self.turned_rad;
         let across = right * roll.cos() - down * roll.sin();

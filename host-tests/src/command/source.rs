@@ -30,6 +30,11 @@ pub enum Source {
 pub type Opened<'p> = (Box<dyn Read + 'p>, bool);
 
 impl Source {
+    /// What an argument names, which is no folder.
+    pub fn of(argument: &Path) -> Self {
+        if argument.as_os_str() == INPUT { Self::Input } else { Self::File(argument.to_owned()) }
+    }
+
     /// The recordings that the arguments name, those of a folder sorted by their names.
     ///
     /// # Errors
@@ -37,10 +42,9 @@ impl Source {
     pub fn all(arguments: &[PathBuf]) -> Result<Vec<Self>, String> {
         let mut all = Vec::new();
         for path in arguments {
-            match path {
-                path if path.as_os_str() == INPUT => all.push(Self::Input),
-                path if path.is_dir() => all.extend(in_folder(path)?),
-                path => all.push(Self::File(path.clone())),
+            match Self::of(path) {
+                Self::File(path) if path.is_dir() => all.extend(in_folder(&path)?),
+                source => all.push(source),
             }
         }
         if all.iter().filter(|source| **source == Self::Input).count() > 1 {
