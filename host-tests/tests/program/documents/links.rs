@@ -5,9 +5,10 @@ use std::path::Path;
 use super::{page, place};
 
 /// The pages, by their paths from the top.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 10] = [
     "README.md",
     "CONTRIBUTING.md",
+    "docs/ten-minutes.md",
     "firmware/README.md",
     "firmware/BUDGET.md",
     "firmware/emulated-board/README.md",

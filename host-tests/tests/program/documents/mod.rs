@@ -4,6 +4,7 @@
 mod command_line;
 mod links;
 mod readme;
+mod ten_minutes;
 mod wiring;
 
 use std::fs;
