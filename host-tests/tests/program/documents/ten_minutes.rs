@@ -25,7 +25,7 @@ fn blocks(page: &str) -> Vec<Block<'_>> {
     while let Some(line) = lines.next() {
         if let Some(language) = line.strip_prefix("```") {
             let text = lines.by_ref().take_while(|line| *line != "```");
-            let text = text.map(|line| format!("{line}\n")).collect();
+            let text = text.flat_map(|line| [line, "\n"]).collect();
             let name = above.strip_prefix("<!-- ").and_then(|name| name.strip_suffix(" -->"));
             blocks.push(Block { name: name.unwrap_or_default(), language, text });
         }
@@ -51,7 +51,9 @@ fn every_command_of_the_first_ten_minutes_prints_what_the_page_shows() {
             continue;
         }
         let commands = block.lines().filter_map(|line| line.strip_prefix(COMMAND));
-        last = commands.map(|arguments| run(arguments, &files)).last().or(last);
+        for arguments in commands {
+            last = Some(run(arguments, &files));
+        }
         let (expected, output) = match (name, &last) {
             ("printed", Some(output)) => (0, output),
             ("refused", Some(output)) => (1, output),

@@ -1,6 +1,7 @@
 //! Stepwise gyrocompassing and autocompensated positions: what an alignment at standstills found.
 
 mod figures;
+mod sway;
 
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::fit::Fit;
@@ -17,6 +18,8 @@ use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
 use crate::output::{columns, degrees, degrees_per_hour, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
+
+use self::sway::SwayNoise;
 
 /// A dwell, with what the fit leaves of it.
 #[derive(Clone, Debug, Serialize)]
@@ -66,37 +69,6 @@ impl DwellDetails {
 fn white_sigma(dwell: &Dwell, angle_random_walk: f64) -> f64 {
     let white = || angle_random_walk * angle_random_walk * dwell.taper / dwell.seconds.0;
     dwell.stated_variance.get().unwrap_or_else(white).sqrt()
-}
-
-/// What the subtraction of the base's sway leaves in a dwell's mean rate.
-struct SwayNoise {
-    /// 1σ in the mean of `seconds`, rad/s.
-    sigma: f64,
-    /// Median length of a dwell, s.
-    seconds: f64,
-    /// That σ over the one from the gyro's own white noise.
-    ratio: f64,
-}
-
-impl SwayNoise {
-    /// Of the dwells that took part; none where nothing is subtracted.
-    fn of(session: &Session, conclusion: &Conclusion, kept: &[&Dwell]) -> Option<Self> {
-        let mut lengths: Vec<f64> = kept.iter().map(|dwell| dwell.seconds.0).collect();
-        lengths.sort_unstable_by(f64::total_cmp);
-        let seconds = *lengths.get(lengths.len() / 2)?;
-        let sigma = session.setting.sway.mean_variance(seconds).sqrt();
-        let own = conclusion.angle_random_walk.0 / seconds.sqrt();
-        (sigma > 0.0).then_some(Self { sigma, seconds, ratio: sigma / own })
-    }
-
-    fn in_words(&self) -> [String; 2] {
-        let Self { sigma, seconds, ratio } = self;
-        let sigma = degrees_per_hour(*sigma);
-        let words = format!(
-            "subtracted; the base's coarse IMU brings {sigma:.2} °/h (1σ) into {seconds:.0} s, {ratio:.1} times the gyro's noise"
-        );
-        ["sway of the base".to_owned(), words]
-    }
 }
 
 impl Replay {
