@@ -112,6 +112,16 @@ fn pages_and_attitudes_of_several_recordings_go_into_a_folder() {
     assert_misuse(&twice, "two recordings would have the file imu-broad-06");
 }
 
+/// A command makes the same of standard input as of the file.
+#[track_caller]
+fn assert_taken_as_the_file(command: &str, path: &str) {
+    let mut file = object(&meridian(&[command, path, "--json"]));
+    let input = fed(&[command, "-", "--json"], path);
+    assert_eq!(code(&input), 0, "{path}: {}", reason(&input));
+    file["file"] = "standard input".into();
+    assert_eq!(object(&input), file, "{path}");
+}
+
 #[test]
 fn standard_input_replays_as_the_file_does_whether_it_is_compressed_or_not() {
     let scratch = Scratch::new("input");
@@ -122,11 +132,7 @@ fn standard_input_replays_as_the_file_does_whether_it_is_compressed_or_not() {
         assert_eq!(code(&meridian(&[&run[..], &[path]].concat())), 0);
     }
     for path in [&plain, &stored("stepwise-circle"), &lines, &packed] {
-        let mut file = object(&meridian(&["replay", path, "--json"]));
-        let input = fed(&["replay", "-", "--json"], path);
-        assert_eq!(code(&input), 0, "{path}: {}", reason(&input));
-        file["file"] = "standard input".into();
-        assert_eq!(object(&input), file, "{path}");
+        assert_taken_as_the_file("replay", path);
     }
 }
 
@@ -135,11 +141,7 @@ fn standard_input_is_analysed_as_the_file_is_whether_it_is_compressed_or_not() {
     let scratch = Scratch::new("allan-input");
     let plain = scratch.with("hour.csv", unpacked("static-gyro-1h"));
     for path in [&plain, &stored("static-gyro-1h")] {
-        let mut file = object(&meridian(&["allan", path, "--json"]));
-        let input = fed(&["allan", "-", "--json"], path);
-        assert_eq!(code(&input), 0, "{path}: {}", reason(&input));
-        file["file"] = "standard input".into();
-        assert_eq!(object(&input), file, "{path}");
+        assert_taken_as_the_file("allan", path);
     }
 }
 
