@@ -118,6 +118,52 @@ pub(crate) fn conditions(noise: GyroNoise, rotation: Rotation) -> Conditions {
     Conditions { noise, rotation, shortest: Seconds(SHORTEST), fewest: FEWEST, orders }
 }
 
+/// Halvings of a time in the search for the least: to a millionth.
+const HALVINGS: usize = 20;
+
+/// Every number of passes of every order that a stage can turn through.
+fn schedules(conditions: &Conditions) -> impl Iterator<Item = (Order, usize)> {
+    let orders = conditions.orders.iter();
+    orders.flat_map(|order| (1..=POSITIONS / order.length()).map(|passes| (*order, passes)))
+}
+
+/// The schedule of the least σ in a total time, of all: the planner of the core, which has less time, tries a few numbers of
+/// passes.
+///
+/// # Errors
+/// As [`for_time`].
+pub(crate) fn best(conditions: &Conditions, seconds: Seconds) -> Result<Plan, PlanError> {
+    let found = for_time(conditions, seconds)?;
+    let plans = schedules(conditions)
+        .filter_map(|(order, passes)| Plan::of(conditions, order, passes, seconds));
+    Ok(plans.fold(found, |best, plan| if plan.rate_sigma < best.rate_sigma { plan } else { best }))
+}
+
+/// The schedule of the least time for a 1σ of a rate component, of all.
+///
+/// # Errors
+/// As [`for_sigma`].
+fn quickest(conditions: &Conditions, wanted: RadiansPerSecond) -> Result<Plan, PlanError> {
+    let found = for_sigma(conditions, wanted, LONGEST)?;
+    let quicker = |best: Plan, (order, passes)| {
+        let reaching = |seconds| {
+            let plan = Plan::of(conditions, order, passes, Seconds(seconds));
+            plan.filter(|plan| plan.rate_sigma <= wanted)
+        };
+        let Some(mut enough) = reaching(best.seconds.0) else { return best };
+        let mut too_little = 0.0;
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(too_little, enough.seconds.0);
+            match reaching(middle) {
+                Some(plan) => enough = plan,
+                None => too_little = middle,
+            }
+        }
+        enough
+    };
+    Ok(schedules(conditions).fold(found, quicker))
+}
+
 impl Request {
     /// Plans positions and dwells.
     ///
@@ -154,10 +200,10 @@ impl Request {
     fn optimum(&self) -> Result<Plan, Unplanned> {
         let conditions = self.conditions();
         let plan = match self.wanted {
-            Wanted::Seconds(seconds) => for_time(&conditions, Seconds(seconds)),
+            Wanted::Seconds(seconds) => best(&conditions, Seconds(seconds)),
             Wanted::Sigma(sigma) => {
                 let wanted = RadiansPerSecond(sigma * self.latitude.horizontal_rate().0);
-                for_sigma(&conditions, wanted, LONGEST)
+                quickest(&conditions, wanted)
             }
         };
         plan.map_err(|error| match error {

@@ -1,6 +1,6 @@
 //! What stands around every simulated board: its log, the wire of its link, and the clock.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
@@ -16,6 +16,7 @@ use orientation::alignment::{Method, Progress};
 use orientation::attitude::Report;
 use orientation::navigation::{self, aligner};
 use orientation::signal::Timed;
+use orientation::units;
 
 use super::kept::Kept;
 use super::{Run, RunError};
@@ -27,6 +28,7 @@ pub(super) struct Harness<'w> {
     reports: RefCell<Vec<Report>>,
     base: RefCell<Vec<(Instant, BaseReading)>>,
     bytes: RefCell<Vec<u8>>,
+    found: Cell<Option<units::Instant>>,
     watch: &'w dyn Observer,
 }
 
@@ -46,6 +48,9 @@ impl Observer for Harness<'_> {
     }
 
     fn navigates(&self, input: &navigation::Input) {
+        if let navigation::Input::Found(at, _) = input {
+            self.found.set(Some(*at));
+        }
         self.watch.navigates(input);
     }
 
@@ -81,8 +86,8 @@ impl Write for Wire<'_> {
 impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
     pub(super) fn new(watch: &'w dyn Observer) -> Self {
-        let (events, reports, base, bytes) = Default::default();
-        Self { events, reports, base, bytes, watch }
+        let (events, reports, base, bytes, found) = Default::default();
+        Self { events, reports, base, bytes, found, watch }
     }
 
     /// The channels of the board's parts.
@@ -129,6 +134,7 @@ impl<'w> Harness<'w> {
             base: self.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: at.as_micros() as f64 * 1e-6,
+            found: self.found.get(),
             kept: Kept::default(),
             health,
             violations: violations

@@ -10,6 +10,7 @@ use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
 use orientation::attitude::{Realigned, Report};
 use orientation::navigation::Progress;
+use orientation::units;
 use simulated::base::{self, SimulatedBase};
 use simulated::fault::{Fault, Injection};
 use simulated::keep::{Day, journey};
@@ -18,10 +19,12 @@ use simulated::scenario::Scenario;
 use super::{Run, RunError};
 
 /// How azimuths that came while one was kept agreed with it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Realignments {
     /// How often one agreed.
     pub fused: usize,
+    /// When the latest alignment anew was refused, and why; none where none was, and where it is not told.
+    pub refused: Option<String>,
     /// By how many σ the latest one disagreed, so that neither is believed; none where it did not.
     pub disagreement: Option<f64>,
 }
@@ -78,7 +81,7 @@ impl KeptPlan {
         let rig = rig.borrow();
         let violations = base::violations(&rig).iter();
         run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
-        run.kept = Kept::of(&run.reports, day.configuration().motion());
+        run.kept = Kept::of(&run, day.configuration().motion());
         Ok(run)
     }
 
@@ -139,16 +142,28 @@ impl Point {
 pub struct Kept {
     /// In rising order of time.
     pub points: Vec<Point>,
+    /// The true azimuth at the sample to which the latest azimuth belongs that was handed over, rad; none where nothing was
+    /// kept after it.
+    pub found_rad: Option<f64>,
 }
 
 impl Kept {
-    /// Reports with the truth of their moments.
-    pub(super) fn of(reports: &[Report], mut motion: Motion<'_>) -> Self {
-        let point = |report: &Report| {
-            motion.advance(report.time.seconds());
-            Point { report: *report, truth: motion.attitude() }
+    /// The reports of a run with the truth of their moments.
+    pub(super) fn of<R, T>(run: &Run<R, T>, mut motion: Motion<'_>) -> Self {
+        let mut truth = |at: units::Instant| {
+            motion.advance(at.seconds());
+            motion.attitude()
         };
-        Self { points: reports.iter().map(point).collect() }
+        let (mut points, mut found_rad) = (Vec::with_capacity(run.reports.len()), None);
+        for report in &run.reports {
+            // The course goes on alone: what lies before the report is asked for first.
+            let is_next = |found: &units::Instant| found_rad.is_none() && *found <= report.time;
+            if let Some(found) = run.found.filter(is_next) {
+                found_rad = Some(truth(found).azimuth_rad);
+            }
+            points.push(Point { report: *report, truth: truth(report.time) });
+        }
+        Self { points, found_rad }
     }
 
     /// What was kept at last.

@@ -29,6 +29,7 @@ use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::mount::MountError;
 use orientation::attitude::Report;
+use orientation::units;
 
 use thiserror::Error;
 
@@ -54,6 +55,8 @@ pub struct Run<R = Replay, T = ()> {
     pub lines: String,
     /// Virtual time from power-on to the end, s.
     pub seconds: f64,
+    /// The sample to which the latest azimuth belongs that was handed over to be kept.
+    pub found: Option<units::Instant>,
     /// What was kept after the alignment, with the truth.
     pub kept: Kept,
     /// What went wrong, counted.
@@ -78,25 +81,24 @@ impl<R, T> Run<R, T> {
         })
     }
 
-    /// The true azimuth when the latest alignment concluded, rad; none where nothing was kept after it.
-    fn kept_azimuth_rad(&self) -> Option<f64> {
-        let at = self.conclusions().next_back()?.as_micros() as f64;
-        let point = self.kept.points.iter().find(|point| point.seconds() * 1e6 >= at)?;
-        Some(point.truth.azimuth_rad)
+    /// Whether an alignment found an azimuth after another one had.
+    #[must_use]
+    pub fn is_realigned(&self) -> bool {
+        self.conclusions().count() > 1
     }
 
     /// Whether an azimuth was found, or kept, before the latest alignment concluded: the base has driven since.
     fn has_driven(&self) -> bool {
         let at = self.conclusions().next_back().map_or(0.0, |at| at.as_micros() as f64);
         let was_kept = self.kept.with_azimuth().any(|(point, _)| point.seconds() * 1e6 < at);
-        was_kept || self.conclusions().count() > 1
+        was_kept || self.is_realigned()
     }
 
-    /// The true azimuth when the latest alignment concluded, °, of a base that stood at an azimuth, °,
+    /// The true azimuth at the latest alignment's last sample, °, of a base that stood at an azimuth, °,
     /// until an azimuth was known.
     #[must_use]
     pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
-        let again = self.kept_azimuth_rad().filter(|_| self.has_driven());
+        let again = self.kept.found_rad.filter(|_| self.has_driven());
         again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
     }
 

@@ -33,10 +33,10 @@ pub struct VehiclePlan {
 pub type VehicleRun = Run<stops::Session, VehicleTruth>;
 
 impl VehicleRun {
-    /// The true azimuth when the latest alignment concluded, rad: at the end, unless the vehicle went on.
+    /// The true azimuth at the latest alignment's last sample, rad: at the end, unless the vehicle went on.
     #[must_use]
     pub fn azimuth_rad(&self) -> f64 {
-        self.kept_azimuth_rad().unwrap_or(self.truth.attitude.azimuth_rad)
+        self.kept.found_rad.unwrap_or(self.truth.attitude.azimuth_rad)
     }
 }
 
@@ -74,7 +74,7 @@ impl Carrier for VehicleScenario {
         let truth = board.borrow().plant.truth();
         let session = session.into_session::<InertialSample>();
         let mut run = harness.clear(ended, &board, session, truth);
-        run.kept = Kept::of(&run.reports, day.configuration().motion());
+        run.kept = Kept::of(&run, day.configuration().motion());
         Ok(run)
     }
 }

@@ -133,11 +133,11 @@ pub(super) fn lanes(kept: &Kept) -> Vec<Lane> {
     if spans.is_empty() { Vec::new() } else { vec![Lane::new("keeping", spans)] }
 }
 
-/// Rest is what a keeper measures at; of motion, only what the gyros carry alone differs.
+/// At rest a keeper measures; in motion its accelerometers correct the level, or the gyros carry it alone.
 fn kind(point: &Point) -> Kind {
     match (point.report.is_at_rest, point.report.state.trust) {
         (true, _) => Kind::Used,
-        (false, Trust::Coasting) => Kind::LeftOut,
+        (false, Trust::Coasting) => Kind::Coasting,
         (false, _) => Kind::Between,
     }
 }

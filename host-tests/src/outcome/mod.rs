@@ -120,6 +120,9 @@ pub struct Outcome {
     /// What else is said first of it: label and value.
     #[serde(skip)]
     pub facts: Vec<[String; 2]>,
+    /// What takes from the result, in words.
+    #[serde(skip)]
+    pub degradations: Vec<String>,
     /// Place, instrument and time in words: label and value.
     #[serde(skip)]
     pub circumstances: Vec<[String; 2]>,
@@ -138,6 +141,9 @@ pub struct Outcome {
 pub struct FitDetails {
     /// The 1σ parts of σ, °; null where there is no fit.
     pub budget: Option<BudgetDetails>,
+    /// What the part of the noise holds beside the gyro's.
+    #[serde(skip)]
+    pub more_noise: Option<&'static str>,
     /// The greatest part beside noise, where it makes up more than half of the variance.
     pub dominant: Option<String>,
     /// Dwells, whole turns or stops that took part.

@@ -5,7 +5,9 @@ use std::time::Duration;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::remembered::Remembered;
+use orientation::alignment::Progress;
 use orientation::attitude::Report;
+use orientation::units;
 use serde::Serialize;
 
 use super::figures;
@@ -22,6 +24,9 @@ pub struct RunDetails {
     /// Further keys of the outcome.
     #[serde(flatten)]
     keys: Keys,
+    /// What is said first of the result: label and value.
+    #[serde(skip)]
+    pub(super) facts: Vec<[String; 2]>,
     /// What takes from the result, in words.
     #[serde(skip)]
     pub(super) degradations: Vec<String>,
@@ -92,7 +97,8 @@ impl RunDetails {
         let this = Self::with(keys, Some(board), &run.kept, realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
-        Self { degradations, lanes, ..this }
+        let facts = run.found.filter(|_| run.is_realigned()).map(found_anew).into_iter().collect();
+        Self { degradations, lanes, facts, ..this }
     }
 
     /// What was kept, and how later azimuths agreed with it.
@@ -103,14 +109,15 @@ impl RunDetails {
 
     /// What was kept, with further keys, and lines behind those of what was kept.
     fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: Realignments) -> Self {
-        let (last, realigned) = (kept.last().copied(), later.fused);
+        let last = kept.last().copied();
         let was_known = kept.with_azimuth().next().is_some();
-        let lines = last.iter().map(|last| Part::from(in_words(kept, last, realigned)));
+        let lines = last.iter().map(|last| Part::from(in_words(kept, last, &later)));
         let board = board.map(|board| Part::from(board).detail());
         let is_lost = was_known && last.is_some_and(|last| last.report.azimuth.is_none());
         let lost = "the azimuth is not known any more at the end of what was kept".to_owned();
         Self {
-            keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
+            keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, later.fused))),
+            facts: Vec::new(),
             degradations: is_lost.then_some(lost).into_iter().collect(),
             parts: lines
                 .chain(figures::all(kept).into_iter().map(Part::from))
@@ -177,7 +184,7 @@ fn of_kept(kept: &Kept, last: &Point, realigned: usize) -> Keys {
 }
 
 /// What was kept at last, in words.
-fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
+fn in_words(kept: &Kept, last: &Point, later: &Realignments) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
@@ -193,14 +200,31 @@ fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
     let sigma = level_sigma.degrees();
     let [pitch_rms, roll_rms] = level_rms(kept).map(degrees);
     let level_rms = format!("{pitch_rms:.3}°, {roll_rms:.3}° RMS on the way");
-    let times = Some(realigned).filter(|times| *times > 0);
     Lines::new(&format!("Kept for {:.0} s", seconds.0))
         .with("azimuth of body x", azimuth)
         .with_found("its error", error)
         .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))
         .with_found("their errors", (!last.truth.pitch_rad.is_nan()).then_some(level_rms))
         .with("state", last.report.state.to_string())
-        .with_found("realigned", times.map(|times| format!("{times} time(s)")))
+        .with_found("aligned anew", aligned_anew(later))
+}
+
+/// How often it was aligned anew, and why not the last time.
+fn aligned_anew(Realignments { fused, refused, .. }: &Realignments) -> Option<String> {
+    let times = match fused {
+        0 => "not at all".to_owned(),
+        1 => "once".to_owned(),
+        times => format!("{times} times"),
+    };
+    match refused {
+        Some(why) => Some(format!("{times}; the last attempt was refused {why}")),
+        None => (*fused > 0).then_some(times),
+    }
+}
+
+/// Which of several alignments an azimuth is of.
+fn found_anew(at: units::Instant) -> [String; 2] {
+    ["found".to_owned(), format!("at {:.1} s, by the latest alignment", at.seconds())]
 }
 
 /// The greatest error of the azimuth on the way, over its σ of the moment.
@@ -210,10 +234,16 @@ fn greatest_sigmas(kept: &Kept) -> Option<f64> {
 
 /// How later azimuths of a run agreed with what was kept.
 fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
-    let mut found = Realignments::default();
-    for (_, event) in &run.events {
-        if let Event::Navigation(progress) = event {
-            found.take(progress);
+    let (mut found, mut is_first) = (Realignments::default(), true);
+    for (at, event) in &run.events {
+        match event {
+            Event::Navigation(progress) => found.take(progress),
+            Event::Alignment(Progress::Concluded(_)) => (is_first, found.refused) = (false, None),
+            Event::Alignment(Progress::Refused(reason)) if !is_first => {
+                let at_s = at.as_micros() as f64 * 1e-6;
+                found.refused = Some(format!("at {at_s:.1} s: {reason}"));
+            }
+            _ => {}
         }
     }
     found

@@ -3,7 +3,7 @@
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::site::Site;
 
-use super::{BudgetDetails, Excluded, Finished, FitDetails, Outcome};
+use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::methods;
 use crate::output::{degrees, noise_in_words, positive_zero, signed};
 use crate::report::{
@@ -17,10 +17,10 @@ pub fn report(
     finished: &dyn Finished,
     figures: Vec<ReportPart>,
 ) -> Report {
-    let budget = outcome.fit.as_ref().and_then(|fit| fit.budget.as_ref());
+    let budget = outcome.fit.as_ref().and_then(shares);
     let mut parts = figures;
     add_lanes(&mut parts, outcome);
-    parts.extend(budget.map(shares).map(ReportPart::from));
+    parts.extend(budget.map(ReportPart::from));
     parts.extend(outcome.parts.iter().cloned());
     parts.push(ReportPart::from(assumed(outcome)).detail());
     parts.extend(outcome.run.iter().flat_map(|run| run.parts.iter().cloned()));
@@ -55,7 +55,7 @@ fn summary(outcome: &Outcome) -> Summary {
         reasons: outcome.reason.iter().cloned().collect(),
         remarks,
         found: found(outcome),
-        facts: facts(outcome).lines.into_iter().chain(outcome.facts.iter().cloned()).collect(),
+        facts: facts(outcome).lines.into_iter().chain(more_facts(outcome)).collect(),
         circumstances: circumstances(outcome).lines,
         rose: rose(outcome),
     }
@@ -67,7 +67,7 @@ fn degradations(outcome: &Outcome) -> Vec<String> {
     let left_out =
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
     let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
-    left_out.chain(run).collect()
+    left_out.chain(outcome.degradations.iter().cloned()).chain(run).collect()
 }
 
 /// What was looked for, and what it is.
@@ -95,6 +95,12 @@ fn facts(outcome: &Outcome) -> Lines {
         .with_found("limit", limit(outcome))
         .with_found("pitch, roll", level(outcome))
         .with_found("Earth rate", earth_rate(fit))
+}
+
+/// What a method and a run add to that.
+fn more_facts(outcome: &Outcome) -> impl Iterator<Item = [String; 2]> {
+    let of_run = outcome.run.iter().flat_map(|run| &run.facts);
+    outcome.facts.iter().chain(of_run).cloned()
 }
 
 /// Of what it was found: method, place, instrument, time, model.
@@ -151,23 +157,27 @@ fn assumed(outcome: &Outcome) -> Lines {
     })
 }
 
-/// The parts of σ with each part's share of the variance.
-fn shares(details: &BudgetDetails) -> Shares {
+/// The parts of σ with each part's share of the variance; none without a fit.
+fn shares(fit: &FitDetails) -> Option<Shares> {
+    let details = fit.budget.as_ref()?;
     let budget = &details.0;
     let sigma = budget.sigma();
     let share = |(source, part): (Part, orientation::units::Radians)| Share {
-        name: source.to_string(),
+        name: match fit.more_noise.filter(|_| source == Part::Noise) {
+            Some(more) => format!("{source}, {more}"),
+            None => source.to_string(),
+        },
         value: format!("{:.4}", part.degrees()),
         percent: 100.0 * (part.0 / sigma.0) * (part.0 / sigma.0),
     };
     let dominant =
         budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
-    Shares {
+    Some(Shares {
         title: format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default()),
         head: ["source", "part, °", "share of the variance, %"].map(str::to_owned),
         rows: details.shown().map(share).collect(),
         sum: ["root sum of squares".to_owned(), format!("{:.4}", sigma.degrees())],
-    }
+    })
 }
 
 /// What helps against a part that dominates.

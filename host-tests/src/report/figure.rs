@@ -169,6 +169,9 @@ impl Axis {
 }
 
 impl Point {
+    /// Where a curve is interrupted.
+    pub const BREAK: Self = Self { x: f64::NAN, y: f64::NAN, limits: None };
+
     /// A point with limits of one σ on either side.
     #[must_use]
     pub fn within(x: f64, y: f64, sigma: f64) -> Self {
@@ -185,18 +188,28 @@ impl From<(f64, f64)> for Point {
 /// Most points of a series that a figure draws: more could hardly be distinguished.
 pub const POINTS: usize = 600;
 
-/// The least and the greatest point of a stretch, in their order; its end where it is interrupted.
+/// Whether a curve is interrupted here.
+fn is_break(point: &Point) -> bool {
+    !point.x.is_finite() || !point.y.is_finite()
+}
+
+/// The least and the greatest point of a stretch without breaks, in their order.
 fn extremes(stretch: &[Point]) -> Vec<Point> {
-    let is_broken = |point: &&Point| !point.x.is_finite() || !point.y.is_finite();
-    let places = stretch.iter().enumerate().filter(|(_, point)| !is_broken(point));
+    let places = || stretch.iter().enumerate();
     let by_height = |a: &(usize, &Point), b: &(usize, &Point)| a.1.y.total_cmp(&b.1.y);
-    let least = places.clone().min_by(by_height).map(|(place, _)| place);
-    let greatest = places.max_by(by_height).map(|(place, _)| place);
+    let least = places().min_by(by_height).map(|(place, _)| place);
+    let greatest = places().max_by(by_height).map(|(place, _)| place);
     let mut kept: Vec<usize> = [least, greatest].into_iter().flatten().collect();
     kept.sort_unstable();
     kept.dedup();
-    let broken = stretch.iter().find(is_broken);
-    kept.into_iter().map(|place| stretch[place]).chain(broken.copied()).collect()
+    kept.into_iter().map(|place| stretch[place]).collect()
+}
+
+/// A piece of a curve without breaks, thinned to the extremes of each stretch of so many points; its ends stay.
+fn thinned(piece: &[Point], stretch: usize) -> Vec<Point> {
+    let [first, inner @ .., last] = piece else { return piece.to_vec() };
+    let inner = inner.chunks(stretch).flat_map(extremes);
+    std::iter::once(*first).chain(inner).chain([*last]).collect()
 }
 
 impl Series {
@@ -212,7 +225,9 @@ impl Series {
         if !is_curve {
             return all.iter().step_by(step).copied().collect();
         }
-        all.chunks(2 * step).flat_map(extremes).collect()
+        let pieces: Vec<Vec<Point>> =
+            all.split(is_break).map(|piece| thinned(piece, 2 * step)).collect();
+        pieces.join(&Point::BREAK)
     }
 
     /// A curve through (x, y).

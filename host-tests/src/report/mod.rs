@@ -53,6 +53,9 @@ pub enum Part {
     Detail(Box<Part>),
 }
 
+/// Remarks on a result that are shown at once; more are folded away, or told where everything is asked for.
+const REMARKS: usize = 4;
+
 /// How much is told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verbosity {

@@ -133,6 +133,8 @@ pub enum Kind {
     Used,
     /// What goes on between.
     Between,
+    /// What the gyros carry alone, nothing being measured beside them.
+    Coasting,
     /// What took no part.
     LeftOut,
     /// What went wrong.
@@ -145,6 +147,7 @@ impl Kind {
         match self {
             Self::Used => "measured",
             Self::Between => "on the way",
+            Self::Coasting => "by the gyros alone",
             Self::LeftOut => "left out",
             Self::Wrong => "went wrong",
         }

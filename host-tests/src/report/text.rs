@@ -1,6 +1,6 @@
 //! A report as text for a terminal.
 
-use super::{Grade, Lines, Look, Part, Report, Share, Shares, Summary, Table, Verbosity};
+use super::{Grade, Lines, Look, Part, REMARKS, Report, Share, Shares, Summary, Table, Verbosity};
 
 /// Least width of a label, characters.
 const LABEL: usize = 18;
@@ -61,13 +61,22 @@ fn of_summary(summary: &Summary, look: Look) -> String {
     lines.extend(found.iter().map(|[what, is]| [what.clone(), look.coloured(is, "1")]));
     lines.extend(named("reason", reasons));
     if look.verbosity != Verbosity::Quiet {
-        lines.extend(named("noted", remarks));
+        lines.extend(noted(remarks, look.verbosity));
         lines.extend(facts.iter().cloned());
     }
     if look.verbosity == Verbosity::Verbose {
         lines.extend(circumstances.iter().cloned());
     }
     aligned(&lines)
+}
+
+/// The remarks, of many only the first ones unless everything is asked for.
+fn noted(remarks: &[String], verbosity: Verbosity) -> Vec<[String; 2]> {
+    let most = if verbosity == Verbosity::Verbose { usize::MAX } else { REMARKS };
+    let others = remarks.len().saturating_sub(most);
+    let more = (others > 0).then(|| format!("{others} more, which --verbose tells"));
+    let all = remarks.iter().take(most).cloned().chain(more);
+    all.map(|words| ["noted".to_owned(), words]).collect()
 }
 
 /// A part, where it is to be shown.

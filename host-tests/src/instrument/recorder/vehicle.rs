@@ -32,7 +32,9 @@ impl Recorded for VehicleScenario {
         recording::Given::new(setting, procedure, ended).write(to, &head)?;
         let azimuth = degrees(run.azimuth_rad()).rem_euclid(360.0);
         writeln!(to, "# truth_azimuth_deg: {azimuth}")?;
-        writeln!(to, "# truth_start_azimuth_deg: {}", self.base.azimuth_deg)?;
+        if let Some(start) = start_deg(self, run) {
+            writeln!(to, "# truth_start_azimuth_deg: {start}")?;
+        }
         writeln!(to, "{COLUMNS}")?;
         driven_rows(of, period_s.0).iter().try_for_each(|it| {
             let ([x, y, z], [ahead, right, down]) = (it.sample.rates_rad_s, it.sample.force_m_s2);
@@ -48,7 +50,7 @@ impl Recorded for VehicleScenario {
     fn end_of<'r>(&self, run: &'r VehicleRun) -> (&'r Kept, Truth) {
         let truth = Truth {
             azimuth_deg: Some(degrees(run.azimuth_rad()).rem_euclid(360.0)),
-            start_azimuth_deg: Some(self.base.azimuth_deg),
+            start_azimuth_deg: start_deg(self, run),
             ..Truth::default()
         };
         (&run.kept, truth)
@@ -67,6 +69,11 @@ pub fn driven_rows(samples: &[InertialSample], period_s: f64) -> Vec<ImuRow> {
         ImuRow { line, time_s, sample: body, force_is_new }
     };
     (1..).zip(samples).map(row).collect()
+}
+
+/// The true azimuth where the alignment began, °: the scenario's of the first one, not known of one that was begun anew.
+fn start_deg(scenario: &VehicleScenario, run: &VehicleRun) -> Option<f64> {
+    (!run.is_realigned()).then_some(scenario.base.azimuth_deg)
 }
 
 /// Writes where the vehicle stood, and what the board was given of how far from the first stop that was.

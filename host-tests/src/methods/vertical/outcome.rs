@@ -10,7 +10,7 @@ use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome, of_biases};
 use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero, signed};
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
+use crate::report::{Axis, Columns, Figure, Lines, Part, Point, Series, Style};
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
@@ -42,6 +42,7 @@ impl Finished for Replay {
             seconds: self.seconds,
             assumed: self.assumed.clone(),
             facts: self.lines(biases).lines,
+            circumstances: self.circumstances(),
             found: is_found.then(|| self.level()),
             ..Outcome::new("vertical", details, parts)
         }
@@ -78,6 +79,12 @@ impl Replay {
         let sigma = self.last.level_sigma.degrees();
         let words = format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)");
         ["pitch, roll".to_owned(), words]
+    }
+
+    /// Length of the record.
+    fn circumstances(&self) -> Vec<[String; 2]> {
+        let (seconds, count) = (self.seconds, self.moments.len());
+        Lines::default().with("time", format!("{seconds:.2} s, {count} samples")).lines
     }
 
     fn lines(&self, biases_dph: [[f64; 3]; 2]) -> Lines {
@@ -124,7 +131,9 @@ fn heading(off: &[Off]) -> Figure {
 fn sigma(moments: &[Moment]) -> Figure {
     let of = |moment: &Moment| (moment.time_s, degrees(moment.level_sigma));
     let series = vec![Series::of("1σ of pitch and of roll", Style::Line, moments, of)];
-    Figure::over_time("How good pitch and roll are", ["1σ", "°"], series)
+    // From what is known of them before the first sample, a half turn, down to arcseconds.
+    let sigma = Axis::logarithmic("1σ", "°");
+    Figure::new("How good pitch and roll are", ["time", "s"], sigma, series)
 }
 
 fn level(moments: &[Moment]) -> Figure {

@@ -2,6 +2,7 @@
 
 use orientation::noise::allan::{terms, variance};
 use orientation::noise::fit::Estimate;
+use orientation::noise::model::GyroNoise;
 
 use super::super::degrees_per_hour;
 use super::{Coefficient, coefficients, short};
@@ -33,7 +34,7 @@ fn figure(analysis: &Analysis) -> Figure {
     series.retain(|series| !series.points.is_empty());
     let asymptotes: Vec<Asymptote> = asymptotes(analysis).collect();
     series.extend(asymptotes.iter().map(Asymptote::series));
-    let notes = asymptotes.iter().filter_map(Asymptote::note);
+    let notes = notes(&asymptotes, &noise);
     let (x, y) =
         (Axis::logarithmic("averaging time τ", "s"), Axis::logarithmic("Allan deviation σ", "°/h"));
     Figure::new("Allan deviation", x, y, series).noted(notes)
@@ -64,29 +65,52 @@ struct Asymptote {
     curve: Vec<(f64, f64)>,
 }
 
-/// Slopes of Q, N, B, K and R in both logarithms (IEEE Std 952-1997, annex C).
-const SLOPES: [&str; 5] = ["−1", "−½", "0", "+½", "+1"];
+/// Letters of the coefficients, and the slopes of what each gives in both logarithms (IEEE Std 952-1997, annex C).
+const SLOPES: [[&str; 2]; 5] = [["Q", "−1"], ["N", "−½"], ["B", "0"], ["K", "+½"], ["R", "+1"]];
 
 impl Asymptote {
     /// Broken where the record shows the coefficient, dotted where it is only an upper limit.
     fn series(&self) -> Series {
         let is_found = matches!(self.coefficient.si, Estimate::Found { .. });
         let style = if is_found { Style::Dashed } else { Style::Dotted };
-        let name = format!("{}: {}", self.coefficient.name, self.coefficient.text());
+        let (Coefficient { name, .. }, [_, slope]) = (&self.coefficient, self.slope());
+        let name = format!("{name}, slope {slope}: {}", self.coefficient.text());
         Series::new(&name, style, self.curve.iter().copied())
     }
 
-    /// The coefficient's letter and its slope at a place of the line.
-    fn note(&self) -> Option<Note> {
-        let letter = self.coefficient.name.chars().next()?;
-        let slope =
-            SLOPES[["Q", "N", "B", "K", "R"].iter().position(|it| it.starts_with(letter))?];
-        let place = if letter == 'N' || letter == 'Q' { 1 } else { self.curve.len() * 4 / 5 };
-        let (x, y) = *self.curve.get(place)?;
-        let most =
-            if matches!(self.coefficient.si, Estimate::Found { .. }) { "" } else { " at most" };
-        Some(Note { x, y, text: format!("{letter}{most}, slope {slope}") })
+    /// The coefficient's letter, and the slope of what it gives in both logarithms.
+    fn slope(&self) -> [&'static str; 2] {
+        let is_its = |slope: &&[&str; 2]| self.coefficient.name.starts_with(slope[0]);
+        SLOPES.iter().find(is_its).copied().unwrap_or_default()
     }
+
+    /// Where the asymptote may be named: the places of its curve, those first that lie farthest from the fit.
+    fn places(&self, noise: &GyroNoise) -> Vec<[f64; 2]> {
+        let from_fit = |[tau, deviation]: &[f64; 2]| {
+            (deviation / degrees_per_hour(variance(noise, *tau).sqrt())).ln().abs()
+        };
+        let mut places: Vec<[f64; 2]> = self.curve.iter().map(|&(x, y)| [x, y]).collect();
+        places.sort_by(|a, b| from_fit(b).total_cmp(&from_fit(a)));
+        places
+    }
+}
+
+/// Ratios of averaging times, and of deviations, from which names in the figure do not touch each other on a phone.
+const APART: [f64; 2] = [5.0, 1.5];
+
+/// The asymptotes' letters with their slopes, none over another.
+fn notes(asymptotes: &[Asymptote], noise: &GyroNoise) -> Vec<Note> {
+    let mut notes: Vec<Note> = Vec::new();
+    for asymptote in asymptotes {
+        let touches = |[x, y]: [f64; 2], note: &Note| {
+            let ratios = [x / note.x, y / note.y].map(|ratio| ratio.max(1.0 / ratio));
+            ratios[0] < APART[0] && ratios[1] < APART[1]
+        };
+        let is_free = |place: &[f64; 2]| !notes.iter().any(|note| touches(*place, note));
+        let Some([x, y]) = asymptote.places(noise).into_iter().find(is_free) else { continue };
+        notes.push(Note { x, y, text: asymptote.slope().join(" ") });
+    }
+    notes
 }
 
 fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Asymptote> {

@@ -1,11 +1,11 @@
 //! The page of a plan: Burov's curve, the orders that were compared, and the time that σ takes.
 
 use orientation::planner::order::Order;
-use orientation::planner::{Plan, burov, for_time};
+use orientation::planner::{Plan, burov};
 use orientation::units::Seconds;
 
 use crate::output::plan;
-use crate::planning::{Planned, Request};
+use crate::planning::{self, Planned, Request};
 use crate::report::{Axis, Figure, Part, Report, Series, Style};
 
 /// Most passes that the figure shows.
@@ -57,7 +57,7 @@ fn times(request: &Request, seconds: f64) -> Figure {
     let [low, high] = REACH;
     let time = |i| seconds * low * (high / low).powf(f64::from(i) / f64::from(TIMES));
     let curve = (0..=TIMES).map(time).filter_map(|time| {
-        let plan = for_time(&request.conditions(), Seconds(time)).ok()?;
+        let plan = planning::best(&request.conditions(), Seconds(time)).ok()?;
         Some((time, plan.sigma(request.latitude).degrees()))
     });
     let series = [Series::new("optimum", Style::LineAndPoints, curve)];

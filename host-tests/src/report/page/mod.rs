@@ -7,7 +7,7 @@ mod span;
 mod timeline;
 
 use self::markup::{element, escaped};
-use super::{Lines, Part, Report, Share, Shares, Summary, Table};
+use super::{Lines, Part, REMARKS, Report, Share, Shares, Summary, Table};
 
 /// How the page looks, in light and dark, on paper and on a phone.
 const STYLE: &str = include_str!("style.css");
@@ -33,8 +33,8 @@ pub(super) fn document(report: &Report) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
          <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n{head}\
-         <div class=\"subtitle\">\n{subtitle}</div>\n</header>\n<main>\n{parts}</main>\n\
-         <footer>\n{origin}</footer>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n"
+         <div class=\"subtitle\">\n{subtitle}</div>\n{origin}</header>\n<main>\n{parts}</main>\n\
+         <script>\n{SCRIPT}</script>\n</body>\n</html>\n"
     )
 }
 
@@ -47,10 +47,7 @@ fn headed(report: &Report, summary: &Summary) -> String {
         let (what, is) = (element("p class=\"what\"", what), element("p class=\"value\"", is));
         format!("{is}{what}")
     });
-    let each = |class: &str, all: &[String]| -> String {
-        all.iter().map(|words| element(&format!("p class=\"{class}\""), words)).collect()
-    };
-    let first = each("reason", reasons) + &what + &each("remark", remarks);
+    let first = each("reason", reasons) + &what + &of_remarks(remarks);
     let lines: String = facts.iter().chain(circumstances).map(fact).collect();
     let compass = rose.as_ref().map(rose::rose).unwrap_or_default();
     let title = escaped(&report.title);
@@ -58,6 +55,23 @@ fn headed(report: &Report, summary: &Summary) -> String {
         "<div class=\"head\"><div class=\"result\">\n{badge}<h1>{title}</h1>\n{first}\
          <dl class=\"facts\">\n{lines}</dl>\n</div>\n{compass}</div>\n"
     )
+}
+
+/// A paragraph of a class for each.
+fn each(class: &str, all: &[String]) -> String {
+    all.iter().map(|words| element(&format!("p class=\"{class}\""), words)).collect()
+}
+
+/// The first remarks; where there are many the others are folded away.
+fn of_remarks(all: &[String]) -> String {
+    let (first, others) = all.split_at(all.len().min(REMARKS));
+    let more = if others.is_empty() {
+        String::new()
+    } else {
+        let summary = element("summary", &format!("{} more", others.len()));
+        format!("<details>\n{summary}{}</details>\n", each("remark", others))
+    };
+    each("remark", first) + &more
 }
 
 fn fact([label, value]: &[String; 2]) -> String {
@@ -123,9 +137,9 @@ fn of_share(share: &Share) -> String {
     )
 }
 
-/// Shares with a bar each, the greatest first.
+/// Shares with a bar each, the greatest first; those that round to nothing are left out.
 fn of_shares(Shares { head, rows, sum, .. }: &Shares) -> String {
-    let mut rows: Vec<_> = rows.iter().collect();
+    let mut rows: Vec<_> = rows.iter().filter(|share| share.is_seen()).collect();
     rows.sort_by(|a, b| b.percent.total_cmp(&a.percent));
     let bars: Vec<String> = rows.into_iter().map(of_share).collect();
     let bars = bars.concat();

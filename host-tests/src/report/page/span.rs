@@ -8,8 +8,11 @@ use crate::report::{Axis, Scale};
 /// The part of its reach that an axis leaves free at each end.
 const MARGIN: f64 = 0.03;
 
-/// Ticks that a logarithmic axis bears at least.
+/// Ticks that an axis bears at least.
 const FEWEST_TICKS: usize = 3;
+
+/// A step that is divided by this is rounded to the next smaller one: of 1, 2, 5 and 10 none is farther from its neighbour.
+const CLOSER: f64 = 2.6;
 
 /// Decades over which the lines between powers of ten can still be distinguished.
 const FINE_DECADES: f64 = 7.0;
@@ -98,9 +101,19 @@ impl Span {
         let (major, minor) = (Vec::new(), Vec::new());
         let span = Self { low, high, major, minor, scale, most, step, is_in_powers: false };
         match scale {
-            Scale::Linear => Self { major: ticks(low, high, step), ..span },
+            Scale::Linear => span.linear(),
             Scale::Logarithmic => span.logarithmic(),
         }
+    }
+
+    /// A linear axis with its ticks, closer where the next round step leaves but one or two.
+    fn linear(mut self) -> Self {
+        self.major = ticks(self.low, self.high, self.step);
+        if self.major.len() < FEWEST_TICKS {
+            self.step = round_step(self.step / CLOSER);
+            self.major = ticks(self.low, self.high, self.step);
+        }
+        self
     }
 
     /// A logarithmic axis with its ticks: at powers of ten, at round multiples of them where it is short, at equal

@@ -2,6 +2,7 @@
 //! independent covariance.
 
 mod covariance;
+mod least;
 
 use covariance::rate_sigma;
 use orientation::earth::Latitude;

@@ -382,12 +382,13 @@ fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widenin
         Radians(if sigma > 0.0 { together / sigma } else { 0.0 })
     };
     let site = &setting.site;
+    let displacement = libm::hypot(path.displacement_sigma(setting), path.left_sigma(setting));
     let mut budget = Budget {
         drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma().0),
         scale: part(SCALE..SCALE + 3, site.scale_sigma),
         accelerometer: part(FORCE..FORCE + 3, site.accelerometer_bias_sigma.0),
         latitude: part(LATITUDE..LATITUDE + 1, site.latitude_sigma.0),
-        displacement: part(PLACE..PLACE + 2, path.displacement_sigma(setting)),
+        displacement: part(PLACE..PLACE + 2, displacement),
         ..Budget::default()
     };
     let beside = budget.beside_noise().0;

@@ -9,6 +9,8 @@ use crate::signal::strapdown::{Carried, Rough};
 
 /// Least noise power of the accelerometers that is assumed, (m/s²)²·s: 1 µg/√Hz.
 const LEAST_DENSITY: f64 = 1e-10;
+/// Time after a stop that may still belong to it, s: the delay of the stop criteria.
+const REMAINDER: f64 = 4.0;
 /// Ratio of the white force noise that blurs a slope over some seconds as much as the velocities at
 /// both ends do, to the velocities' variance times those seconds: 12 for a slope, 2 · 36 for the
 /// velocities.
@@ -53,6 +55,12 @@ impl Path<'_> {
         }
         let unknown = setting.speed_sigma.0 * (last.from.0 - first.to.0).max(0.0);
         if last.displacement.is_some() { setting.displacement_sigma.0 } else { unknown }
+    }
+
+    /// Standard deviation of the distance that was driven since the last stop, 1σ, m; it is not known.
+    pub(crate) fn left_sigma(&self, setting: &Setting) -> f64 {
+        let driven = self.stops.last().map_or(0.0, |stop| self.now - stop.to.0 - REMAINDER);
+        setting.speed_sigma.0 * driven.max(0.0)
     }
 
     /// Position between two stops, m, for a straight drive at constant speed.

@@ -64,8 +64,6 @@ const DRIVING: f64 = 1e-3;
 /// Mean distance of a vehicle from the straight way, relative to the distance that it could have
 /// driven.
 const DETOUR: f64 = 0.1;
-/// Time after a stop that may still belong to it, s: the delay of the stop criteria.
-const REMAINDER: f64 = 4.0;
 /// Part of a drive that its blocks may miss.
 const COVERED: f64 = 0.002;
 /// Step of the latitude in a numerical derivative, rad.
@@ -268,9 +266,7 @@ impl Solution {
         for index in 0..path.stops.len() {
             run.stop(index);
         }
-        // The distance driven since the last stop is not known.
-        let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to.0 - REMAINDER);
-        run.solution.filter.add_process_noise(setting.speed_sigma.0 * driven.max(0.0));
+        run.solution.filter.add_process_noise(path.left_sigma(setting));
         run.carry(Moment::of(path.now, &path.carried));
     }
 }

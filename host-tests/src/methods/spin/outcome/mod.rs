@@ -2,7 +2,7 @@
 
 mod figures;
 
-use orientation::roll::State;
+use orientation::roll::{Condition, State};
 use orientation::units::TURN;
 use serde::Serialize;
 
@@ -75,6 +75,23 @@ impl Replay {
     }
 }
 
+impl Replay {
+    /// That the lock is lost at the end.
+    fn degradations(&self) -> Vec<String> {
+        let state = &self.answer().end.state;
+        let is_lost = state.condition != Condition::Locked;
+        is_lost.then(|| format!("not locked at the end: {state}")).into_iter().collect()
+    }
+
+    /// Length of the record.
+    fn circumstances(&self) -> Vec<[String; 2]> {
+        let (count, period_s) = (self.answer().rolls_rad.len(), self.period_s);
+        let (seconds, hertz) = (count as f64 * period_s, 1.0 / period_s);
+        let time = format!("{seconds:.2} s, {count} samples at {hertz:.0} Hz");
+        Lines::default().with("time", time).lines
+    }
+}
+
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (answer, reason) = (self.answer(), self.refusal());
@@ -96,7 +113,8 @@ impl Finished for Replay {
         ];
         let found = at_end(self, outcome.sigma_deg);
         let facts = facts(self, &outcome).lines;
-        Outcome { found, facts, parts, ..outcome }.settled(reason)
+        let (degradations, circumstances) = (self.degradations(), self.circumstances());
+        Outcome { found, facts, parts, degradations, circumstances, ..outcome }.settled(reason)
     }
 
     fn titles(&self) -> [&'static str; 2] {

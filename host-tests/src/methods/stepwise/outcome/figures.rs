@@ -9,7 +9,7 @@ use orientation::units::Radians;
 
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{
-    Axis, Figure, Kind, Lane, Milestone, Point, Series, Shape, Stretch, Style, Timeline,
+    Axis, Figure, Kind, Lane, Milestone, POINTS, Point, Series, Shape, Stretch, Style, Timeline,
     convergence as figures,
 };
 
@@ -124,12 +124,15 @@ fn axis(dwells: &[Shown]) -> Axis {
 fn path(dwells: &[&Shown], zero: f64, earth_rate: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     let at = |shown: &Shown| Some((shown.stage_deg(), degrees_per_hour(shown.prediction?.rate.0)));
     let all: Vec<(f64, f64)> = dwells.iter().filter_map(|shown| at(shown)).collect();
+    let turned: f64 = all.windows(2).map(|pair| azimuth_error(pair[1].0, pair[0].0).abs()).sum();
+    // A stage that goes to and fro has a longer way, of which fewer places can be drawn.
+    let step_deg = STEP.max(turned / (POINTS - all.len().min(POINTS / 2)) as f64);
     let mut path: Vec<(f64, f64)> = all.first().copied().into_iter().collect();
     for pair in all.windows(2) {
         let [(from, before), (to, after)] = [pair[0], pair[1]];
         let way = azimuth_error(to, from);
         let beside = [before - earth_rate(from), after - earth_rate(to)];
-        let steps = (way.abs() / STEP).ceil().max(1.0);
+        let steps = (way.abs() / step_deg).round().max(1.0);
         for step in 1..=steps as u32 {
             let part = f64::from(step) / steps;
             let angle = from + way * part;

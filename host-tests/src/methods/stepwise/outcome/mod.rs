@@ -191,6 +191,7 @@ impl Finished for Replay {
                 earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
                 model: fit.map(columns).unwrap_or_default(),
                 excluded: self.excluded(conclusion),
+                more_noise: sway.as_ref().map(|_| "and the coarse IMU's"),
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
