@@ -5,7 +5,7 @@ use orientation::alignment::site::Site;
 
 use super::{BudgetDetails, Excluded, Finished, FitDetails, Outcome};
 use crate::methods;
-use crate::output::{degrees, noise_in_words, positive_zero, signed};
+use crate::output::{degrees, fixed, noise_in_words, positive_zero, signed};
 use crate::report::{
     Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
 };
@@ -110,7 +110,7 @@ fn circumstances(outcome: &Outcome) -> Lines {
 pub(crate) fn of_site(site: &Site) -> Lines {
     let noise = noise_in_words(site.noise.model(), site.noise.is_white_known());
     Lines::default()
-        .with("place", format!("latitude {:.4}°", degrees(site.latitude.rad())))
+        .with("place", format!("latitude {}°", fixed(degrees(site.latitude.rad()), 4)))
         .with("gyro", noise)
 }
 

@@ -37,6 +37,17 @@ pub fn signed(value: f64, places: usize) -> String {
     unsigned_zero(format!("{value:+.places$}"), "+")
 }
 
+/// So many of what has this name, in words; the plural is regular.
+#[must_use]
+pub fn counted(count: usize, name: &str) -> String {
+    let ending = match count {
+        1 => "",
+        _ if name.ends_with('s') => "es",
+        _ => "s",
+    };
+    format!("{count} {name}{ending}")
+}
+
 /// The text of a number, with another sign where it is that of a negative zero.
 fn unsigned_zero(text: String, sign: &str) -> String {
     match text.strip_prefix('-') {

@@ -15,7 +15,7 @@ use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{columns, degrees, degrees_per_hour, signed};
+use crate::output::{columns, counted, degrees, degrees_per_hour, fixed, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -107,7 +107,7 @@ impl Replay {
     /// Place, gyro, and the time that took part.
     fn circumstances(&self, kept: &[&Dwell]) -> Vec<[String; 2]> {
         let seconds: f64 = kept.iter().map(|dwell| dwell.seconds.0).sum();
-        let time = format!("{seconds:.1} s in {} dwells", kept.len());
+        let time = format!("{} s in {}", fixed(seconds, 1), counted(kept.len(), "dwell"));
         of_site(&self.session.setting.site).with("time", time).lines
     }
 
