@@ -13,7 +13,7 @@ use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
-use crate::output::{degrees, positive_zero, signed};
+use crate::output::{counted, degrees, positive_zero, signed};
 use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
@@ -31,7 +31,7 @@ pub struct RunDetails {
     /// Rows of the timeline: what was kept how, and what went wrong.
     #[serde(skip)]
     pub(super) lanes: Vec<Lane>,
-    /// What was kept at last, where anything was.
+    /// What the keeper reported at last, where it did.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
     /// Whether an azimuth was known at any time.
@@ -105,12 +105,14 @@ impl RunDetails {
     fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: Realignments) -> Self {
         let (last, realigned) = (kept.last().copied(), later.fused);
         let was_known = kept.with_azimuth().next().is_some();
-        let lines = last.iter().map(|last| Part::from(in_words(kept, last, realigned)));
+        // Before an azimuth is known there is nothing to keep.
+        let (kept, last_kept) = if was_known { (kept, last) } else { (&Kept::default(), None) };
+        let lines = last_kept.iter().map(|last| Part::from(in_words(kept, last, realigned)));
         let board = board.map(|board| Part::from(board).detail());
-        let is_lost = was_known && last.is_some_and(|last| last.report.azimuth.is_none());
+        let is_lost = last_kept.is_some_and(|last| last.report.azimuth.is_none());
         let lost = "the azimuth is not known any more at the end of what was kept".to_owned();
         Self {
-            keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, realigned))),
+            keys: keys.with_found("kept", last_kept.map(|last| of_kept(kept, &last, realigned))),
             degradations: is_lost.then_some(lost).into_iter().collect(),
             parts: lines
                 .chain(figures::all(kept).into_iter().map(Part::from))
@@ -200,7 +202,7 @@ fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
         .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))
         .with_found("their errors", (!last.truth.pitch_rad.is_nan()).then_some(level_rms))
         .with("state", last.report.state.to_string())
-        .with_found("realigned", times.map(|times| format!("{times} time(s)")))
+        .with_found("realigned", times.map(|times| counted(times, "time")))
 }
 
 /// The greatest error of the azimuth on the way, over its σ of the moment.
