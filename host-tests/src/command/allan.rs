@@ -22,7 +22,8 @@ use super::{Answer, Failure, OUTPUT, files};
 pub struct AllanOptions {
     /// The recording of kind `static`, CSV, also gzip-compressed; `-` is standard input.
     file: PathBuf,
-    /// The column with the rate; the default is `g_rad_s`, else `gx_rad_s`.
+    /// The column with the rate, rad/s, whatever its name; the default is `g_rad_s`, else `gx_rad_s`. Beside it only the
+    /// time, `t_s`, must be there.
     #[arg(long, value_name = "NAME")]
     column: Option<String>,
     /// Writes the curve, its fit and all numbers as a page for a browser.
@@ -57,8 +58,8 @@ fn read(
     let name = source.name();
     let unread = |error| recording::unread(&name, &error).message();
     let (reader, _) = source.open(Some(progress)).map_err(unread)?;
-    let opened = RestRows::open(&name, reader).map_err(|error| error.message())?;
-    Rest::read(opened, column, warnings).map_err(|error| match error {
+    let opened = RestRows::open(&name, reader, column).map_err(|error| error.message())?;
+    Rest::read(opened, warnings).map_err(|error| match error {
         RestError::Read(error) => error.message(),
         error => format!("{name}: {error}"),
     })
