@@ -155,7 +155,15 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
-        Err(failure) => failed(&failure, manner),
+        Err(failure) => failed(&explained(failure), manner),
+    }
+}
+
+/// A failure, whose reason is the interruption where there was one: what it left is too little for anything.
+fn explained(failure: Failure) -> Failure {
+    match interrupt::ended() {
+        Some(reason) => Failure { reason, ..failure },
+        None => failure,
     }
 }
 

@@ -12,6 +12,7 @@ use orientation::units::AngularRate;
 use thiserror::Error;
 
 use super::Overlapping;
+use crate::interrupt;
 use crate::recording::{
     Kind, Opened, ReadError, RestRows, Short, Spacer, Spacing, StaticRow, Unsteady, Warning,
 };
@@ -90,7 +91,15 @@ impl Rest {
         gathered.finish(column, rows.header.rate_hz)
     }
 
-    /// What a reader must know of the record: gaps, and a header's rate that is wrong.
+    /// That reading was interrupted, and after how many rows, where it was.
+    #[must_use]
+    pub fn interruption(&self) -> Option<String> {
+        let rows = self.samples;
+        let why = || format!("interrupted at {rows} rows: they are all that is analysed");
+        interrupt::ended().map(|_| why())
+    }
+
+    /// What a reader must know of the record: an interruption, gaps, and a header's rate that is wrong.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let Spacing { period_s, gaps, gap_count, missing_s, contradicted_rate_hz } = &self.spacing;
@@ -103,7 +112,7 @@ impl Rest {
             let gaps = if *gap_count == 1 { "gap" } else { "gaps" };
             format!("{gap_count} {gaps}, {missing_s:.3} s in all, the first before line {line} after {from} s: no window crosses one")
         });
-        rate.into_iter().chain(gaps).collect()
+        self.interruption().into_iter().chain(rate).chain(gaps).collect()
     }
 
     /// Why nothing can be said whatever the variances are.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use host::allan::analysis::Analysis;
 use host::allan::rest::{Rest, RestError};
+use host::interrupt;
 use host::new_file::NewFile;
 use host::output::allan::Shown;
 use host::output::manner::Manner;
@@ -40,6 +41,7 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let name = source.name();
     let mut warnings = Vec::new();
     let progress = Progress::new(manner, 0, "reading");
+    interrupt::end_input();
     let rest = read(&source, options.column.as_deref(), &progress, &mut warnings);
     progress.finish();
     let warnings = recording::warning_lines(&warnings, Path::new(&name));
@@ -81,6 +83,7 @@ fn analyse(
         schedule: found.and_then(|analysis| suggestion(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(name, rest, reason));
+    let refusal = rest.interruption().or(refusal);
     let answer = Answer::reported(refusal, manner, &shown.object(), || shown.report())?;
     Ok(answer.with_page(page, || shown.report()))
 }

@@ -13,6 +13,8 @@ use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
+use crate::instrument::replay::Done;
+use crate::interrupt;
 use crate::output::{counted, degrees, positive_zero, signed};
 use crate::report::{Lane, Lines, Part};
 
@@ -40,7 +42,16 @@ pub struct RunDetails {
     /// By how many σ the latest azimuth disagreed with what was kept, where neither is believed.
     #[serde(skip)]
     pub(super) disagreement: Option<f64>,
+    /// That the run was interrupted, and how far it was.
+    #[serde(skip)]
+    pub(super) interruption: Option<String>,
+    /// Why the alignment was concluded before its own end, where it was.
+    #[serde(skip)]
+    pub(super) cut_short: Option<String>,
 }
+
+/// Why an alignment has no end in a file of inputs.
+const BROKEN_OFF: &str = "the file breaks off before the alignment is over";
 
 /// What only the run of a single platform has; nothing by default.
 #[must_use]
@@ -92,13 +103,17 @@ impl RunDetails {
         let this = Self::with(keys, Some(board), &run.kept, realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
-        Self { degradations, lanes, ..this }
+        let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
+        Self { degradations, lanes, cut_short, ..this }
     }
 
-    /// What was kept, and how later azimuths agreed with it.
+    /// What the inputs of a run did: what was kept, and how later azimuths agreed with it.
     #[must_use]
-    pub fn of_kept(kept: &Kept, realignments: Realignments) -> Self {
-        Self::with(Keys::default(), None, kept, realignments)
+    pub fn of_inputs(done: &Done) -> Self {
+        let this = Self::with(Keys::default(), None, &done.kept, done.realignments);
+        let why = || this.interruption.clone().unwrap_or_else(|| BROKEN_OFF.to_owned());
+        let cut_short = done.is_cut_short.then(why);
+        Self { cut_short, ..this }
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.
@@ -122,6 +137,8 @@ impl RunDetails {
             kept: last,
             was_known,
             disagreement: later.disagreement,
+            interruption: interrupt::ended(),
+            cut_short: None,
         }
     }
 }

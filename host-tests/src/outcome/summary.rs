@@ -67,8 +67,12 @@ fn degradations(outcome: &Outcome) -> Vec<String> {
     let left_out =
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
     let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
-    left_out.chain(run).collect()
+    let interruption = outcome.interruption.iter().map(|why| format!("{why}: {SO_FAR}"));
+    left_out.chain(run).chain(interruption).collect()
 }
+
+/// What is shown of what was interrupted.
+const SO_FAR: &str = "what was done until then is shown";
 
 /// What was looked for, and what it is.
 fn found(outcome: &Outcome) -> Option<[String; 2]> {
