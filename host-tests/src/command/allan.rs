@@ -46,7 +46,10 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     progress.finish();
     let warnings = recording::warning_lines(&warnings, Path::new(&name));
     rest.and_then(|rest| analyse(&name, &rest, page, manner))
-        .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
+        .map_err(|reason| {
+            let failure = Failure { warnings: warnings.clone(), ..reason.into() };
+            failure.without_page(options.report.as_ref())
+        })
         .map(|answer| answer.with_warnings(warnings))
 }
 

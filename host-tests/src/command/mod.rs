@@ -15,6 +15,7 @@ mod source;
 pub mod stated;
 
 use std::io::{IsTerminal as _, Write};
+use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::angle::Quantity;
@@ -64,6 +65,14 @@ impl Failure {
     /// A failure because the options do not suit what was read.
     pub fn misuse(reason: String) -> Self {
         Self { reason, warnings: Vec::new(), is_misuse: true }
+    }
+
+    /// The failure, which leaves nothing that a page could show, where one was asked for.
+    fn without_page(mut self, report: Option<&PathBuf>) -> Self {
+        let reason = &self.reason;
+        let no_page = report.map(|_| format!("--report: there is no page: {reason}"));
+        self.warnings.extend(no_page);
+        self
     }
 }
 

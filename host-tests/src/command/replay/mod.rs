@@ -132,5 +132,6 @@ fn run_one(one: &One<'_>, source: &Source, manner: Manner) -> Result<Answer, Fai
     interrupt::end_input();
     let done = One { progress: Some(&progress), ..*one }.replay(source);
     progress.finish();
-    Ok(done?.answer([page, attitude], manner)?)
+    let done = done.map_err(|failure| failure.without_page(options.report.as_ref()))?;
+    Ok(done.answer([page, attitude], manner)?)
 }
