@@ -274,8 +274,11 @@ fn sigma(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Writes to standard output; a closed pipe is no error of ours.
+/// Writes to standard output, where there is anything to write; a closed pipe is no error of ours.
 pub fn print(output: &str) -> Result<(), String> {
+    if output.is_empty() {
+        return Ok(());
+    }
     match writeln!(std::io::stdout(), "{output}") {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
         _ => Ok(()),

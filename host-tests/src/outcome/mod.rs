@@ -14,6 +14,7 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::budget::Budget;
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::units::Radians;
 use serde::{Serialize, Serializer};
 
@@ -219,7 +220,7 @@ impl Outcome {
             sigma_deg: azimuth.map(|azimuth| azimuth.sigma.degrees()),
             error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
             remedy: verdict.as_ref().err().map_or("", Refusal::remedy),
-            ..self.settled(verdict.as_ref().err().map(ToString::to_string))
+            ..self.settled(verdict.as_ref().err().map(in_words))
         }
     }
 
@@ -256,6 +257,16 @@ impl Outcome {
     /// Whether there is a result.
     pub(crate) fn is_ok(&self) -> bool {
         self.reason.is_none()
+    }
+}
+
+/// Why there is no azimuth, with the option that helps, which the core does not know.
+fn in_words(refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::Stepwise(stepwise::Refusal::SignUnknown) => {
+            format!("{refusal}: --half east, or --half west")
+        }
+        _ => refusal.to_string(),
     }
 }
 

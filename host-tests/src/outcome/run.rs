@@ -15,7 +15,7 @@ use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::instrument::replay::Done;
 use crate::interrupt;
-use crate::output::{counted, degrees, positive_zero, signed};
+use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, signed};
 use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
@@ -200,7 +200,7 @@ fn in_words(kept: &Kept, last: &Point, realigned: usize) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
-        |[azimuth, sigma, _]| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"),
+        |[azimuth, sigma, _]| format!("{}° ± {sigma:.4}° (1σ)", in_circle(azimuth, 4)),
     );
     let known = last.azimuth_deg().filter(|[.., error]| !error.is_nan());
     let error = known.map(|[_, sigma, error]| {

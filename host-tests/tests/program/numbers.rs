@@ -1,13 +1,13 @@
 //! Numbers and tables as they are printed: nothing is empty, and nothing is less than zero by nothing.
 
-use host::output::{fixed, signed};
+use host::output::{azimuth, counted, fixed, signed, significant};
 use host::report::{Columns, Lines, Part, Report, Table};
 use proptest::prelude::*;
 use serde_json::Value;
 
 use crate::support::files::Scratch;
 use crate::support::pages::figures;
-use crate::support::program::{meridian, object, text};
+use crate::support::program::{code, meridian, object, text};
 
 proptest! {
     #[test]
@@ -20,6 +20,34 @@ proptest! {
             prop_assert!(number == 0.0 || text == plain, "{}", text);
         }
     }
+}
+
+proptest! {
+    #[test]
+    fn an_azimuth_stands_within_a_circle_however_it_is_rounded(degrees in -720.0_f64..720.0, places in 0_usize..6) {
+        for degrees in [degrees, degrees.round(), degrees.round() - 1e-9] {
+            let text = azimuth(degrees, places);
+            let number: f64 = text.parse().expect("a number");
+            prop_assert!((0.0..360.0).contains(&number) && !text.starts_with('-'), "{}", text);
+            let off = (number - degrees).rem_euclid(360.0);
+            let least = 0.5001 * 10.0_f64.powi(-i32::try_from(places).expect("it is small")) + 1e-9;
+            prop_assert!(off.min(360.0 - off) <= least, "{} of {}", text, degrees);
+        }
+    }
+
+    #[test]
+    fn a_number_of_so_many_digits_is_right_to_the_last_of_them(exponent in -6.0_f64..6.0, digits in 1_i32..8) {
+        let value = 10.0_f64.powf(exponent);
+        let text = significant(value, digits);
+        let number: f64 = text.parse().expect("a number");
+        prop_assert!(!text.contains('e') && (number / value - 1.0).abs() <= 5.001 * 10.0_f64.powi(-digits), "{}", text);
+    }
+}
+
+#[test]
+fn what_is_counted_has_the_number_that_its_count_asks_for() {
+    let all = [counted(0, "turn"), counted(1, "turn"), counted(2, "turn"), counted(2, "pass")];
+    assert_eq!(all, ["0 turns", "1 turn", "2 turns", "2 passes"]);
 }
 
 #[test]
@@ -122,6 +150,38 @@ fn a_run_that_never_knew_its_azimuth_kept_nothing() {
         let arguments: Vec<&str> = ["run", "--json"].into_iter().chain(run.split(' ')).collect();
         assert!(object(&meridian(&arguments)).get("kept").is_none(), "{run}");
     }
+}
+
+#[test]
+fn a_truth_that_rounds_to_a_whole_circle_is_north() {
+    let run = ["run", "--azimuth", "359.99999", "--rate", "50", "--dwell", "2", "--hold", "0"];
+    let told = text(&meridian(&run).stdout);
+    assert!(told.contains("truth              0.0000°"), "{told}");
+}
+
+#[test]
+fn a_plan_has_no_exponents_and_counts_one_pass() {
+    let output = meridian(&["plan", "--arw", "0.001", "--latitude", "48", "--seconds", "600"]);
+    let told = text(&output.stdout);
+    let is_exponent = |pair: &[char]| pair[0].is_ascii_digit() && pair[1] == 'e';
+    assert!(!told.chars().collect::<Vec<_>>().windows(2).any(is_exponent), "{told}");
+    assert!(told.contains("1 pass\n"), "{told}");
+}
+
+#[test]
+fn what_is_refused_prints_no_empty_line() {
+    let output = meridian(&[
+        "plan",
+        "--arw",
+        "0.1",
+        "--bias-instability",
+        "9",
+        "--latitude",
+        "48",
+        "--sigma",
+        "0.0001",
+    ]);
+    assert_eq!((code(&output), text(&output.stdout).as_str()), (1, ""));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use host::new_file::NewFile;
 use host::outcome::{Outcome, SCHEMA};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
-use host::output::signed;
+use host::output::{azimuth as in_circle, signed};
 use host::report::{Columns, Lines, Look, Report, Verbosity};
 use host::unwritten;
 use host::work::side_by_side;
@@ -213,7 +213,7 @@ impl Row {
 fn found(outcome: &Outcome) -> String {
     let Some(sigma) = outcome.sigma_deg else { return outcome.status.to_owned() };
     match (outcome.azimuth_deg, outcome.pitch_deg.zip(outcome.roll_deg)) {
-        (Some(azimuth), _) => format!("{azimuth:.4}° ± {sigma:.4}°"),
+        (Some(azimuth), _) => format!("{}° ± {sigma:.4}°", in_circle(azimuth, 4)),
         (None, Some((pitch, roll))) => {
             format!("pitch {pitch:.3}°, roll {roll:.3}° ± {sigma:.3}°")
         }

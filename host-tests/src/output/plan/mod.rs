@@ -4,7 +4,7 @@ pub mod page;
 
 use orientation::planner::FEWEST;
 
-use super::{counted, degrees, fixed, noise_in_words};
+use super::{counted, degrees, fixed, noise_in_words, significant};
 use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
 use crate::report::{Lines, Part, Report, Summary};
 
@@ -35,11 +35,11 @@ fn burov(planned: &Planned) -> Lines {
         ));
     };
     let OfBurov { positions, dwell_s, seconds, rate_error_deg_h: rate, .. } = burov;
-    let with_b = rate.hypot(burov.flicker_deg_h);
+    let [rate, with_b] = [*rate, rate.hypot(burov.flicker_deg_h)].map(|rate| significant(rate, 4));
     let one_axis = sigmas(burov.one_axis_sigma_deg);
     lines
         .with("positions", format!("{positions} of {dwell_s:.2} s, {seconds:.1} s in all"))
-        .with("rate error", format!("{rate:.4e} °/h; with B {with_b:.4e} °/h"))
+        .with("rate error", format!("{rate} °/h; with B {with_b} °/h"))
         .with("from one axis", format!("{one_axis}, the half of the azimuth known"))
         .with("full azimuth", format!("{}, √2 of that", sigmas(burov.sigma_deg)))
 }

@@ -20,7 +20,9 @@ use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{azimuth_error, counted, degrees, degrees_per_hour, fixed, signed};
+use crate::output::{
+    azimuth as in_circle, azimuth_error, counted, degrees, degrees_per_hour, fixed, signed,
+};
 use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -307,7 +309,7 @@ fn table_of_stages(fit: &Fit) -> Part {
     let off = |azimuth| azimuth_error(azimuth, fit.stages.full.degrees());
     Columns::of("Azimuth after each stage of compensation", &stages)
         .column("stage", |(stage, _)| stage)
-        .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
+        .column("azimuth, °", |(_, azimuth)| in_circle(*azimuth, 4))
         .column("from the last, °", |(_, azimuth)| signed(off(*azimuth), 4))
         .into()
 }

@@ -15,7 +15,9 @@ use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{columns, counted, degrees, degrees_per_hour, fixed, signed};
+use crate::output::{
+    azimuth as in_circle, columns, counted, degrees, degrees_per_hour, fixed, signed,
+};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -226,7 +228,7 @@ fn positions(lines: Lines, found: &Autocompensation) -> Lines {
         visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
     let plain = found.plain_azimuth_deg.zip(found.plain_off_sigmas).map(|(azimuth, off)| {
         let off = signed(off, 2);
-        format!("{azimuth:.4}° by plain least squares, {off} σ from the azimuth")
+        format!("{}° by plain least squares, {off} σ from the azimuth", in_circle(azimuth, 4))
     });
     lines.with("positions", list.join(", ")).with_found("without weights", plain)
 }

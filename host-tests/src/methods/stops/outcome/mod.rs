@@ -16,7 +16,8 @@ use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site};
 use crate::output::{
-    azimuth_error, counted, degrees, fixed, in_degrees_per_hour, positive_zero, signed,
+    azimuth as in_circle, azimuth_error, counted, degrees, fixed, in_degrees_per_hour,
+    positive_zero, signed,
 };
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
@@ -266,7 +267,7 @@ fn of_plain(found: &Found) -> Lines {
         [plain.angle, plain.euler].map(|least| azimuth_error(degrees(least.at), start));
     let title = "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias";
     Lines::new(title)
-        .with("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", plain.sigma.degrees()))
+        .with("azimuth", format!("{}° ± {:.4}° (1σ)", in_circle(azimuth, 4), plain.sigma.degrees()))
         .with("at the start", format!("{start:.7}° in closed form"))
         .with("least angle", format!("{brent:+.2e}° from that, by Brent's search"))
         .with("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"))
