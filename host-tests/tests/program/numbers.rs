@@ -86,10 +86,8 @@ fn told(run: &str) -> [String; 2] {
 
 /// What of a page stands outside of its tags: texts, and the numbers of figures.
 fn outside_of_tags(page: &str) -> String {
-    page.split('<')
-        .filter_map(|piece| piece.split_once('>'))
-        .map(|(_, text)| format!("{text}\n"))
-        .collect()
+    let pieces = page.split('<').filter_map(|piece| piece.split_once('>'));
+    pieces.fold(String::new(), |all, (_, text)| all + text + "\n")
 }
 
 /// That no number in a text is less than zero by nothing.

@@ -135,7 +135,9 @@ fn shown(sources: &[Source]) -> Vec<String> {
         None => source.name(),
     };
     let mut times = BTreeMap::new();
-    sources.iter().for_each(|source| *times.entry(name(source)).or_insert(0) += 1);
+    for source in sources {
+        *times.entry(name(source)).or_insert(0) += 1;
+    }
     let is_alone = |name: &String| times.get(name) == Some(&1);
     let shown =
         |source: &Source| Some(name(source)).filter(is_alone).unwrap_or_else(|| source.name());
@@ -169,7 +171,7 @@ fn row(one: &One<'_>, source: &Source, folders: &Folders) -> Row {
     });
     match replayed {
         Ok((row, answer)) => row.answered(&source.name(), answer),
-        Err(failure) => Row::failed(source.name(), failure.without_page(folders.pages())),
+        Err(failure) => Row::failed(&source.name(), failure.without_page(folders.pages())),
     }
 }
 
@@ -201,11 +203,11 @@ impl Row {
     }
 
     /// The row of a recording that could not be replayed.
-    fn failed(file: String, Failure { reason, warnings, .. }: Failure) -> Self {
+    fn failed(file: &str, Failure { reason, warnings, .. }: Failure) -> Self {
         let nothing = Self::of(&Outcome::default());
         let object = Output::Object(json!({ "file": file }));
         let answer = Answer { output: object, refusal: Some(reason), warnings };
-        Self { found: "failed".to_owned(), seconds: None, ..nothing.answered(&file, answer) }
+        Self { found: "failed".to_owned(), seconds: None, ..nothing.answered(file, answer) }
     }
 }
 

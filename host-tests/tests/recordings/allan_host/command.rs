@@ -36,6 +36,9 @@ fn noisy(rows: u32, row: impl Fn(u32, String) -> Option<String>) -> String {
     "# kind: static\n# rate_hz: 10\nt_s,g_rad_s\n".to_owned() + &lines.collect::<String>()
 }
 
+/// A row of a time and a rate.
+type Row = fn(&str, &str) -> String;
+
 /// The message of a run that failed, in one line.
 fn refusal(output: &Output) -> String {
     let message = text(&output.stderr);
@@ -185,7 +188,7 @@ fn a_column_of_any_name_is_analysed_beside_the_time_alone() {
     };
     let time = |index: usize| format!("{:.2}", index as f64 / 50.0);
     let plain = analysed("t_s,g_rad_s", &|index, rate| format!("{},{rate}", time(index)), &[]);
-    let beside: [(&str, fn(&str, &str) -> String); 3] = [
+    let beside: [(&str, Row); 3] = [
         ("t_s,rate", |time, rate| format!("{time},{rate}")),
         ("t_s,g_rad_s,rate", |time, rate| format!("{time},no number,{rate}")),
         ("rate,gx_rad_s,t_s", |time, rate| format!("{rate},1e99,{time}")),
