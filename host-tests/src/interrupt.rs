@@ -1,4 +1,7 @@
 //! Ctrl-C: it ends the program at once, or only asks work that heeds it to come to an end; a second one ends the program.
+//!
+//! Many pieces of work end after the piece that runs ([`heed`]). A single one ends as if its input ended there: no further
+//! row is read, and the simulated world stands still ([`end_input`]); what came of it so far is then shown.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,6 +10,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static IS_ASKED: AtomicBool = AtomicBool::new(false);
 /// Whether the work that runs heeds it.
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
+/// Whether the input ends where an end is asked for.
+static ENDS_INPUT: AtomicBool = AtomicBool::new(false);
+/// Whether an input has ended so.
+static HAS_ENDED: AtomicBool = AtomicBool::new(false);
 /// How far the work is, in words.
 static HOW_FAR: Mutex<String> = Mutex::new(String::new());
 
@@ -48,4 +55,26 @@ pub fn heed() {
 #[must_use]
 pub fn is_asked() -> bool {
     IS_ASKED.load(Ordering::Relaxed)
+}
+
+/// From now on the input of the work ends where an end is asked for.
+pub fn end_input() {
+    ENDS_INPUT.store(true, Ordering::Relaxed);
+    heed();
+}
+
+/// Whether the input ends here, because an end is asked for; what reads it, or makes it, asks before each further part.
+#[must_use]
+pub fn ends_input() -> bool {
+    let ends = ENDS_INPUT.load(Ordering::Relaxed) && is_asked();
+    if ends {
+        HAS_ENDED.store(true, Ordering::Relaxed);
+    }
+    ends
+}
+
+/// Why the input has ended before its own end, and how far the work was; none where it has not.
+#[must_use]
+pub fn ended() -> Option<String> {
+    HAS_ENDED.load(Ordering::Relaxed).then(reason)
 }

@@ -7,9 +7,10 @@
 
 mod command;
 
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use host::interrupt;
 use host::new_file;
@@ -28,11 +29,17 @@ use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
 use crate::command::{Answer, Failure, OUTPUT, Output, examples, print};
 
-/// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
+/// Finds true north, with its standard deviation, from precise gyros on a stage, in two frames, on a turntable or in a
+/// vehicle; and the roll of a spinning body.
 ///
 /// Without a command it is `run stage`.
 #[derive(Parser)]
-#[command(name = "meridian", version = env!("MERIDIAN_VERSION"), after_help = examples::PROGRAM)]
+#[command(
+    name = "meridian",
+    version = env!("MERIDIAN_VERSION"),
+    override_usage = "meridian [OPTIONS] [COMMAND]",
+    after_help = examples::PROGRAM
+)]
 struct CommandLine {
     /// One JSON object on standard output instead of text.
     #[arg(long, global = true, help_heading = OUTPUT)]
@@ -155,7 +162,15 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
-        Err(failure) => failed(&failure, manner),
+        Err(failure) => failed(&explained(failure), manner),
+    }
+}
+
+/// A failure, whose reason is the interruption where there was one: what it left is too little for anything.
+fn explained(failure: Failure) -> Failure {
+    match interrupt::ended() {
+        Some(reason) => Failure { reason, ..failure },
+        None => failure,
     }
 }
 
@@ -182,8 +197,18 @@ fn misuse(error: &clap::Error) -> ExitCode {
     let command = words.collect::<Vec<_>>().join(" ");
     match error.kind() {
         ErrorKind::UnknownArgument => misused(&format!("{message}; see `{command} --help`")),
+        ErrorKind::InvalidSubcommand => misused(&format!("{message}{}", replayed(error))),
         _ => misused(message),
     }
+}
+
+/// The command that takes a file, where the name of one stands in the place of a command.
+fn replayed(error: &clap::Error) -> String {
+    let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand) else {
+        return String::new();
+    };
+    let is_file = Path::new(name).exists() || Path::new(name).extension().is_some();
+    if is_file { format!("; `meridian replay {name}` replays a recording") } else { String::new() }
 }
 
 /// Says what is wrong with the options.

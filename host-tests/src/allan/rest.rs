@@ -12,6 +12,7 @@ use orientation::units::AngularRate;
 use thiserror::Error;
 
 use super::Overlapping;
+use crate::interrupt;
 use crate::recording::{
     Kind, Opened, ReadError, RestRows, Short, Spacer, Spacing, StaticRow, Unsteady, Warning,
 };
@@ -26,19 +27,16 @@ const WAITING: usize = 8;
 /// The rate in a row, where it has that column.
 type RateOf = fn(&StaticRow) -> Option<f64>;
 
-/// The columns that have rates; the first that a recording has is the default.
-const COLUMNS: [(&str, RateOf); 4] = [
-    ("g_rad_s", |row| row.rate_rad_s),
-    ("gx_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[0])),
-    ("gy_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[1])),
-    ("gz_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[2])),
-];
+/// The column of a single gyro, or one that is named.
+const SINGLE: (&str, RateOf) = ("g_rad_s", |row| row.rate_rad_s);
+/// The column that is taken of an inertial measurement unit.
+const AHEAD: (&str, RateOf) = ("gx_rad_s", |row| row.imu.map(|imu| imu.rates_rad_s[0]));
 
 /// What the rates of one column at rest came to.
 #[derive(Clone, Debug)]
 pub struct Rest {
     /// The column's name.
-    pub column: &'static str,
+    pub column: String,
     /// When the samples came.
     pub spacing: Spacing,
     /// How many samples there are in all segments.
@@ -57,9 +55,6 @@ pub enum RestError {
     /// The recording is of another kind.
     #[error("kind `{0}` is no record at rest; record the gyro at rest as kind `static`")]
     Kind(Kind),
-    /// The name of a column that is not there, and those that are.
-    #[error("there is no rate column {0:?}; there is {there}", there = .1.join(", "))]
-    Column(String, Vec<&'static str>),
     /// There is but one row.
     #[error("record too short: one row has no time between samples")]
     OneRow,
@@ -69,16 +64,12 @@ pub enum RestError {
 }
 
 impl Rest {
-    /// Reads a column of a recording to its end; without a name the gyro's, else that of body x. `warnings` takes what is
-    /// passed over.
+    /// Reads a column of a recording to its end: the one that was named, else the gyro's, else that of body x. `warnings`
+    /// takes what is passed over.
     ///
     /// # Errors
     /// Why there are no rates.
-    pub fn read(
-        opened: Opened<'_>,
-        column: Option<&str>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<Self, RestError> {
+    pub fn read(opened: Opened<'_>, warnings: &mut Vec<Warning>) -> Result<Self, RestError> {
         let mut rows = match opened {
             Opened::AtRest(rows) => rows,
             Opened::Other(kind, passed_over) => {
@@ -86,20 +77,29 @@ impl Rest {
                 return Err(RestError::Kind(kind));
             }
         };
-        let rest = Self::of(&mut rows, column);
+        let rest = Self::of(&mut rows);
         warnings.append(&mut rows.warnings);
         rest
     }
 
-    fn of(rows: &mut RestRows<'_>, column: Option<&str>) -> Result<Self, RestError> {
+    fn of(rows: &mut RestRows<'_>) -> Result<Self, RestError> {
         let mut first = None;
         rows.read(1, |row| first = Some(row)).map_err(RestError::Read)?;
-        let (column, rate) = chosen(first.as_ref(), column)?;
+        let (usual, rate) = chosen(first.as_ref());
+        let column = rows.column().unwrap_or(usual).to_owned();
         let gathered = gathered(rows, first, rate).map_err(RestError::Read)?;
         gathered.finish(column, rows.header.rate_hz)
     }
 
-    /// What a reader must know of the record: gaps, and a header's rate that is wrong.
+    /// That reading was interrupted, and after how many rows, where it was.
+    #[must_use]
+    pub fn interruption(&self) -> Option<String> {
+        let rows = self.samples;
+        let why = || format!("interrupted at {rows} rows: they are all that is analysed");
+        interrupt::ended().map(|_| why())
+    }
+
+    /// What a reader must know of the record: an interruption, gaps, and a header's rate that is wrong.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let Spacing { period_s, gaps, gap_count, missing_s, contradicted_rate_hz } = &self.spacing;
@@ -112,7 +112,7 @@ impl Rest {
             let gaps = if *gap_count == 1 { "gap" } else { "gaps" };
             format!("{gap_count} {gaps}, {missing_s:.3} s in all, the first before line {line} after {from} s: no window crosses one")
         });
-        rate.into_iter().chain(gaps).collect()
+        self.interruption().into_iter().chain(rate).chain(gaps).collect()
     }
 
     /// Why nothing can be said whatever the variances are.
@@ -132,18 +132,10 @@ impl Rest {
     }
 }
 
-/// The column of this name, or the first there is, by what a row has.
-fn chosen(
-    first: Option<&StaticRow>,
-    name: Option<&str>,
-) -> Result<(&'static str, RateOf), RestError> {
-    let has = |(_, rate): &&(&str, RateOf)| first.is_some_and(|row| rate(row).is_some());
-    let there = || COLUMNS.iter().filter(has);
-    let chosen = there().find(|(column, _)| name.is_none_or(|name| name == *column));
-    chosen.copied().ok_or_else(|| {
-        let names = there().map(|(column, _)| *column).collect();
-        RestError::Column(name.unwrap_or_default().to_owned(), names)
-    })
+/// The column whose rate is taken, by what a row has.
+fn chosen(first: Option<&StaticRow>) -> (&'static str, RateOf) {
+    let is_single = first.is_none_or(|row| row.rate_rad_s.is_some());
+    if is_single { SINGLE } else { AHEAD }
 }
 
 /// One rate of a row.
@@ -248,7 +240,7 @@ impl Gatherer {
     }
 
     /// What all samples came to.
-    fn finish(mut self, column: &'static str, rate_hz: Option<f64>) -> Result<Rest, RestError> {
+    fn finish(mut self, column: String, rate_hz: Option<f64>) -> Result<Rest, RestError> {
         if self.spacer.is_none() {
             self.learn();
         }

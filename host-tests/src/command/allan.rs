@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use host::allan::analysis::Analysis;
 use host::allan::rest::{Rest, RestError};
+use host::interrupt;
 use host::new_file::NewFile;
 use host::output::allan::Shown;
 use host::output::manner::Manner;
@@ -22,7 +23,8 @@ use super::{Answer, Failure, OUTPUT, files};
 pub struct AllanOptions {
     /// The recording of kind `static`, CSV, also gzip-compressed; `-` is standard input.
     file: PathBuf,
-    /// The column with the rate; the default is `g_rad_s`, else `gx_rad_s`.
+    /// The column with the rate, rad/s, whatever its name; the default is `g_rad_s`, else `gx_rad_s`. Beside it only the
+    /// time, `t_s`, must be there.
     #[arg(long, value_name = "NAME")]
     column: Option<String>,
     /// Writes the curve, its fit and all numbers as a page for a browser.
@@ -39,11 +41,15 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let name = source.name();
     let mut warnings = Vec::new();
     let progress = Progress::new(manner, 0, "reading");
+    interrupt::end_input();
     let rest = read(&source, options.column.as_deref(), &progress, &mut warnings);
     progress.finish();
     let warnings = recording::warning_lines(&warnings, Path::new(&name));
     rest.and_then(|rest| analyse(&name, &rest, page, manner))
-        .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
+        .map_err(|reason| {
+            let failure = Failure { warnings: warnings.clone(), ..reason.into() };
+            failure.without_page(options.report.as_ref())
+        })
         .map(|answer| answer.with_warnings(warnings))
 }
 
@@ -57,8 +63,8 @@ fn read(
     let name = source.name();
     let unread = |error| recording::unread(&name, &error).message();
     let (reader, _) = source.open(Some(progress)).map_err(unread)?;
-    let opened = RestRows::open(&name, reader).map_err(|error| error.message())?;
-    Rest::read(opened, column, warnings).map_err(|error| match error {
+    let opened = RestRows::open(&name, reader, column).map_err(|error| error.message())?;
+    Rest::read(opened, warnings).map_err(|error| match error {
         RestError::Read(error) => error.message(),
         error => format!("{name}: {error}"),
     })
@@ -80,6 +86,7 @@ fn analyse(
         schedule: found.and_then(|analysis| suggestion(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(name, rest, reason));
+    let refusal = rest.interruption().or(refusal);
     let answer = Answer::reported(refusal, manner, &shown.object(), || shown.report())?;
     Ok(answer.with_page(page, || shown.report()))
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use execution::kept::{Line, lines};
 use host::output::manner::Manner;
+use host::recording;
 use serde::Serialize;
 
 use super::{Answer, Failure};
@@ -39,5 +40,6 @@ pub fn run(options: &LogOptions, manner: Manner) -> Result<Answer, Failure> {
 
 /// Reads a file.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+    let unread = |error| recording::unread(&path.display().to_string(), &error).message();
+    std::fs::read(path).map_err(unread)
 }

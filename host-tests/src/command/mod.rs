@@ -15,6 +15,7 @@ mod source;
 pub mod stated;
 
 use std::io::{IsTerminal as _, Write};
+use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::angle::Quantity;
@@ -64,6 +65,14 @@ impl Failure {
     /// A failure because the options do not suit what was read.
     pub fn misuse(reason: String) -> Self {
         Self { reason, warnings: Vec::new(), is_misuse: true }
+    }
+
+    /// The failure, which leaves nothing that a page could show, where one was asked for.
+    fn without_page(mut self, report: Option<&PathBuf>) -> Self {
+        let reason = &self.reason;
+        let no_page = report.map(|_| format!("--report: there is no page: {reason}"));
+        self.warnings.extend(no_page);
+        self
     }
 }
 
@@ -201,6 +210,8 @@ impl Shown<'_> {
         let made = |figures| outcome::report(name, outcome, &**finished, figures);
         let text = || made(Vec::new());
         let answer = Answer::reported(outcome.reason.clone(), manner, outcome, text)?;
+        // The rest is not lost with it.
+        let answer = answer.with_written(outcome.interruption.clone().map_or(Ok(()), Err));
         Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }
 }
@@ -263,8 +274,11 @@ fn sigma(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Writes to standard output; a closed pipe is no error of ours.
+/// Writes to standard output, where there is anything to write; a closed pipe is no error of ours.
 pub fn print(output: &str) -> Result<(), String> {
+    if output.is_empty() {
+        return Ok(());
+    }
     match writeln!(std::io::stdout(), "{output}") {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
         _ => Ok(()),

@@ -45,10 +45,17 @@ pub fn man(options: &ManOptions, mut program: Command, manner: Manner) -> Result
         command = found.ok_or_else(wrong)?;
     }
     let mut page = Vec::new();
-    let rendered = Man::new(command.clone()).render(&mut page);
+    // Without a command, or without a platform, there is a usual one.
+    let rendered = Man::new(command.clone().subcommand_required(false)).render(&mut page);
     rendered.map_err(|error| error.to_string())?;
-    text(&page, manner)
+    let page = String::from_utf8_lossy(&page).replace(UNNAMED, EXAMPLES);
+    text(page.as_bytes(), manner)
 }
+
+/// What the page has above the examples, which it takes for any text.
+const UNNAMED: &str = ".SH EXTRA\nExamples:\n";
+/// What stands there instead: a heading, and that lines are to be left as they are.
+const EXAMPLES: &str = ".SH EXAMPLES\n";
 
 /// A text, as it is or in an object.
 fn text(bytes: &[u8], manner: Manner) -> Result<Answer, Failure> {

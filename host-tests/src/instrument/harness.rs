@@ -1,6 +1,9 @@
 //! What stands around every simulated board: its log, the wire of its link, and the clock.
 
 use std::cell::{Cell, RefCell};
+use std::future::poll_fn;
+use std::pin::pin;
+use std::task::Poll;
 
 use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
@@ -19,8 +22,9 @@ use orientation::signal::Timed;
 use orientation::units;
 
 use super::kept::Kept;
+use super::latest::Latest;
 use super::{Run, RunError};
-use crate::virtual_time;
+use crate::{interrupt, virtual_time};
 
 /// A harness on which a board is put: it keeps what the board reports and passes it on.
 pub(super) struct Harness<'w> {
@@ -29,6 +33,8 @@ pub(super) struct Harness<'w> {
     base: RefCell<Vec<(Instant, BaseReading)>>,
     bytes: RefCell<Vec<u8>>,
     found: Cell<Option<units::Instant>>,
+    /// Whether the run was interrupted.
+    is_interrupted: Cell<bool>,
     watch: &'w dyn Observer,
 }
 
@@ -86,8 +92,8 @@ impl Write for Wire<'_> {
 impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
     pub(super) fn new(watch: &'w dyn Observer) -> Self {
-        let (events, reports, base, bytes, found) = Default::default();
-        Self { events, reports, base, bytes, found, watch }
+        let (events, reports, base, bytes, found, is_interrupted) = Default::default();
+        Self { events, reports, base, bytes, found, is_interrupted, watch }
     }
 
     /// The channels of the board's parts.
@@ -96,7 +102,7 @@ impl<'w> Harness<'w> {
     }
 
     /// Runs an instrument to its end in virtual time on this thread, beside the acquisition of its
-    /// samples; what it ends with, and when.
+    /// samples; what it ends with, and when. Where the program is interrupted, it ends there.
     ///
     /// # Errors
     /// Everything waits and nothing would come.
@@ -110,10 +116,31 @@ impl<'w> Harness<'w> {
     ) -> Result<(Health, Instant), RunError> {
         let instrument = async {
             let outside = Outside { link: &mut Wire(&self.bytes), recorder: &mut recorder, store };
-            let health = navigate(mechanism, method, keeping, aiding, outside, channels).await;
-            (health, Instant::now())
+            let run = navigate(mechanism, method, keeping, aiding, outside, channels);
+            let health = self.until_interrupted(run).await;
+            (health.unwrap_or_else(|| channels.shared.health.get()), Instant::now())
         };
         virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
+    }
+
+    /// Drives what runs to its end, or until the program is interrupted: then there is nothing that it ends with.
+    async fn until_interrupted<T>(&self, run: impl Future<Output = T>) -> Option<T> {
+        let mut run = pin!(run);
+        poll_fn(|context| {
+            self.is_interrupted.set(interrupt::ends_input());
+            if self.is_interrupted.get() {
+                return Poll::Ready(None);
+            }
+            run.as_mut().poll(context).map(Some)
+        })
+        .await
+    }
+
+    /// The session of a run, and whether it was concluded before its own end: where the run was interrupted while no azimuth
+    /// was known.
+    pub(super) fn concluded<S, M: Method<S>>(&self, session: Latest<M>) -> (M, bool) {
+        let is_known = self.reports.borrow().iter().any(|report| report.azimuth.is_some());
+        session.into_session(self.is_interrupted.get() && !is_known)
     }
 
     /// What is left of a run on a board, with what was true.
@@ -121,13 +148,14 @@ impl<'w> Harness<'w> {
         self,
         (health, at): (Health, Instant),
         board: &RefCell<Board<'_, P, C>>,
-        replay: R,
+        (replay, is_cut_short): (R, bool),
         truth: T,
     ) -> Run<R, T> {
         let mut board = board.borrow_mut();
         let violations = board.recorded();
         Run {
             replay,
+            is_cut_short,
             truth,
             events: self.events.into_inner(),
             reports: self.reports.into_inner(),

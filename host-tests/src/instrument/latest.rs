@@ -17,15 +17,23 @@ impl<M> Latest<M> {
         Self { session, before: None }
     }
 
-    /// The session where it is over; else what it was when it found an azimuth, where it had.
-    pub(super) fn into_session<S>(self) -> M
+    /// The session where it is over; else what it was when it found an azimuth, where it had. Of a run that breaks off
+    /// before, it is concluded with what it has been given; the second tells whether it was.
+    pub(super) fn into_session<S>(mut self, breaks_off: bool) -> (M, bool)
     where
         M: Method<S>,
     {
         let is_over = self.session.verdict().is_some();
         match self.before {
-            Some(before) if !is_over => *before,
-            _ => self.session,
+            Some(before) if !is_over => (*before, false),
+            None if !is_over && breaks_off => {
+                let mut request = self.session.take(Input::End, &mut |_| ());
+                while request == Request::Compute {
+                    request = self.session.compute(&mut |_| ());
+                }
+                (self.session, true)
+            }
+            _ => (self.session, false),
         }
     }
 }

@@ -43,6 +43,8 @@ use crate::recording::Truth;
 pub struct Run<R = Replay, T = ()> {
     /// The session with its conclusion, reported like a replay.
     pub replay: R,
+    /// Whether the session was concluded before its own end, with what it had been given: the run was interrupted.
+    pub is_cut_short: bool,
     /// What was true, where more is asked of it than an azimuth.
     pub truth: T,
     /// What the board reported, in order.

@@ -13,6 +13,7 @@ use serde::de::DeserializeOwned;
 use super::kept::{Kept, Point, Realignments};
 use super::latest::Latest;
 use super::recorder::turning_rows;
+use crate::interrupt;
 use crate::methods::{rotating as turning, stepwise as standing, stops as stopping};
 use crate::outcome::Finished;
 use crate::outcome::kept::finished;
@@ -36,10 +37,24 @@ pub struct Done {
     pub kept: Kept,
     /// How later azimuths agreed with what was kept.
     pub realignments: Realignments,
+    /// Whether the inputs break off, in the file or by an interruption.
+    breaks_off: bool,
     /// What was true at the end; for errors alone.
     pub truth: Truth,
     /// That the file breaks off, where it does.
     pub warning: Option<String>,
+    /// Whether the alignment was concluded before its own end, because the inputs end there.
+    pub is_cut_short: bool,
+}
+
+impl Done {
+    /// The session, concluded with what it has been given where the inputs break off while no azimuth is known.
+    fn concluded<S, M: Method<S>>(&mut self, session: Latest<M>) -> M {
+        let breaks_off = self.breaks_off && self.kept.with_azimuth().next().is_none();
+        let (session, is_cut_short) = session.into_session(breaks_off);
+        self.is_cut_short = is_cut_short;
+        session
+    }
 }
 
 /// Replays a file of inputs.
@@ -72,8 +87,8 @@ fn positions(
     lines: &mut Reader<'_>,
 ) -> Result<Replayed, ReadError> {
     let mut session = Latest::of(begun(standing::mounted(is_mounted, of.clone()), lines)?);
-    let done = drive(&mut session, given, lines, |_: &Sample| ())?;
-    let session = session.into_session::<Sample>();
+    let mut done = drive(&mut session, given, lines, |_: &Sample| ())?;
+    let session = done.concluded::<Sample, _>(session);
     let method = if is_mounted { standing::POSITIONS } else { standing::name_of(&session) };
     let assumed = standing::given_with(session.setting.half);
     let is_aligned = session.conclusion().is_some();
@@ -90,8 +105,8 @@ fn turntable(
     let begun = begun(rotating::Session::new(*setting, procedure.clone()), lines)?;
     let mut session = Latest::of(begun);
     let mut samples = Vec::new();
-    let done = drive(&mut session, given, lines, |sample: &Sample| samples.push(*sample))?;
-    let session = session.into_session::<Sample>();
+    let mut done = drive(&mut session, given, lines, |sample: &Sample| samples.push(*sample))?;
+    let session = done.concluded::<Sample, _>(session);
     let finished = finished(session.conclusion().is_some(), turning::Replay::of_run(session));
     Ok(Replayed { finished, body: Some(Body::Rotating(turning_rows(&samples))), done })
 }
@@ -106,8 +121,8 @@ fn vehicle(
     let (mut session, beside) = (Latest::of(begin()?), begin()?);
     let (method, criteria, assumed) = (stopping::SIAP, Vec::new(), vec![GIVEN.to_owned()]);
     let mut seen = stopping::Replay { method, session: beside, zero_s: 0.0, criteria, assumed };
-    let done = drive(&mut session, given, lines, |sample| seen.push(sample))?;
-    let session = session.into_session::<InertialSample>();
+    let mut done = drive(&mut session, given, lines, |sample| seen.push(sample))?;
+    let session = done.concluded::<InertialSample, _>(session);
     let is_aligned = session.conclusion().is_some();
     let finished = finished(is_aligned, stopping::Replay { session, ..seen });
     Ok(Replayed { finished, body: None, done })
@@ -152,7 +167,10 @@ fn drive<S: Timed + DeserializeOwned>(
     attitudes.resize(reports.len(), UNKNOWN);
     let both = reports.into_iter().zip(attitudes);
     done.kept.points = both.map(|(report, truth)| Point { report, truth }).collect();
-    Ok(Done { realignments, warning: lines.warning(), ..done })
+    let breaks_off = lines.breaks_off();
+    // An interruption is told elsewhere.
+    let warning = if interrupt::ended().is_some() { None } else { lines.warning() };
+    Ok(Done { realignments, breaks_off, warning, ..done })
 }
 
 /// An attitude that the file does not hold.

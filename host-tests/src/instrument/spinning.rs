@@ -98,6 +98,6 @@ impl Carrier for SpinScenario {
         let end = at(&flown.plant, time(kept.taken.last()));
         let truth = Flown { samples: kept.taken, rolls_rad, start, end };
         drop((channels, flown));
-        Ok(harness.clear(ended, &board, flight, truth))
+        Ok(harness.clear(ended, &board, (flight, false), truth))
     }
 }

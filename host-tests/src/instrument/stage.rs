@@ -72,7 +72,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
         &channels,
     )?;
-    let session = session.into_session::<Sample>();
+    let (session, is_cut_short) = harness.concluded::<Sample, _>(session);
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };
-    Ok(harness.clear(ended, &board, replay, ()))
+    Ok(harness.clear(ended, &board, (replay, is_cut_short), ()))
 }

@@ -86,5 +86,6 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         channels,
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(harness.clear(ended, &board, session.into_session::<Sample>(), rate))
+    let session = harness.concluded::<Sample, _>(session);
+    Ok(harness.clear(ended, &board, session, rate))
 }

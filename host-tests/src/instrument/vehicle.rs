@@ -72,7 +72,7 @@ impl Carrier for VehicleScenario {
             &channels,
         )?;
         let truth = board.borrow().plant.truth();
-        let session = session.into_session::<InertialSample>();
+        let session = harness.concluded::<InertialSample, _>(session);
         let mut run = harness.clear(ended, &board, session, truth);
         run.kept = Kept::of(&run, day.configuration().motion());
         Ok(run)

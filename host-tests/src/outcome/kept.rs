@@ -29,8 +29,18 @@ impl Finished for KeptAzimuth {
 
 impl Outcome {
     /// The outcome with what only a run has; what was kept stands for an alignment where there is none. An azimuth that
-    /// the board withdrew, because it and what was kept disagree, is no result.
+    /// the board withdrew, because it and what was kept disagree, is no result; nor is one of an alignment that was cut
+    /// short.
     pub fn of_run(self, source: Source, run: RunDetails) -> Self {
+        let (cut_short, interruption) = (run.cut_short.clone(), run.interruption.clone());
+        let this = self.with_run(source, run);
+        match cut_short {
+            Some(why) => this.interrupted(why),
+            None => Self { interruption, ..this },
+        }
+    }
+
+    fn with_run(self, source: Source, run: RunDetails) -> Self {
         let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
             let this = match run.disagreement.filter(|_| this.is_ok()) {

@@ -14,6 +14,7 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::budget::Budget;
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::refusal::Refusal;
+use orientation::alignment::stepwise;
 use orientation::units::Radians;
 use serde::{Serialize, Serializer};
 
@@ -85,6 +86,9 @@ pub struct Outcome {
     /// Why the result is refused; only with `refused`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// That it was interrupted, and how far it was, where what was found stands all the same.
+    #[serde(skip)]
+    pub interruption: Option<String>,
     /// How that reason ends where it names the usual remedy, which a likelier cause takes the place of.
     #[serde(skip)]
     pub remedy: &'static str,
@@ -222,7 +226,7 @@ impl Outcome {
             sigma_deg: azimuth.map(|azimuth| azimuth.sigma.degrees()),
             error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
             remedy: verdict.as_ref().err().map_or("", Refusal::remedy),
-            ..self.settled(verdict.as_ref().err().map(ToString::to_string))
+            ..self.settled(verdict.as_ref().err().map(in_words))
         }
     }
 
@@ -231,6 +235,22 @@ impl Outcome {
         let status = if reason.is_none() { "ok" } else { "refused" };
         // A sum of nothing is −0.
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
+    }
+
+    /// The outcome of what was interrupted, as the reason says. A result of a part of what was to be measured is none, but
+    /// its 1σ is told; what goes on from sample to sample stands as it was at the last one.
+    pub fn interrupted(self, why: String) -> Self {
+        if self.fit.is_none() {
+            return Self { interruption: Some(why), ..self };
+        }
+        let budget = self.fit.as_ref().and_then(|fit| fit.budget);
+        let so_far = budget.map(|BudgetDetails(budget)| {
+            format!("; what was measured until then gives 1σ of {:.4}°", budget.sigma().degrees())
+        });
+        let reason = Some(why + &so_far.unwrap_or_default());
+        let (azimuth_deg, sigma_deg, error_deg) = Default::default();
+        let this = Self { azimuth_deg, sigma_deg, error_deg, remedy: "", ..self.settled(reason) };
+        Self { status: "failed", ..this }
     }
 
     /// The roll of a spinning body at the last sample, within a turn, °, where it was found.
@@ -243,6 +263,16 @@ impl Outcome {
     /// Whether there is a result.
     pub(crate) fn is_ok(&self) -> bool {
         self.reason.is_none()
+    }
+}
+
+/// Why there is no azimuth, with the option that helps, which the core does not know.
+fn in_words(refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::Stepwise(stepwise::Refusal::SignUnknown) => {
+            format!("{refusal}: --half east, or --half west")
+        }
+        _ => refusal.to_string(),
     }
 }
 

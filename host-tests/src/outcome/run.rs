@@ -15,7 +15,9 @@ use super::keys::Keys;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
-use crate::output::{degrees, positive_zero, signed};
+use crate::instrument::replay::Done;
+use crate::interrupt;
+use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, signed};
 use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
@@ -36,7 +38,7 @@ pub struct RunDetails {
     /// Rows of the timeline: what was kept how, and what went wrong.
     #[serde(skip)]
     pub(super) lanes: Vec<Lane>,
-    /// What was kept at last, where anything was.
+    /// What the keeper reported at last, where it did.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
     /// Whether an azimuth was known at any time.
@@ -45,7 +47,16 @@ pub struct RunDetails {
     /// By how many σ the latest azimuth disagreed with what was kept, where neither is believed.
     #[serde(skip)]
     pub(super) disagreement: Option<f64>,
+    /// That the run was interrupted, and how far it was.
+    #[serde(skip)]
+    pub(super) interruption: Option<String>,
+    /// Why the alignment was concluded before its own end, where it was.
+    #[serde(skip)]
+    pub(super) cut_short: Option<String>,
 }
+
+/// Why an alignment has no end in a file of inputs.
+const BROKEN_OFF: &str = "the file breaks off before the alignment is over";
 
 /// What only the run of a single platform has; nothing by default.
 #[must_use]
@@ -94,29 +105,35 @@ impl RunDetails {
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
-        let this = Self::with(keys, Some(board), &run.kept, realignments(run));
+        let this = Self::with(keys, Some(board), &run.kept, &realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
         let facts = run.found.filter(|_| run.is_realigned()).map(found_anew).into_iter().collect();
-        Self { degradations, lanes, facts, ..this }
+        let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
+        Self { facts, degradations, lanes, cut_short, ..this }
     }
 
-    /// What was kept, and how later azimuths agreed with it.
+    /// What the inputs of a run did: what was kept, and how later azimuths agreed with it.
     #[must_use]
-    pub fn of_kept(kept: &Kept, realignments: Realignments) -> Self {
-        Self::with(Keys::default(), None, kept, realignments)
+    pub fn of_inputs(done: &Done) -> Self {
+        let this = Self::with(Keys::default(), None, &done.kept, &done.realignments);
+        let why = || this.interruption.clone().unwrap_or_else(|| BROKEN_OFF.to_owned());
+        let cut_short = done.is_cut_short.then(why);
+        Self { cut_short, ..this }
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.
-    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: Realignments) -> Self {
+    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: &Realignments) -> Self {
         let last = kept.last().copied();
         let was_known = kept.with_azimuth().next().is_some();
-        let lines = last.iter().map(|last| Part::from(in_words(kept, last, &later)));
+        // Before an azimuth is known there is nothing to keep.
+        let (kept, last_kept) = if was_known { (kept, last) } else { (&Kept::default(), None) };
+        let lines = last_kept.iter().map(|last| Part::from(in_words(kept, last, later)));
         let board = board.map(|board| Part::from(board).detail());
-        let is_lost = was_known && last.is_some_and(|last| last.report.azimuth.is_none());
+        let is_lost = last_kept.is_some_and(|last| last.report.azimuth.is_none());
         let lost = "the azimuth is not known any more at the end of what was kept".to_owned();
         Self {
-            keys: keys.with_found("kept", last.map(|last| of_kept(kept, &last, later.fused))),
+            keys: keys.with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
             facts: Vec::new(),
             degradations: is_lost.then_some(lost).into_iter().collect(),
             parts: lines
@@ -127,6 +144,8 @@ impl RunDetails {
             kept: last,
             was_known,
             disagreement: later.disagreement,
+            interruption: interrupt::ended(),
+            cut_short: None,
         }
     }
 }
@@ -188,7 +207,7 @@ fn in_words(kept: &Kept, last: &Point, later: &Realignments) -> Lines {
     let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
-        |[azimuth, sigma, _]| format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"),
+        |[azimuth, sigma, _]| format!("{}° ± {sigma:.4}° (1σ)", in_circle(azimuth, 4)),
     );
     let known = last.azimuth_deg().filter(|[.., error]| !error.is_nan());
     let error = known.map(|[_, sigma, error]| {
@@ -211,11 +230,7 @@ fn in_words(kept: &Kept, last: &Point, later: &Realignments) -> Lines {
 
 /// How often it was aligned anew, and why not the last time.
 fn aligned_anew(Realignments { fused, refused, .. }: &Realignments) -> Option<String> {
-    let times = match fused {
-        0 => "not at all".to_owned(),
-        1 => "once".to_owned(),
-        times => format!("{times} times"),
-    };
+    let times = if *fused == 0 { "not at all".to_owned() } else { counted(*fused, "time") };
     match refused {
         Some(why) => Some(format!("{times}; the last attempt was refused {why}")),
         None => (*fused > 0).then_some(times),

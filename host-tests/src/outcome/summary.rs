@@ -5,7 +5,8 @@ use orientation::alignment::site::Site;
 
 use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::methods;
-use crate::output::{degrees, noise_in_words, positive_zero, signed};
+use crate::output::{azimuth as in_circle, degrees, fixed, noise_in_words, positive_zero, signed};
+use crate::recording::GIVEN;
 use crate::report::{
     Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
 };
@@ -67,14 +68,18 @@ fn degradations(outcome: &Outcome) -> Vec<String> {
     let left_out =
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
     let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
-    left_out.chain(outcome.degradations.iter().cloned()).chain(run).collect()
+    let interruption = outcome.interruption.iter().map(|why| format!("{why}: {SO_FAR}"));
+    left_out.chain(outcome.degradations.iter().cloned()).chain(run).chain(interruption).collect()
 }
+
+/// What is shown of what was interrupted.
+const SO_FAR: &str = "what was done until then is shown";
 
 /// What was looked for, and what it is.
 fn found(outcome: &Outcome) -> Option<[String; 2]> {
     let azimuth = outcome.azimuth_deg.zip(outcome.sigma_deg);
     let azimuth = azimuth.map(|(azimuth, sigma)| {
-        ["azimuth of body x".to_owned(), format!("{azimuth:.4}° ± {sigma:.4}° (1σ)")]
+        ["azimuth of body x".to_owned(), format!("{}° ± {sigma:.4}° (1σ)", in_circle(azimuth, 4))]
     });
     azimuth.or_else(|| outcome.found.clone())
 }
@@ -116,14 +121,14 @@ fn circumstances(outcome: &Outcome) -> Lines {
 pub(crate) fn of_site(site: &Site) -> Lines {
     let noise = noise_in_words(site.noise.model(), site.noise.is_white_known());
     Lines::default()
-        .with("place", format!("latitude {:.4}°", degrees(site.latitude.rad())))
+        .with("place", format!("latitude {}°", fixed(degrees(site.latitude.rad()), 4)))
         .with("gyro", noise)
 }
 
 /// The true azimuth, and what one that was found with its 1σ is off, °.
 fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
-    let truth = (azimuth - error).rem_euclid(360.0);
-    format!("{truth:.4}°: the error is {}°, {} σ", signed(error, 4), signed(error / sigma, 2))
+    let truth = in_circle(azimuth - error, 4);
+    format!("{truth}°: the error is {}°, {} σ", signed(error, 4), signed(error / sigma, 2))
 }
 
 fn limit(outcome: &Outcome) -> Option<String> {
@@ -148,9 +153,9 @@ fn earth_rate(fit: &FitDetails) -> Option<String> {
     }
 }
 
-/// What was assumed, one thing a line.
+/// What was assumed, one thing a line; that a board was given the rest is known of every run.
 fn assumed(outcome: &Outcome) -> Lines {
-    let all = outcome.assumed.iter().enumerate();
+    let all = outcome.assumed.iter().filter(|what| *what != GIVEN).enumerate();
     let number = |index: usize| (index + 1).to_string();
     all.fold(Lines::new("What was assumed where nothing states it"), |lines, (index, what)| {
         lines.with(&number(index), what.clone())

@@ -168,7 +168,7 @@ impl Shown<'_> {
             .with("file", self.name)
             .with("status", status)
             .with_found("reason", reason)
-            .with("column", rest.column)
+            .with("column", &rest.column)
             .with("samples", rest.samples)
             .with("rate_hz", 1.0 / rest.spacing.period_s)
             .with("gaps", rest.spacing.gaps.iter().map(gap).collect::<Value>())

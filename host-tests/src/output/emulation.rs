@@ -8,6 +8,7 @@ use simulated::trace::DWELL;
 use crate::emulate::checks::{Check, per_sample};
 use crate::emulate::cost::Row;
 use crate::emulate::{Emulation, Run};
+use crate::output::azimuth as in_circle;
 use crate::report::{Columns, Lines, Part, Report};
 
 /// What the images found, took and hold.
@@ -25,7 +26,7 @@ fn of_outcome(Emulation { seed, emulated, comparison, .. }: &Emulation) -> Lines
     let azimuth = match emulated.azimuth() {
         Some(found) => {
             let [azimuth, sigma] = found.map(f64::to_degrees);
-            format!("{azimuth:.4}° ± {sigma:.4}° (1σ)")
+            format!("{}° ± {sigma:.4}° (1σ)", in_circle(azimuth, 4))
         }
         None => format!("none: {}", emulated.reason.as_deref().unwrap_or("")),
     };

@@ -37,6 +37,31 @@ pub fn signed(value: f64, places: usize) -> String {
     unsigned_zero(format!("{value:+.places$}"), "+")
 }
 
+/// An azimuth in degrees with so many decimal places, as it stands within a circle: what rounds to a whole one is north.
+#[must_use]
+pub fn azimuth(degrees: f64, places: usize) -> String {
+    let text = fixed(degrees.rem_euclid(360.0), places);
+    if text.starts_with("360") { fixed(0.0, places) } else { text }
+}
+
+/// A number above zero with so many digits that count, and without an exponent.
+#[must_use]
+pub fn significant(value: f64, digits: i32) -> String {
+    let places = digits - 1 - value.abs().max(1e-12).log10().floor() as i32;
+    fixed(value, places.max(0) as usize)
+}
+
+/// So many of what has this name, in words; the plural is regular.
+#[must_use]
+pub fn counted(count: usize, name: &str) -> String {
+    let ending = match count {
+        1 => "",
+        _ if name.ends_with('s') => "es",
+        _ => "s",
+    };
+    format!("{count} {name}{ending}")
+}
+
 /// The text of a number, with another sign where it is that of a negative zero.
 fn unsigned_zero(text: String, sign: &str) -> String {
     match text.strip_prefix('-') {

@@ -18,7 +18,7 @@ const LINES: u64 = 12;
 /// How often the bar is drawn while nothing comes.
 const REDRAWN: Duration = Duration::from_millis(500);
 /// What the bar shows; the rest of a line is cut.
-const TEMPLATE: &str = "{bar:20} {percent:>3} % {left} {wide_msg}";
+const TEMPLATE: &str = "{bar:20} {percent:>3} % {left}{wide_msg}";
 
 /// The progress of one task; shared by the threads that work at it.
 pub struct Progress {
@@ -102,8 +102,8 @@ impl Progress {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
         let part = 1 + done * LINES / all;
         if self.printed.fetch_max(part, Ordering::Relaxed) < part {
-            let left = in_words(left(self.bar.elapsed(), done, all));
-            let line = format!("{words}, {} %, {left} {}", done * 100 / all, more());
+            let left = left(self.bar.elapsed(), done, all).map(in_words).unwrap_or_default();
+            let line = format!("{words}, {} %, {left}{}", done * 100 / all, more());
             say(line.trim_end());
         }
     }
@@ -119,11 +119,11 @@ impl Follower for Progress {
     }
 }
 
-/// Writes the time that is left into the bar.
+/// Writes the time that is left into the bar, where anything is done to tell it from.
 fn write_left(state: &ProgressState, to: &mut dyn Write) {
     let left = left(state.elapsed(), state.pos(), state.len().unwrap_or(0));
     // A bar that lacks it does no harm.
-    let _ = write!(to, "{}", in_words(left));
+    let _ = write!(to, "{}", left.map(in_words).unwrap_or_default());
 }
 
 /// The time that is left where the rest goes on as what is done; none before anything is.
@@ -132,15 +132,13 @@ fn left(elapsed: Duration, done: u64, all: u64) -> Option<Duration> {
     (done > 0).then(|| elapsed.mul_f64(rest / done as f64))
 }
 
-/// The time that is left, in words.
-fn in_words(left: Option<Duration>) -> String {
-    let Some(seconds) = left.map(|left| left.as_secs_f64().ceil() as u64) else {
-        return "-:-- left".to_owned();
-    };
+/// The time that is left, in words, and a space.
+fn in_words(left: Duration) -> String {
+    let seconds = left.as_secs_f64().ceil() as u64;
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     match hours {
-        0 => format!("{minutes}:{seconds:02} left"),
-        _ => format!("{hours}:{minutes:02}:{seconds:02} left"),
+        0 => format!("{minutes}:{seconds:02} left "),
+        _ => format!("{hours}:{minutes:02}:{seconds:02} left "),
     }
 }
 

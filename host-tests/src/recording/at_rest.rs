@@ -8,7 +8,7 @@ use super::error::{Fault, ReadError};
 use super::header::{Collector, Header};
 use super::lines::{Lines, MAX_STREAMED_ROWS};
 use super::problem::Problem;
-use super::rows::{Rows, StaticRow};
+use super::rows::{Row as _, Rows, StaticRow};
 use super::warning::{MOST, Warning};
 
 /// A recording of kind `static` whose header is read and whose rows are not.
@@ -24,7 +24,12 @@ pub struct RestRows<'r> {
     pub header: Header,
     /// What was passed over so far.
     pub warnings: Vec<Warning>,
+    /// The column whose rate is read alone, where one is named.
+    column: Option<String>,
 }
+
+/// The column that holds the rate of a single gyro.
+const RATE: &str = "g_rad_s";
 
 /// A recording that was asked for its rows at rest.
 pub enum Opened<'r> {
@@ -35,24 +40,41 @@ pub enum Opened<'r> {
 }
 
 impl<'r> RestRows<'r> {
-    /// Reads the header of a recording from any reader, plain or gzip-compressed; `name` stands in the errors.
+    /// Reads the header of a recording from any reader, plain or gzip-compressed; `name` stands in the errors. Where a
+    /// column is named, rows have its numbers as the rate of a single gyro, and no other column but the time is read.
     ///
     /// # Errors
-    /// As [`super::read`].
-    pub fn open(name: &str, reader: impl Read + 'r) -> Result<Opened<'r>, ReadError> {
+    /// As [`super::read`]; and there is no rate in the column.
+    pub fn open(
+        name: &str,
+        reader: impl Read + 'r,
+        column: Option<&str>,
+    ) -> Result<Opened<'r>, ReadError> {
         let begun = Lines::within(reader, MAX_STREAMED_ROWS).and_then(Begun::new);
-        begun.and_then(|begun| Self::begin(name, begun)).map_err(|fault| fault.in_file(name))
+        let begun = begun.and_then(|begun| Self::begin(name, begun, column));
+        begun.map_err(|fault| fault.in_file(name))
     }
 
-    fn begin(name: &str, begun: Begun<'r>) -> Result<Opened<'r>, Fault> {
+    fn begin(name: &str, begun: Begun<'r>, column: Option<&str>) -> Result<Opened<'r>, Fault> {
         let Begun { lines, entries, kind, header, names: (line, names), mut warnings } = begun;
         if kind != Kind::Static {
             return Ok(Opened::Other(kind, warnings));
         }
-        let rows = Rows::new(line, &names, &mut warnings)?;
-        let file = name.to_owned();
-        let begun = Self { file, lines, rows, entries, line, header, warnings };
+        let rows = match column {
+            // What other columns are called is of no account.
+            Some(column) => Rows::new(line, &alone(line, &names, column)?, &mut Vec::new()),
+            None => Rows::new(line, &names, &mut warnings),
+        };
+        let (file, column) = (name.to_owned(), column.map(str::to_owned));
+        let rows = rows.map_err(|fault| of_column(fault, column.as_deref()))?;
+        let begun = Self { file, lines, rows, entries, line, header, warnings, column };
         Ok(Opened::AtRest(Box::new(begun)))
+    }
+
+    /// The column that was named, where one was.
+    #[must_use]
+    pub fn column(&self) -> Option<&str> {
+        self.column.as_deref()
     }
 
     /// Reads so many rows, or what is left of them, of which a recording has one at least; whether there may be more.
@@ -60,7 +82,8 @@ impl<'r> RestRows<'r> {
     /// # Errors
     /// As [`super::read`].
     pub fn read(&mut self, most: usize, take: impl FnMut(StaticRow)) -> Result<bool, ReadError> {
-        self.rows(most, take).map_err(|fault| fault.in_file(&self.file))
+        let read = self.rows(most, take);
+        read.map_err(|fault| of_column(fault, self.column.as_deref()).in_file(&self.file))
     }
 
     fn rows(&mut self, most: usize, mut take: impl FnMut(StaticRow)) -> Result<bool, Fault> {
@@ -80,5 +103,38 @@ impl<'r> RestRows<'r> {
         }
         self.warnings.truncate(MOST);
         std::mem::take(&mut self.entries).truth().map(drop)
+    }
+}
+
+/// Whether a column can hold a rate by its name: the time and the forces do not.
+fn may_be_rate(name: &str) -> bool {
+    name != StaticRow::TIME && !name.ends_with("_m_s2")
+}
+
+/// The column names, of which one that may have any name has that of a single gyro's rate, and no other but the time is
+/// known.
+///
+/// # Errors
+/// There is no such column with a rate.
+fn alone(line: u64, names: &str, column: &str) -> Result<String, Fault> {
+    let all: Vec<&str> = names.split(',').map(str::trim_ascii).collect();
+    if !all.contains(&column) || !may_be_rate(column) {
+        let there: Vec<&str> = all.into_iter().filter(|name| may_be_rate(name)).collect();
+        return Err(Fault::line(line, Problem::NoRate(column.to_owned(), there.join(", "))));
+    }
+    let known = |(index, name): (usize, &str)| match name {
+        StaticRow::TIME | "" => name.to_owned(),
+        name if name == column => RATE.to_owned(),
+        _ => format!("column {}", index + 1),
+    };
+    let known: Vec<String> = all.into_iter().enumerate().map(known).collect();
+    Ok(known.join(","))
+}
+
+/// A fault, which names the column as the file does.
+fn of_column(fault: Fault, column: Option<&str>) -> Fault {
+    match column {
+        Some(column) => fault.renamed(RATE, column),
+        None => fault,
     }
 }

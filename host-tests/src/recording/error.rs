@@ -76,6 +76,19 @@ impl Fault {
         Self::new(Place::Key(line, name.to_owned()), problem)
     }
 
+    /// The fault where a column is called otherwise in the file.
+    pub fn renamed(self, from: &str, to: &str) -> Self {
+        let place = match self.place {
+            Place::Column(line, name) if name == from => Place::Column(line, to.to_owned()),
+            place => place,
+        };
+        let problem = match self.problem {
+            Problem::MissingColumn(all) => Problem::MissingColumn(all.replace(from, to)),
+            problem => problem,
+        };
+        Self { place, problem }
+    }
+
     /// Whether the compressed data end too early.
     pub fn is_cut_short(&self) -> bool {
         matches!(self.problem, Problem::Io(ErrorKind::UnexpectedEof, _))

@@ -10,6 +10,7 @@ use memchr::memchr;
 
 use super::error::{Fault, Place};
 use super::problem::Problem;
+use crate::interrupt;
 
 /// Longest line, in bytes without its line end. A row has some hundred.
 pub const MAX_LINE_BYTES: u64 = 64 * 1024;
@@ -86,9 +87,9 @@ impl<'r> Lines<'r> {
         self.limits.rows
     }
 
-    /// The next line that is not blank, or `None` at the end.
+    /// The next line that is not blank, or `None` at the end, or where the program is interrupted.
     pub fn next(&mut self) -> Result<Option<Line<'_>>, Fault> {
-        while self.fill()? {
+        while !interrupt::ends_input() && self.fill()? {
             if !self.content().is_empty() {
                 return self.line().map(Some);
             }

@@ -61,6 +61,9 @@ pub enum Problem {
     /// A needed column is missing; the columns that the kind needs.
     #[error("is missing; the kind needs {0}")]
     MissingColumn(String),
+    /// The name of a column in which there is no rate, and those in which there may be one.
+    #[error("there is no rate column {0:?}; there is {1}")]
+    NoRate(String, String),
     /// A column's name is given twice.
     #[error("is named twice; rename or remove one of them")]
     DuplicateColumn,

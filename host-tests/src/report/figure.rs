@@ -127,6 +127,12 @@ impl Figure {
         Self::new(title, ["time", "s"], y, series)
     }
 
+    /// Whether no point of it can be drawn.
+    pub(super) fn is_empty(&self) -> bool {
+        let is_drawn = |point: &Point| self.x.shows(point.x) && self.y.shows(point.y);
+        !self.series.iter().any(|series| series.points.iter().any(is_drawn))
+    }
+
     /// The figure in another shape.
     #[must_use]
     pub fn shaped(self, shape: Shape) -> Self {
@@ -159,6 +165,11 @@ impl Axis {
     #[must_use]
     pub fn between(self, reach: [f64; 2]) -> Self {
         Self { reach: Some(reach), ..self }
+    }
+
+    /// Whether the axis has a place for a value.
+    fn shows(&self, value: f64) -> bool {
+        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
 
     /// What stands beside the axis.

@@ -2,7 +2,7 @@
 //!
 //! A [`Report`] is data. [`Report::text`] makes text of it; [`Report::write`], for `--report`, makes one HTML file that
 //! loads nothing: figures are inline SVG, and a script shows their values under the pointer. A point that is not finite,
-//! or not above zero on a logarithmic axis, is left out; a figure without any point says so. Every axis names its unit.
+//! or not above zero on a logarithmic axis, is left out, and so is a figure without any point. Every axis names its unit.
 
 mod columns;
 mod convergence;
@@ -110,7 +110,8 @@ impl Part {
             Self::Timeline(timeline) => timeline.lanes.iter().all(|lane| lane.spans.is_empty()),
             Self::Detail(part) => part.is_empty(),
             Self::Table(table) => table.rows.is_empty(),
-            Self::Figure(_) | Self::Shares(_) => false,
+            Self::Figure(figure) => figure.is_empty(),
+            Self::Shares(_) => false,
         }
     }
 }
@@ -146,7 +147,7 @@ impl From<Timeline> for Part {
 }
 
 impl Report {
-    /// A report of these parts, without labelled lines and rows of which there are none.
+    /// A report of these parts, without labelled lines, rows and points of which there are none.
     pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
         let parts = parts.into_iter().filter(|part| !part.is_empty()).collect();
         Self { title: title.into(), parts, ..Self::default() }

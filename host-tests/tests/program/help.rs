@@ -77,6 +77,16 @@ fn every_help_has_examples_and_the_first_one_says_what_the_exit_codes_mean() {
 }
 
 #[test]
+fn the_first_help_names_what_carries_the_sensors_and_leaves_the_command_open() {
+    let whole = help("");
+    let first = whole.split("\n\n").next().unwrap_or_default().replace('\n', " ");
+    for carrier in ["stage", "two frames", "turntable", "vehicle", "spinning body"] {
+        assert!(first.contains(carrier), "{first}");
+    }
+    assert!(whole.contains("Usage: meridian [OPTIONS] [COMMAND]\n"), "{whole}");
+}
+
+#[test]
 fn options_stand_under_their_headings() {
     for (name, headings) in [
         ("run stage", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"][..]),
@@ -170,7 +180,12 @@ fn every_command_has_a_manual_page_and_what_is_none_is_named() {
         let output = meridian(&[&["man"][..], &words(name)].concat());
         assert_eq!(code(&output), 0, "{name}");
         let page = text(&output.stdout);
-        assert!(page.contains(".TH") && page.contains("Examples"), "{name}: {page}");
+        assert!(
+            page.contains(".TH") && page.contains(".SH EXAMPLES\n  meridian"),
+            "{name}: {page}"
+        );
+        let synopsis = page.split(".SH ").find_map(|part| part.strip_prefix("SYNOPSIS\n"));
+        assert!(synopsis.is_some_and(|line| !line.contains("<\\fIsubcommands")), "{name}: {page}");
     }
     assert_misuse(&["man", "run", "ship"], "run has no command ship");
     assert!(object(&meridian(&["man", "--json"]))["text"].is_string());

@@ -1,6 +1,7 @@
 //! Many recordings: a table, an array of the ordinary objects, and standard input.
 
 use std::fs::{self, File};
+use std::path::Path;
 use std::process::{Output, Stdio};
 
 use serde_json::Value;
@@ -71,7 +72,8 @@ fn the_table_has_a_row_for_each_recording_and_tells_what_each_found() {
     let output = meridian(&["replay", &scratch.folder().display().to_string()]);
     let table = text(&output.stdout);
     for path in &paths {
-        let row = table.lines().find(|line| line.contains(path.as_str())).expect("it has a row");
+        let name = Path::new(path).file_name().expect("it has a name").to_string_lossy();
+        let row = table.lines().find(|line| line.contains(&*name)).expect("it has a row");
         let alone = meridian(&["replay", path, "--json"]);
         let found = object(&alone);
         match (found["azimuth_deg"].as_f64(), found["sigma_deg"].as_f64()) {
@@ -83,6 +85,75 @@ fn the_table_has_a_row_for_each_recording_and_tells_what_each_found() {
         }
     }
     assert!(paths.iter().is_sorted());
+}
+
+#[test]
+fn the_table_is_narrow_and_below_it_stands_the_whole_reason_of_each_recording_without_a_result() {
+    let (scratch, paths) = folder("narrow");
+    let folder = scratch.folder().display().to_string();
+    for more in [&[][..], &["-v"]] {
+        let output = meridian(&[&["replay", &folder], more].concat());
+        let told = text(&output.stdout);
+        let (table, reasons) = told.split_once("Why there is no result").expect("some have none");
+        for line in table.lines() {
+            assert!(line.chars().count() <= 100 && !line.contains(&folder), "{line}");
+        }
+        for path in &paths {
+            let alone = object(&meridian(&["replay", path, "--json"]));
+            let Some(reason) = alone["reason"].as_str() else { continue };
+            let reason = reason.strip_prefix(&format!("{path}: ")).unwrap_or(reason);
+            assert!(reasons.lines().any(|line| line.ends_with(reason)), "{reason} in {reasons}");
+        }
+    }
+}
+
+#[test]
+fn a_quiet_table_has_a_line_for_each_recording_with_what_was_found_or_why_nothing_was() {
+    let (scratch, paths) = folder("quiet");
+    let output = meridian(&["replay", &scratch.folder().display().to_string(), "-q"]);
+    let told = text(&output.stdout);
+    assert_eq!(told.lines().count(), paths.len(), "{told}");
+    for (line, path) in told.lines().zip(&paths) {
+        let alone = object(&meridian(&["replay", path, "--json"]));
+        let name = Path::new(path).file_name().expect("it has a name").to_string_lossy();
+        let what = match alone["reason"].as_str() {
+            Some(reason) => reason.strip_prefix(&format!("{path}: ")).unwrap_or(reason).to_owned(),
+            None => format!("{:.4}°", alone["sigma_deg"].as_f64().expect("a number")),
+        };
+        assert!(line.starts_with(&format!("{name}: ")) && line.contains(&what), "{line}, {what}");
+    }
+}
+
+#[test]
+fn recordings_of_one_name_are_told_apart_by_their_folders() {
+    let scratch = Scratch::new("names");
+    let paths = ["one", "other"].map(|name| {
+        let folder = scratch.folder().join(name);
+        fs::create_dir(&folder).expect("the folder is ours");
+        let path = folder.join("stage.csv.gz");
+        fs::copy(stored("stepwise-circle"), &path).expect("it is ours");
+        path.display().to_string()
+    });
+    let gyro = stored("rotating-gyro");
+    let told = text(&meridian(&["replay", &paths[0], &paths[1], &gyro]).stdout);
+    for shown in [&paths[0], &paths[1], "  rotating-gyro.csv.gz"] {
+        assert!(told.contains(shown), "{shown} in {told}");
+    }
+}
+
+#[test]
+fn a_recording_that_has_no_page_is_named_with_the_reason() {
+    let scratch = Scratch::new("no-page");
+    let (empty, good) = (scratch.with("empty.csv", ""), stored("stepwise-circle"));
+    let (pages, page) = (scratch.path("pages"), scratch.path("page.html"));
+    let why = format!("warning: --report: there is no page: {empty}: the file is empty");
+    let many = meridian(&["replay", &empty, &good, "--report", &pages]);
+    let [one, noise] = ["replay", "allan"].map(|of| meridian(&[of, &empty, "--report", &page]));
+    for output in [&many, &one, &noise] {
+        assert!(text(&output.stderr).contains(&why), "{}", text(&output.stderr));
+    }
+    assert_eq!(fs::read_dir(&pages).expect("it is there").count(), 1);
+    assert!(!Path::new(&page).exists());
 }
 
 #[test]

@@ -140,7 +140,7 @@ fn inputs_of_a_run_that_was_stopped_say_so_and_what_was_known_by_then() {
     let inputs = scratch.read("run.jsonl");
     let of_alignment = inputs.find("\"found\"").expect("north was found");
     for (length, reason) in [
-        (of_alignment / 2, Value::from("the azimuth is not known yet")),
+        (of_alignment / 2, Value::from("the file breaks off before the alignment is over")),
         (of_alignment + 5000, Value::Null),
     ] {
         let replayed = answered(&["replay", &scratch.with("cut.jsonl", &inputs[..length])]);

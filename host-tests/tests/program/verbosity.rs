@@ -92,3 +92,12 @@ fn options_of_every_command_name_no_platform() {
         assert_eq!(output, meridian(&["run", "stage", "-q"]));
     }
 }
+
+#[test]
+fn what_every_run_is_given_is_no_assumption_of_its_text_but_one_of_its_object() {
+    let run = ["run", "--rate", "50", "--dwell", "2", "--hold", "0"];
+    let told = text(&meridian(&[&run[..], &["-v"]].concat()).stdout);
+    assert!(!told.contains("What was assumed"), "{told}");
+    let assumed = object(&meridian(&[&run[..], &["--json"]].concat()))["assumed"].clone();
+    assert_eq!(assumed[0], "what the board was given about place and instrument");
+}

@@ -1,6 +1,6 @@
 //! The replay of many recordings side by side, and their table.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,8 @@ use host::new_file::NewFile;
 use host::outcome::{Outcome, SCHEMA};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
-use host::output::signed;
-use host::report::{Columns, Look, Report, Verbosity};
+use host::output::{azimuth as in_circle, signed};
+use host::report::{Columns, Lines, Look, Report, Verbosity};
 use host::unwritten;
 use host::work::side_by_side;
 use serde_json::{Value, json};
@@ -20,12 +20,10 @@ use super::one::One;
 use crate::command::source::Source;
 use crate::command::{Answer, Failure, Output};
 
-/// Longest reason in the table, characters.
-const REASON: usize = 60;
-
 /// A row of the table, and its object.
 struct Row {
-    file: String,
+    /// What the table calls the recording.
+    shown: String,
     method: &'static str,
     found: String,
     limit_deg: Option<f64>,
@@ -58,6 +56,11 @@ impl Folders {
                 .map_err(|error| unwritten::message(what, &folder.join("."), &error))?;
         }
         Ok(Self([pages, attitudes].map(Option::<&PathBuf>::cloned)))
+    }
+
+    /// The folder of the pages, where there is one.
+    fn pages(&self) -> Option<&PathBuf> {
+        self.0[0].as_ref()
     }
 
     /// The files that are written for a recording.
@@ -106,15 +109,39 @@ pub fn replay(
 ) -> Result<Answer, Failure> {
     let progress = Progress::new(manner, sources.len() as u64, "recordings");
     interrupt::heed();
-    let rows = side_by_side(sources.into_iter(), &progress, |source| row(one, &source, folders));
+    let shown = shown(&sources);
+    let named = sources.into_iter().zip(shown);
+    let rows = side_by_side(named, &progress, |(source, shown)| Row {
+        shown,
+        ..row(one, &source, folders)
+    });
     progress.finish();
     let refusal = refusal(&rows);
     let object = object(&rows, refusal.as_deref());
     let warnings = rows.iter().flat_map(|row| row.warnings.iter().cloned()).collect();
-    let answer = Answer::of(refusal, manner, &object, || table(&rows))?;
+    let answer = Answer::of(refusal, manner, &object, || match manner.verbosity {
+        Verbosity::Quiet => lines(&rows),
+        _ => table(&rows),
+    })?;
     // Each object has its own.
     let is_object = matches!(answer.output, Output::Object(_));
     Ok(if is_object { answer } else { answer.with_warnings(warnings) })
+}
+
+/// What the table calls recordings: the name of the file where no other file has it, else its path.
+fn shown(sources: &[Source]) -> Vec<String> {
+    let name = |source: &Source| match source.path().and_then(Path::file_name) {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => source.name(),
+    };
+    let mut times = BTreeMap::new();
+    for source in sources {
+        *times.entry(name(source)).or_insert(0) += 1;
+    }
+    let is_alone = |name: &String| times.get(name) == Some(&1);
+    let shown =
+        |source: &Source| Some(name(source)).filter(is_alone).unwrap_or_else(|| source.name());
+    sources.iter().map(shown).collect()
 }
 
 /// Why not every recording has a result.
@@ -143,8 +170,8 @@ fn row(one: &One<'_>, source: &Source, folders: &Folders) -> Row {
         Ok((row, answer))
     });
     match replayed {
-        Ok((row, answer)) => row.answered(source.name(), answer),
-        Err(failure) => Row::failed(source.name(), failure),
+        Ok((row, answer)) => row.answered(&source.name(), answer),
+        Err(failure) => Row::failed(&source.name(), failure.without_page(folders.pages())),
     }
 }
 
@@ -153,7 +180,7 @@ impl Row {
     fn of(outcome: &Outcome) -> Self {
         let error = outcome.error_deg.map(|error| signed(error, 4));
         Self {
-            file: String::new(),
+            shown: String::new(),
             method: outcome.method,
             found: found(outcome),
             limit_deg: outcome.limit_deg,
@@ -167,16 +194,16 @@ impl Row {
     }
 
     /// The row with its object.
-    fn answered(self, file: String, answer: Answer) -> Self {
+    fn answered(self, file: &str, answer: Answer) -> Self {
         let prefix = format!("{file}: ");
         let reason = answer.refusal.clone().unwrap_or_default();
-        let reason = short(reason.strip_prefix(&prefix).unwrap_or(&reason));
+        let reason = reason.strip_prefix(&prefix).unwrap_or(&reason).to_owned();
         let (is_ok, object) = (answer.refusal.is_none(), answer.object());
-        Self { file, reason, is_ok, object, warnings: answer.warnings, ..self }
+        Self { reason, is_ok, object, warnings: answer.warnings, ..self }
     }
 
     /// The row of a recording that could not be replayed.
-    fn failed(file: String, Failure { reason, warnings, .. }: Failure) -> Self {
+    fn failed(file: &str, Failure { reason, warnings, .. }: Failure) -> Self {
         let nothing = Self::of(&Outcome::default());
         let object = Output::Object(json!({ "file": file }));
         let answer = Answer { output: object, refusal: Some(reason), warnings };
@@ -188,7 +215,7 @@ impl Row {
 fn found(outcome: &Outcome) -> String {
     let Some(sigma) = outcome.sigma_deg else { return outcome.status.to_owned() };
     match (outcome.azimuth_deg, outcome.pitch_deg.zip(outcome.roll_deg)) {
-        (Some(azimuth), _) => format!("{azimuth:.4}° ± {sigma:.4}°"),
+        (Some(azimuth), _) => format!("{}° ± {sigma:.4}°", in_circle(azimuth, 4)),
         (None, Some((pitch, roll))) => {
             format!("pitch {pitch:.3}°, roll {roll:.3}° ± {sigma:.3}°")
         }
@@ -199,27 +226,29 @@ fn found(outcome: &Outcome) -> String {
     }
 }
 
-/// The beginning of a reason.
-fn short(reason: &str) -> String {
-    if reason.chars().count() <= REASON {
-        return reason.to_owned();
-    }
-    let cut: String = reason.chars().take(REASON).collect();
-    let whole = cut.rsplit_once(' ').map_or(cut.as_str(), |(words, _)| words);
-    format!("{} …", whole.trim_end_matches([',', ';', ':']))
-}
-
-/// The table of all recordings.
+/// The table of all recordings, and below it why some have no result.
 fn table(rows: &[Row]) -> String {
     let title = "Recordings: what was found, 1σ, Cramér–Rao limit, found less true";
-    let has_reason = rows.iter().any(|row| !row.reason.is_empty());
     let columns = Columns::of("", rows)
-        .column("file", |row| &row.file)
+        .column("file", |row| &row.shown)
         .column("method", |row| row.method)
         .column("found", |row| &row.found)
         .found("limit, °", 4, |row| row.limit_deg)
         .found("seconds", 0, |row| row.seconds)
         .column("error, °", |row| &row.error);
-    let columns = if has_reason { columns.column("reason", |row| &row.reason) } else { columns };
-    Report::new(title, [columns.into()]).text(Look::plain(Verbosity::Usual))
+    let without = rows.iter().filter(|row| !row.reason.is_empty());
+    let reasons = without.fold(Lines::new("Why there is no result"), |lines, row| {
+        lines.with(&row.shown, row.reason.as_str())
+    });
+    let parts = [columns.into(), reasons.into()];
+    Report::new(title, parts).text(Look::plain(Verbosity::Usual))
+}
+
+/// What was found, or why nothing was, a line for each recording.
+fn lines(rows: &[Row]) -> String {
+    let line = |row: &Row| {
+        let what = if row.reason.is_empty() { &row.found } else { &row.reason };
+        format!("{}: {what}", row.shown)
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }

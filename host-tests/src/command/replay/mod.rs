@@ -6,6 +6,7 @@ mod one;
 use std::path::PathBuf;
 
 use clap::Args;
+use host::interrupt;
 use host::methods::{METHODS, Method};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
@@ -128,7 +129,9 @@ fn run_one(one: &One<'_>, source: &Source, manner: Manner) -> Result<Answer, Fai
     let page = files::opened("the report", options.report.as_ref())?;
     let attitude = files::opened("the attitude", options.attitude_out.as_ref())?;
     let progress = Progress::new(manner, 0, "positions");
+    interrupt::end_input();
     let done = One { progress: Some(&progress), ..*one }.replay(source);
     progress.finish();
-    Ok(done?.answer([page, attitude], manner)?)
+    let done = done.map_err(|failure| failure.without_page(options.report.as_ref()))?;
+    Ok(done.answer([page, attitude], manner)?)
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use host::instrument::replay::{Done as Kept, Replayed, replay_lines};
+use host::instrument::replay::{Done as Ended, Replayed, replay_lines};
+use host::interrupt;
 use host::methods::asked::{Asked, Question};
 use host::methods::vertical::write_attitude;
 use host::methods::{self, Method};
@@ -85,7 +86,9 @@ impl One<'_> {
             .map_err(|error| format!("{name}: {error}"))?;
         let outcome = finished.outcome(&truth);
         // A run gives its own reason.
-        let is_caused = outcome.reason.is_some() && header.session.is_none();
+        let interruption = interrupt::ended();
+        let is_caused =
+            outcome.reason.is_some() && header.session.is_none() && interruption.is_none();
         let question = Question { header: &header, body: &body, asked: &asked };
         let cause = is_caused.then(|| finished.cause(&question)).flatten();
         let reason = outcome.reason.map(|reason| match cause {
@@ -93,14 +96,19 @@ impl One<'_> {
             None => reason,
         });
         let outcome = Outcome { source: Some(Named::File(name.clone())), reason, ..outcome };
+        let outcome = match interruption {
+            Some(why) => outcome.interrupted(why),
+            None => outcome,
+        };
         Ok(Done { name, outcome, warnings: Vec::new(), finished, truth, body: Some(body) })
     }
 }
 
 /// What came of the inputs of a run.
 fn again(name: String, replayed: Replayed) -> Done {
-    let Replayed { finished, body, done: Kept { kept, realignments, truth, warning } } = replayed;
-    let details = RunDetails::of_kept(&kept, realignments);
+    let Replayed { finished, body, done } = replayed;
+    let details = RunDetails::of_inputs(&done);
+    let Ended { truth, warning, .. } = done;
     let outcome = finished.outcome(&truth).of_run(Named::File(name.clone()), details);
     Done { name, outcome, warnings: Vec::from_iter(warning), finished, truth, body }
 }

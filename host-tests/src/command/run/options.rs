@@ -7,6 +7,7 @@ use clap::Args;
 use drivers::ads1262::configuration::DataRate;
 use host::angle::Quantity;
 use host::instrument::recorder::{self, Recorded, Samples};
+use host::interrupt;
 use host::new_file::NewFile;
 use host::packed::Packed;
 use host::recording::inputs::{self, Given, Writer};
@@ -75,7 +76,7 @@ impl Common {
         Ok((Samples { taken: Vec::new(), is_idle }, inputs))
     }
 
-    /// Writes the recording of a finished run, where one is asked for.
+    /// Writes the recording of a run, where one is asked for; that of inputs has no end where the run was interrupted.
     ///
     /// # Errors
     /// The recording cannot be written; the words say why.
@@ -86,7 +87,10 @@ impl Common {
         (samples, inputs): (&[C::Sample], Inputs),
     ) -> Result<(), String> {
         let (kept, truth) = carrier.end_of(run);
-        let end = |inputs: Writer<Packed>| inputs.finish(kept, &truth).and_then(Packed::finish);
+        let end = |inputs: Writer<Packed>| match interrupt::ended() {
+            Some(_) => inputs.stop().and_then(Packed::finish),
+            None => inputs.finish(kept, &truth).and_then(Packed::finish),
+        };
         place.map_or(Ok(()), |place| {
             inputs
                 .map_or_else(|| recorder::write(place.path(), carrier, run, samples), end)

@@ -7,6 +7,7 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
 use host::instrument::RunError;
+use host::interrupt;
 use host::output::manner::Manner;
 use host::output::progress::Progress;
 use orientation::alignment::{self, rotating, stepwise, stops};
@@ -58,6 +59,7 @@ impl<'t> Terminal<'t> {
     ) -> Result<(T, Duration), String> {
         let begun = WallClock::now();
         let watch = Self::new(watched, inputs);
+        interrupt::end_input();
         watch.show();
         let ran = run(&watch);
         watch.shown.finish();

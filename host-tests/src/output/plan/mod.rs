@@ -4,7 +4,7 @@ pub mod page;
 
 use orientation::planner::FEWEST;
 
-use super::{degrees, noise_in_words};
+use super::{counted, degrees, fixed, noise_in_words, significant};
 use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
 use crate::report::{Lines, Part, Report, Summary};
 
@@ -35,11 +35,11 @@ fn burov(planned: &Planned) -> Lines {
         ));
     };
     let OfBurov { positions, dwell_s, seconds, rate_error_deg_h: rate, .. } = burov;
-    let with_b = rate.hypot(burov.flicker_deg_h);
+    let [rate, with_b] = [*rate, rate.hypot(burov.flicker_deg_h)].map(|rate| significant(rate, 4));
     let one_axis = sigmas(burov.one_axis_sigma_deg);
     lines
         .with("positions", format!("{positions} of {dwell_s:.2} s, {seconds:.1} s in all"))
-        .with("rate error", format!("{rate:.4e} °/h; with B {with_b:.4e} °/h"))
+        .with("rate error", format!("{rate} °/h; with B {with_b} °/h"))
         .with("from one axis", format!("{one_axis}, the half of the azimuth known"))
         .with("full azimuth", format!("{}, √2 of that", sigmas(burov.sigma_deg)))
 }
@@ -59,7 +59,7 @@ fn optimum(planned: &Planned) -> Lines {
     });
     Lines::new(&title)
         .with("positions", format!("{positions} of {dwell_s:.2} s, {seconds:.1} s in all"))
-        .with("order", format!("{order}, {passes} passes"))
+        .with("order", format!("{order}, {}", counted(passes, "pass")))
         .with("full azimuth", sigmas(sigma_deg))
         .with_found("one pass", one_pass)
 }
@@ -71,7 +71,7 @@ fn asked(request: &Request) -> Lines {
     };
     Lines::default()
         .with("gyro", noise_in_words(&request.noise, true))
-        .with("latitude", format!("{:.4}°", degrees(request.latitude.rad())))
+        .with("latitude", format!("{}°", fixed(degrees(request.latitude.rad()), 4)))
         .with("rotation", format!("{} s", request.rotation))
         .with("wanted", wanted)
 }

@@ -122,9 +122,14 @@ impl<'r> Reader<'r> {
         Fault::line(self.lines.number(), problem).in_file(&self.file)
     }
 
+    /// Whether what was read is not followed by the end of a run.
+    pub(crate) fn breaks_off(&self) -> bool {
+        !self.has_ended
+    }
+
     /// What there is to be said where the file breaks off.
     pub(crate) fn warning(&self) -> Option<String> {
-        (!self.has_ended).then(|| self.error(Problem::BrokenOff).to_string())
+        self.breaks_off().then(|| self.error(Problem::BrokenOff).to_string())
     }
 }
 

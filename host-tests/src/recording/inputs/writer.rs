@@ -57,6 +57,14 @@ impl<W: Write> Writer<W> {
         }
     }
 
+    /// Leaves out the end, for a run that was stopped; gives back what was written to.
+    ///
+    /// # Errors
+    /// A line could not be written.
+    pub fn stop(self) -> io::Result<W> {
+        self.to.into_inner()
+    }
+
     /// Writes what was true of what was kept, and the end; gives back what was written to.
     ///
     /// # Errors

@@ -37,16 +37,13 @@ struct Placed {
     limits: Option<[f64; 2]>,
 }
 
-/// The figure with its heading, its legend and the numbers behind it.
+/// The figure with its heading, its legend and the numbers behind it; nothing where no point can be drawn.
 pub(super) fn figure(figure: &Figure) -> String {
     let thinned = |series: &Series| Series { points: series.distinguished(), ..series.clone() };
     let series = figure.series.iter().map(thinned).collect();
     let figure = &Figure { series, ..figure.clone() };
     let heading = element("figcaption", &figure.title);
-    let Some(frame) = Frame::around(figure) else {
-        let nothing = element("p", "There are no points to draw.");
-        return format!("<figure class=\"empty\">{heading}{nothing}</figure>\n");
-    };
+    let Some(frame) = Frame::around(figure) else { return String::new() };
     let class = match figure.shape {
         Shape::Usual => "chart",
         Shape::Low => "chart low",
@@ -276,9 +273,9 @@ fn numbers((index, series): (usize, &Series)) -> Value {
     json!({ "name": series.name, "class": class(index), "style": style, "points": points })
 }
 
-/// A number in as many digits as are shown; JSON has none for what is not finite.
+/// A number in as many digits as are shown, zero without a sign; JSON has none for what is not finite.
 fn significant(value: f64) -> f64 {
-    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value) + 0.0
 }
 
 /// Name of a series' colour in the page's style.

@@ -80,7 +80,9 @@ fn fact([label, value]: &[String; 2]) -> String {
 
 /// Who made the page: program, version, and what was asked of it.
 fn origin() -> String {
-    let arguments: Vec<String> = std::env::args().skip(1).map(|word| quoted(&word)).collect();
+    // A name of a file need not be text.
+    let words = std::env::args_os().skip(1);
+    let arguments: Vec<String> = words.map(|word| quoted(&word.to_string_lossy())).collect();
     let command = escaped(&format!("meridian {}", arguments.join(" ")));
     format!("<p class=\"origin\">{}: <code>{command}</code></p>\n", escaped(crate::VERSION))
 }

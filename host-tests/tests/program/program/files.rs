@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::support::files::{Scratch, stored};
-use crate::support::program::{assert_misuse, code, meridian, reason};
+use crate::support::program::{assert_misuse, code, command, meridian, reason};
 
 use super::recorded;
 
@@ -194,4 +194,25 @@ fn a_link_leads_to_what_is_written_and_stays_one() {
     let mode = fs::metadata(there).expect("it is there").permissions().mode();
     assert_eq!(mode & 0o777, 0o640);
     assert_eq!(fs::read_dir(scratch.folder()).expect("it is there").count(), 4);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_output_may_have_any_name_that_the_system_lets_it_have() {
+    use std::os::unix::ffi::OsStringExt as _;
+    let scratch = Scratch::new("any-name");
+    let stage = stored("stepwise-circle");
+    let named = |name: &[u8]| scratch.folder().join(std::ffi::OsString::from_vec(name.to_vec()));
+    let [page, csv, again] = [&b"b\xe4d.html"[..], b"r\xe4d.csv", b"b\xe4d.csv"].map(named);
+    let runs = [
+        (&["run", "--report"][..], &page),
+        (&["run", "--record"], &csv),
+        (&["replay", &stage, "--report"], &page),
+        (&["replay", &stored("imu-broad-24"), "--method", "vertical", "--attitude-out"], &again),
+    ];
+    for (arguments, path) in runs {
+        let output = command().args(arguments).arg(path).arg("-q").output().expect("it starts");
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", reason(&output));
+        assert!(fs::metadata(path).is_ok_and(|file| file.len() > 0), "{arguments:?}");
+    }
 }

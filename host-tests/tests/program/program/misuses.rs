@@ -236,3 +236,11 @@ fn help_is_whole_and_no_misuse() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
     }
 }
+
+#[test]
+fn a_recording_in_the_place_of_a_command_is_told_which_command_takes_it() {
+    for name in ["stage.csv", "run.jsonl.gz"] {
+        assert_misuse(&[name], &format!("`meridian replay {name}` replays a recording"));
+    }
+    assert_misuse(&["plans"], "unrecognized subcommand");
+}

@@ -149,3 +149,12 @@ fn what_is_really_disturbed_keeps_its_reason() {
     let why = reason(&output);
     assert!(why.contains("dwells were disturbed: keep the platform still"), "{why}");
 }
+
+#[test]
+fn two_positions_are_refused_with_the_option_that_tells_their_azimuths_apart() {
+    for run in [&["run", "--positions", "2"][..], &["run", "--positions", "2", "--json"]] {
+        let output = meridian(run);
+        assert_eq!(code(&output), 1);
+        assert!(reason(&output).ends_with("--half east, or --half west"), "{}", reason(&output));
+    }
+}

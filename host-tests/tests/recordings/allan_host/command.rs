@@ -36,6 +36,9 @@ fn noisy(rows: u32, row: impl Fn(u32, String) -> Option<String>) -> String {
     "# kind: static\n# rate_hz: 10\nt_s,g_rad_s\n".to_owned() + &lines.collect::<String>()
 }
 
+/// A row of a time and a rate.
+type Row = fn(&str, &str) -> String;
+
 /// The message of a run that failed, in one line.
 fn refusal(output: &Output) -> String {
     let message = text(&output.stderr);
@@ -168,6 +171,55 @@ fn an_inertial_measurement_unit_is_read_along_body_x_unless_said() {
         let message = refusal(&output);
         let words = format!("no rate column \"{wrong}\"; there is gx_rad_s, gy_rad_s, gz_rad_s");
         assert!(message.contains("imu.csv") && message.contains(&words), "{message}");
+    }
+}
+
+#[test]
+fn a_column_of_any_name_is_analysed_beside_the_time_alone() {
+    let mut generator = Generator::new(2);
+    let rates: Vec<String> =
+        (0..300).map(|_| format!("{:e}", 1e-5 * generator.gaussian())).collect();
+    let analysed = |names: &str, row: &dyn Fn(usize, &str) -> String, options: &[&str]| {
+        let rows = rates.iter().enumerate().map(|(index, rate)| row(index, rate) + "\n");
+        let content = format!("# kind: static\n{names}\n{}", rows.collect::<String>());
+        let mut found = object(&on("any.csv", &content, &[&["--json"], options].concat()));
+        found["file"] = Value::Null;
+        found
+    };
+    let time = |index: usize| format!("{:.2}", index as f64 / 50.0);
+    let plain = analysed("t_s,g_rad_s", &|index, rate| format!("{},{rate}", time(index)), &[]);
+    let beside: [(&str, Row); 3] = [
+        ("t_s,rate", |time, rate| format!("{time},{rate}")),
+        ("t_s,g_rad_s,rate", |time, rate| format!("{time},no number,{rate}")),
+        ("rate,gx_rad_s,t_s", |time, rate| format!("{rate},1e99,{time}")),
+    ];
+    for (names, row) in beside {
+        let mut named =
+            analysed(names, &|index, rate| row(&time(index), rate), &["--column", "rate"]);
+        assert_eq!(named["column"], "rate", "{names}");
+        named["column"] = plain["column"].clone();
+        assert_eq!(named, plain, "{names}");
+    }
+}
+
+#[test]
+fn what_is_wrong_in_a_column_of_any_name_names_it() {
+    let refused = |names: &str, row: &str| {
+        let content = format!("# kind: static\n{names}\n{row}\n");
+        refusal(&on("any.csv", &content, &["--column", "rate"]))
+    };
+    for (names, row, words) in [
+        ("t_s,rate", "0,abc", "line 3, column rate: \"abc\" is not a number"),
+        ("t_s,rate,rate", "0,1,2", "line 2, column rate: is named twice"),
+        ("time,rate", "0,1", "line 2, column t_s: is missing; the kind needs t_s,rate"),
+        (
+            "t_s,turn,temperature",
+            "0,1,2",
+            "line 2: there is no rate column \"rate\"; there is turn, temperature",
+        ),
+    ] {
+        let message = refused(names, row);
+        assert!(message.contains(words), "{message}");
     }
 }
 

@@ -8,8 +8,8 @@ use orientation::noise::fit::FitError;
 
 /// What a text comes to.
 fn read(text: &str) -> Result<Rest, RestError> {
-    let opened = RestRows::open("rest.csv", text.as_bytes()).map_err(RestError::Read)?;
-    Rest::read(opened, None, &mut Vec::new())
+    let opened = RestRows::open("rest.csv", text.as_bytes(), None).map_err(RestError::Read)?;
+    Rest::read(opened, &mut Vec::new())
 }
 
 /// The recording of a gyro at rest that has these rates at 10 Hz.

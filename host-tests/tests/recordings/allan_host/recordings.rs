@@ -52,8 +52,8 @@ fn changed(text: &str, from: &str, to: &str) -> String {
 
 /// What the command reads of a text.
 fn rest(text: &str) -> Result<Rest, RestError> {
-    let opened = RestRows::open("rest.csv", text.as_bytes()).map_err(RestError::Read)?;
-    Rest::read(opened, None, &mut Vec::new())
+    let opened = RestRows::open("rest.csv", text.as_bytes(), None).map_err(RestError::Read)?;
+    Rest::read(opened, &mut Vec::new())
 }
 
 /// The spacing of rows below a header with this rate.
@@ -190,8 +190,8 @@ fn at_times(times: impl Iterator<Item = String>) -> Result<Rest, RestError> {
     let rates = (0_u32..).map(|index| f64::from(index.wrapping_mul(2_654_435_761) >> 12) * 1e-12);
     let rows = times.zip(rates).map(|(time, rate)| format!("{time},{rate:.12}\n"));
     let text = b"# kind: static\nt_s,g_rad_s\n".to_vec();
-    let opened = RestRows::open("rest.csv", Rows { rows, text }).map_err(RestError::Read)?;
-    Rest::read(opened, None, &mut Vec::new())
+    let opened = RestRows::open("rest.csv", Rows { rows, text }, None).map_err(RestError::Read)?;
+    Rest::read(opened, &mut Vec::new())
 }
 
 #[test]

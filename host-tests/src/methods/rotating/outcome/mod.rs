@@ -20,7 +20,9 @@ use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{azimuth_error, degrees, degrees_per_hour, signed};
+use crate::output::{
+    azimuth as in_circle, azimuth_error, counted, degrees, degrees_per_hour, fixed, signed,
+};
 use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -243,7 +245,7 @@ impl Finished for Replay {
         let parts = [self.lines(conclusion).into()].into_iter().chain(stages);
         let parts = parts.chain([table_of_stretches(conclusion)]).map(Part::detail).collect();
         let seconds = averages(conclusion).map(|average| average.seconds).sum();
-        let time = format!("{seconds:.1} s in {turns} turns");
+        let time = format!("{} s in {}", fixed(seconds, 1), counted(turns as usize, "turn"));
         Outcome {
             limit_deg: self.limits_deg(conclusion).map(|[limit, _]| limit),
             pitch_deg: attitude.map(|[pitch, _]| pitch),
@@ -252,7 +254,7 @@ impl Finished for Replay {
             fit: Some(FitDetails {
                 earth_rate_ratio: flat.map(|fit| fit.ratio),
                 earth_rate_ratio_sigma: flat.map(|fit| fit.ratio_sigma),
-                model: self.columns(conclusion),
+                model: fit.map(|_| self.columns(conclusion)).unwrap_or_default(),
                 excluded: left_out.map(excluded).collect(),
                 ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
             }),
@@ -285,7 +287,7 @@ fn excluded(average: &Average) -> Excluded {
         .with("sense", sense.to_string())
         .with("speed_hz", speed)
         .with("turns", turns);
-    let words = format!("{turns} turn(s) {sense} at {speed:.5} Hz: ");
+    let words = format!("{} {sense} at {speed:.5} Hz: ", counted(*turns as usize, "turn"));
     Excluded { place, words, reason: DISTURBED.to_owned() }
 }
 
@@ -307,7 +309,7 @@ fn table_of_stages(fit: &Fit) -> Part {
     let off = |azimuth| azimuth_error(azimuth, fit.stages.full.degrees());
     Columns::of("Azimuth after each stage of compensation", &stages)
         .column("stage", |(stage, _)| stage)
-        .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
+        .column("azimuth, °", |(_, azimuth)| in_circle(*azimuth, 4))
         .column("from the last, °", |(_, azimuth)| signed(off(*azimuth), 4))
         .into()
 }

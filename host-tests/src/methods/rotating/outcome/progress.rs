@@ -3,6 +3,7 @@
 use orientation::units::Radians;
 
 use crate::methods::rotating::{Replay, again_until, of_stretch};
+use crate::output::counted;
 use crate::recording::RotatingRow;
 use crate::report::{Figure, Kind, Lane, Milestone, Stretch, Timeline, convergence as figures};
 
@@ -37,7 +38,11 @@ pub(super) fn timeline(replay: &Replay) -> Timeline {
     let spans = stretches.iter().filter_map(|stretch| {
         let (from, to) = of_stretch(stretch)?;
         let hertz = stretch.speed().abs() / std::f64::consts::TAU;
-        let words = format!("{} turns {} at {hertz:.4} Hz", stretch.count(), stretch.sense);
+        let words = format!(
+            "{} {} at {hertz:.4} Hz",
+            counted(stretch.count() as usize, "turn"),
+            stretch.sense
+        );
         let [from_s, to_s] = [from, to].map(|time| replay.zero_s + time);
         Some(Stretch { from_s, to_s, kind: Kind::Used, words })
     });

@@ -114,7 +114,7 @@ impl Finished for Replay {
         let found = at_end(self, outcome.sigma_deg);
         let facts = facts(self, &outcome).lines;
         let (degradations, circumstances) = (self.degradations(), self.circumstances());
-        Outcome { found, facts, parts, degradations, circumstances, ..outcome }.settled(reason)
+        Outcome { found, facts, degradations, circumstances, parts, ..outcome }.settled(reason)
     }
 
     fn titles(&self) -> [&'static str; 2] {

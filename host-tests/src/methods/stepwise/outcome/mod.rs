@@ -15,7 +15,9 @@ use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{columns, degrees, degrees_per_hour, signed};
+use crate::output::{
+    azimuth as in_circle, columns, counted, degrees, degrees_per_hour, fixed, signed,
+};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -107,7 +109,7 @@ impl Replay {
     /// Place, gyro, and the time that took part.
     fn circumstances(&self, kept: &[&Dwell]) -> Vec<[String; 2]> {
         let seconds: f64 = kept.iter().map(|dwell| dwell.seconds.0).sum();
-        let time = format!("{seconds:.1} s in {} dwells", kept.len());
+        let time = format!("{} s in {}", fixed(seconds, 1), counted(kept.len(), "dwell"));
         of_site(&self.session.setting.site).with("time", time).lines
     }
 
@@ -227,7 +229,7 @@ fn positions(lines: Lines, found: &Autocompensation) -> Lines {
         visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
     let plain = found.plain_azimuth_deg.zip(found.plain_off_sigmas).map(|(azimuth, off)| {
         let off = signed(off, 2);
-        format!("{azimuth:.4}° by plain least squares, {off} σ from the azimuth")
+        format!("{}° by plain least squares, {off} σ from the azimuth", in_circle(azimuth, 4))
     });
     lines.with("positions", list.join(", ")).with_found("without weights", plain)
 }

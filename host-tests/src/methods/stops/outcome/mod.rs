@@ -15,7 +15,10 @@ use crate::methods::asked::Question;
 use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site};
-use crate::output::{azimuth_error, degrees, in_degrees_per_hour, positive_zero, signed};
+use crate::output::{
+    azimuth as in_circle, azimuth_error, counted, degrees, fixed, in_degrees_per_hour,
+    positive_zero, signed,
+};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
 
@@ -118,8 +121,10 @@ impl Replay {
         let of_found = found.into_iter().flat_map(|found| {
             let (left_out, of) = (found.tally.left_out, found.blocks);
             let means = format!("{left_out} of {of} means of the force: disturbed");
-            let turning =
-                format!("rest rates of {} stop(s): the vehicle turned", found.tally.turning);
+            let turning = format!(
+                "rest rates of {}: the vehicle turned",
+                counted(found.tally.turning as usize, "stop")
+            );
             let both = [(left_out > 0, means), (found.tally.turning > 0, turning)];
             both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason))
         });
@@ -175,7 +180,7 @@ impl Finished for Replay {
         let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
         let parts = lines.chain([table(&self.stops())]).map(Part::detail).collect();
         let seconds = stops.iter().map(|stop| stop.seconds().0).sum();
-        let time = format!("{seconds:.1} s in {} stops", stops.len());
+        let time = format!("{} s in {}", fixed(seconds, 1), counted(stops.len(), "stop"));
         Outcome {
             limit_deg: found.filter(|_| is_noise_known).map(|found| found.limit.degrees()),
             pitch_deg: found.map(|found| found.level[0].degrees()),
@@ -262,7 +267,7 @@ fn of_plain(found: &Found) -> Lines {
         [plain.angle, plain.euler].map(|least| azimuth_error(degrees(least.at), start));
     let title = "The method of Szymanowski 2003: first stop and last, gyros taken as free of bias";
     Lines::new(title)
-        .with("azimuth", format!("{azimuth:.4}° ± {:.4}° (1σ)", plain.sigma.degrees()))
+        .with("azimuth", format!("{}° ± {:.4}° (1σ)", in_circle(azimuth, 4), plain.sigma.degrees()))
         .with("at the start", format!("{start:.7}° in closed form"))
         .with("least angle", format!("{brent:+.2e}° from that, by Brent's search"))
         .with("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"))
