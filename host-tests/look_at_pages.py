@@ -9,7 +9,7 @@ draws the pages of MERIDIAN, the program, into FOLDER, opens each in Chromium, a
 - no script fails, and values show under the pointer;
 - no text is smaller than 11 pixels, and none has less contrast to what it stands on than 4.5 (WCAG 2.2, 1.4.3);
 - nothing is wider than the window, also where everything is unfolded;
-- numbers beside an axis do not touch each other.
+- numbers beside an axis, and words in a figure, do not touch each other.
 
 Pictures of every view stay in FOLDER. Needs Chromium and the package `playwright` (Apache-2.0), whose own browsers it does
 not need. Exits with 1 where anything does not hold.
@@ -131,14 +131,15 @@ LOOK = r"""
       wrong.push(`${element.tagName} scrolls sideways`);
     }
   }
-  for (const axis of document.querySelectorAll(".x-labels, .y-labels")) {
-    const boxes = [...axis.querySelectorAll("span:not(.wide)")].filter(shown).map((span) => [span.getBoundingClientRect(), span.textContent]);
-    for (let i = 1; i < boxes.length; i++) {
-      const [[a, one], [b, other]] = [boxes[i - 1], boxes[i]];
-      if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) {
-        wrong.push(`${one} and ${other} touch`);
+  for (const words of document.querySelectorAll(".x-labels, .y-labels, .area")) {
+    const boxes = [...words.querySelectorAll("span:not(.wide)")].filter(shown).map((span) => [span.getBoundingClientRect(), span.textContent]);
+    boxes.forEach(([a, one], index) => {
+      for (const [b, other] of boxes.slice(index + 1)) {
+        if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) {
+          wrong.push(`${one} and ${other} touch`);
+        }
       }
-    }
+    });
   }
   return [...new Set(wrong)];
 }
@@ -174,8 +175,8 @@ def looked_at(browser, file, folder):
             wrong += [f"{view}: {words}" for words in page.evaluate(LOOK)]
             page.screenshot(path=folder / f"{file.stem}-{name}-{scheme}.png", full_page=True)
             if scheme == "light":
-                wrong += [f"{view}: {words}" for words in hovered(page)]
                 page.evaluate("() => document.querySelectorAll('details').forEach((it) => it.open = true)")
+                wrong += [f"{view}: {words}" for words in hovered(page)]
                 wrong += [f"{view}, unfolded: {words}" for words in page.evaluate(LOOK)]
             if scheme == "dark" and name == "wide":
                 page.emulate_media(media="print")

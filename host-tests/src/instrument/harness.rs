@@ -163,6 +163,7 @@ impl<'w> Harness<'w> {
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: at.as_micros() as f64 * 1e-6,
             found: self.found.get(),
+            found_rad: None,
             kept: Kept::default(),
             health,
             violations: violations

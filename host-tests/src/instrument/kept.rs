@@ -81,7 +81,7 @@ impl KeptPlan {
         let rig = rig.borrow();
         let violations = base::violations(&rig).iter();
         run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
-        run.kept = Kept::of(&run, day.configuration().motion());
+        run.compare(day.configuration().motion());
         Ok(run)
     }
 
@@ -142,30 +142,29 @@ impl Point {
 pub struct Kept {
     /// In rising order of time.
     pub points: Vec<Point>,
-    /// The true azimuth at the sample to which the latest azimuth belongs that was handed over, rad; none where nothing was
-    /// kept after it.
-    pub found_rad: Option<f64>,
 }
 
-impl Kept {
-    /// The reports of a run with the truth of their moments.
-    pub(super) fn of<R, T>(run: &Run<R, T>, mut motion: Motion<'_>) -> Self {
+impl<R, T> Run<R, T> {
+    /// Sets the truth beside what was found and kept.
+    pub(super) fn compare(&mut self, mut motion: Motion<'_>) {
         let mut truth = |at: units::Instant| {
             motion.advance(at.seconds());
             motion.attitude()
         };
-        let (mut points, mut found_rad) = (Vec::with_capacity(run.reports.len()), None);
-        for report in &run.reports {
+        let (mut points, mut found_rad) = (Vec::with_capacity(self.reports.len()), None);
+        for report in &self.reports {
             // The course goes on alone: what lies before the report is asked for first.
             let is_next = |found: &units::Instant| found_rad.is_none() && *found <= report.time;
-            if let Some(found) = run.found.filter(is_next) {
+            if let Some(found) = self.found.filter(is_next) {
                 found_rad = Some(truth(found).azimuth_rad);
             }
             points.push(Point { report: *report, truth: truth(report.time) });
         }
-        Self { points, found_rad }
+        (self.kept, self.found_rad) = (Kept { points }, found_rad);
     }
+}
 
+impl Kept {
     /// What was kept at last.
     #[must_use]
     pub fn last(&self) -> Option<&Point> {

@@ -59,6 +59,8 @@ pub struct Run<R = Replay, T = ()> {
     pub seconds: f64,
     /// The sample to which the latest azimuth belongs that was handed over to be kept.
     pub found: Option<units::Instant>,
+    /// The true azimuth at that sample, rad; none where nothing was kept after it.
+    pub found_rad: Option<f64>,
     /// What was kept after the alignment, with the truth.
     pub kept: Kept,
     /// What went wrong, counted.
@@ -100,7 +102,7 @@ impl<R, T> Run<R, T> {
     /// until an azimuth was known.
     #[must_use]
     pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
-        let again = self.kept.found_rad.filter(|_| self.has_driven());
+        let again = self.found_rad.filter(|_| self.has_driven());
         again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
     }
 

@@ -15,7 +15,6 @@ use simulated::fault::{Fault, FaultyRecorder, Injection};
 use simulated::vehicle::{Day, VehicleAiding, VehicleScenario};
 
 use super::harness::Harness;
-use super::kept::Kept;
 use super::latest::Latest;
 use super::trial::{Carrier, Trial};
 use super::{Run, RunError};
@@ -36,7 +35,7 @@ impl VehicleRun {
     /// The true azimuth at the latest alignment's last sample, rad: at the end, unless the vehicle went on.
     #[must_use]
     pub fn azimuth_rad(&self) -> f64 {
-        self.kept.found_rad.unwrap_or(self.truth.attitude.azimuth_rad)
+        self.found_rad.unwrap_or(self.truth.attitude.azimuth_rad)
     }
 }
 
@@ -74,7 +73,7 @@ impl Carrier for VehicleScenario {
         let truth = board.borrow().plant.truth();
         let session = harness.concluded::<InertialSample, _>(session);
         let mut run = harness.clear(ended, &board, session, truth);
-        run.kept = Kept::of(&run, day.configuration().motion());
+        run.compare(day.configuration().motion());
         Ok(run)
     }
 }

@@ -86,6 +86,26 @@ fn assert_fold(name: &str, page: &str) {
     }
 }
 
+/// The longest step to the right or left of a figure's first line, as a part of the figure's width.
+fn longest_step(page: &str, title: &str) -> f64 {
+    let (_, behind) = page.split_once(&format!("<figcaption>{title}")).expect("the figure");
+    let (_, line) = behind.split_once("<path class=\"line\" d=\"").expect("a line");
+    let (line, _) = line.split_once('"').expect("it ends");
+    // Each piece: a place, then the steps from there.
+    let steps = line.split('M').filter_map(|piece| piece.split_once('l'));
+    let across = steps.flat_map(|(_, steps)| steps.split_whitespace().step_by(2));
+    across.map(|step| step.parse::<f64>().expect("a number").abs()).fold(0.0, f64::max) / 1e4
+}
+
+#[test]
+fn the_way_of_a_stage_is_broken_where_it_goes_round_however_often_it_goes_to_and_fro() {
+    for run in [&["stage"][..], &["two-frame"], &["stage", "--seconds", "600"]] {
+        let (_, page) = page(&[&["run"], run, &["--seed", "3", "--hold", "0"]].concat());
+        let step = longest_step(&page, "Mean rate of each dwell");
+        assert!(step < 0.05, "{run:?}: a line over {step} of the figure's width");
+    }
+}
+
 #[test]
 fn the_pages_of_simulated_runs_show_fits_within_error_bars_too() {
     for carrier in ["stage", "two-frame"] {

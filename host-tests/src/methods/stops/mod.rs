@@ -81,7 +81,7 @@ impl Replay {
         way::drives(rows, self.zero_s, period_s, stops, site, azimuth.0)
     }
 
-    /// The session once more, until a time since its zero, with the stops that it has found until then.
+    /// The session once more, from its first stop until a time since its zero, with the stops that it has found until then.
     pub(crate) fn until(&self, rows: &[ImuRow], end: Seconds) -> Option<Session> {
         let (setting, procedure) = (self.session.setting, self.session.procedure.clone());
         let stops = self.session.stops().iter().filter(|stop| stop.from.0 < end.0);
@@ -94,8 +94,9 @@ impl Replay {
         let period_s = procedure.sample_seconds;
         let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
         let mut session = Session::new(setting, procedure).ok()?;
-        let count = rows.partition_point(|row| row.time_s <= self.zero_s + end.0);
-        let samples = samples::since(self.zero_s, &rows[..count], period_s.0);
+        let before = |time: Seconds| rows.partition_point(|row| row.time_s <= self.zero_s + time.0);
+        let from = before(self.session.stops().first()?.from);
+        let samples = samples::since(self.zero_s, &rows[from..before(end).max(from)], period_s.0);
         samples.for_each(|sample| _ = session.feed(Input::Sample(&sample)));
         session.feed(Input::End);
         Some(session)

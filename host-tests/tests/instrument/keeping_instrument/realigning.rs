@@ -29,6 +29,23 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
 }
 
 #[test]
+fn an_alignment_that_ends_in_motion_has_the_truth_of_its_last_sample_and_a_budget_that_adds_up() {
+    for seed in [2, 6] {
+        let run = drive(&vehicle(seed, Hold { realigns: true, ..Hold::of(1800.0) }));
+        assert!(run.is_realigned(), "seed {seed}");
+        let conclusion = run.replay.conclusion().expect("it is over");
+        let azimuth = conclusion.verdict.expect("it is aligned anew");
+        let sigma = azimuth.sigma.0;
+        // The vehicle turns by degrees until the next second.
+        let truth_deg = run.azimuth_rad().to_degrees();
+        let error = azimuth_error(azimuth.angle.degrees(), truth_deg).to_radians();
+        assert!(error.abs() < 5.0 * sigma, "seed {seed}: {} σ", error / sigma);
+        let budget = conclusion.found.as_ref().expect("there is a solution").budget;
+        assert!((budget.sigma().0 / sigma - 1.0).abs() < 1e-6, "seed {seed}: {budget:?}");
+    }
+}
+
+#[test]
 fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_vertical() {
     let hold = Hold { realigns: true, drive_s: 100.0, stop_s: Some(320.0), ..Hold::of(500.0) };
     let found = keep(&frames(1, hold), &KeptPlan::of(None));

@@ -106,11 +106,11 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
         "limits of 68.3 %</li>",
         "overlapping Allan deviation</li>",
         "fit</li>",
-        "Q quantisation: not observable",
-        "N angle random walk: 0.0",
-        "B bias instability: ",
-        "K rate random walk: ",
-        "R rate ramp: not observable",
+        "Q quantisation, slope −1: not observable",
+        "N angle random walk, slope −½: 0.0",
+        "B bias instability, slope 0: ",
+        "K rate random walk, slope +½: ",
+        "R rate ramp, slope +1: not observable",
     ];
     assert_drawn(&html, &parts);
     let curve = figure(&html, "Allan deviation");
@@ -125,7 +125,9 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
     };
     assert_eq!([styles("Q "), styles("R ")].concat(), ["dotted"; 2], "upper limits alone");
     assert_eq!([styles("N "), styles("B "), styles("K ")].concat(), ["dashed"; 3]);
-    assert!(html.contains(">N, slope −½</span>") && html.contains(">R at most, slope +1</span>"));
+    for name in ["Q −1", "N −½", "B 0", "K +½", "R +1"] {
+        assert!(html.contains(&format!(">{name}</span>")), "{name} stands in the figure");
+    }
 }
 
 #[test]

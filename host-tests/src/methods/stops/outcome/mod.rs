@@ -212,7 +212,7 @@ impl Finished for Replay {
             page.extend(convergence.into_iter().map(Part::from));
         }
         page.push(progress::timeline(self).into());
-        page.extend(self.paper(found).into_iter().map(Part::from));
+        page.extend(self.paper(found).into_iter().map(|figure| Part::from(figure).detail()));
         page
     }
 
@@ -232,7 +232,11 @@ impl Replay {
             let drive = seconds(&self.stops()).map(|seconds| (plain, seconds));
             page.push(figures::heading_error(latitude, drive));
         }
-        page.extend(figures::criteria(self));
+        // The criteria are those of the first alignment.
+        let begun = self.session.stops().first().map_or(0.0, |stop| stop.from.0);
+        if self.criteria.last().is_some_and(|(time_s, ..)| *time_s > begun) {
+            page.extend(figures::criteria(self));
+        }
         page
     }
 }

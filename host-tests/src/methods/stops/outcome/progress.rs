@@ -79,21 +79,26 @@ pub(super) fn convergence(
         let part = move |part: usize| stop.seconds().0 * part as f64 / parts as f64;
         (1..=parts).map(move |index| Seconds(stop.from.0 + part(index)))
     });
-    let turned = found.azimuth.angle.0 - found.start.angle.0;
-    let milestone = |end: Seconds| milestone(replay, rows, end, turned);
-    let all: Vec<Milestone> = ends.filter_map(milestone).collect();
+    let known: Vec<(Seconds, Found)> =
+        ends.filter_map(|end| Some((end, known(replay, rows, end)?))).collect();
+    // By what the vehicle turned since the start, the last of them is carried to what was found.
+    let Some((_, last)) = known.last() else { return Vec::new() };
+    let turned = found.azimuth.angle.0 - last.start.angle.0;
+    let milestone = |(end, known): &(Seconds, Found)| {
+        let carried = Radians(wrapped(known.start.angle.0 + turned));
+        let [azimuth_deg, sigma_deg, limit_deg] =
+            [carried, known.azimuth.sigma, known.limit].map(Radians::degrees);
+        Milestone { time_s: replay.zero_s + end.0, azimuth_deg, sigma_deg, limit_deg }
+    };
+    let all: Vec<Milestone> = known.iter().map(milestone).collect();
     figures("Azimuth at the end", &all, truth_deg)
 }
 
-/// What is known at a time, carried to the end by what the vehicle turned since the start, rad; none where that is nothing.
-fn milestone(replay: &Replay, rows: &[ImuRow], end: Seconds, turned: f64) -> Option<Milestone> {
+/// What is known at a time; none where that is nothing.
+fn known(replay: &Replay, rows: &[ImuRow], end: Seconds) -> Option<Found> {
     let session = replay.until(rows, end)?;
     let conclusion = session.conclusion()?;
-    let found = conclusion.found.as_ref().filter(|_| conclusion.verdict.is_ok())?;
-    let carried = Radians(wrapped(found.start.angle.0 + turned));
-    let [azimuth_deg, sigma_deg, limit_deg] =
-        [carried, found.azimuth.sigma, found.limit].map(Radians::degrees);
-    Some(Milestone { time_s: replay.zero_s + end.0, azimuth_deg, sigma_deg, limit_deg })
+    conclusion.found.filter(|_| conclusion.verdict.is_ok())
 }
 
 /// When the vehicle stood and when it drove.
