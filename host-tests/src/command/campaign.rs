@@ -80,8 +80,9 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
     let page = files::opened("the report", options.report.as_ref())?;
     let progress = Progress::new(manner, (campaign.count)(&asked) as u64, campaign.steps);
     interrupt::heed();
-    let Done { mut object, report, refusal } = (campaign.run)(&asked, &progress)?;
+    let Done { mut object, mut report, refusal } = (campaign.run)(&asked, &progress)?;
     progress.finish();
+    report.subtitle.splice(0..0, interrupted());
     let refusal = interrupted().or(refusal.map(str::to_owned));
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();

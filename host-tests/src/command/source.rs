@@ -137,9 +137,12 @@ struct Counted<'p> {
 impl Read for Counted<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let length = self.inner.read(buffer)?;
+        let before = self.done >> 20;
         self.done += length as u64;
         let [done, all] = [self.done, self.all].map(|bytes| bytes >> 20);
-        self.progress.reached((self.done, self.all), &format!("reading, {done} of {all} MiB"));
+        if done > before {
+            self.progress.reached((self.done, self.all), &format!("reading, {done} of {all} MiB"));
+        }
         Ok(length)
     }
 }

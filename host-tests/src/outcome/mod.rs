@@ -221,13 +221,28 @@ impl Outcome {
     pub fn judged(self, verdict: &Result<Azimuth, Refusal>, truth_deg: Option<f64>) -> Self {
         let azimuth = verdict.as_ref().ok();
         let found = azimuth.map(|azimuth| azimuth.angle.degrees());
+        let has_north = !matches!(verdict, Err(Refusal::LatitudeTooHigh { .. }));
+        let this = if has_north { self } else { self.without_north() };
         Self {
             azimuth_deg: found,
             sigma_deg: azimuth.map(|azimuth| azimuth.sigma.degrees()),
             error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
             remedy: verdict.as_ref().err().map_or("", Refusal::remedy),
-            ..self.settled(verdict.as_ref().err().map(in_words))
+            ..this.settled(verdict.as_ref().err().map(in_words))
         }
+    }
+
+    /// Without what would be counted in a horizontal Earth rate that is none, or next to it.
+    fn without_north(self) -> Self {
+        let (budget, dominant, earth_rate_ratio, earth_rate_ratio_sigma) = Default::default();
+        let fit = self.fit.map(|fit| FitDetails {
+            budget,
+            dominant,
+            earth_rate_ratio,
+            earth_rate_ratio_sigma,
+            ..fit
+        });
+        Self { fit, limit_deg: None, ..self }
     }
 
     /// The outcome with its status: refused where there is a reason.

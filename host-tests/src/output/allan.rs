@@ -121,7 +121,11 @@ impl Shown<'_> {
             .with_found("residuals", analysis.ok().map(residuals));
         all.extend(record.lines);
         Summary {
-            grade: if analysis.is_ok() { Grade::Found } else { Grade::Refused },
+            grade: match (analysis.is_ok(), self.rest.interruption()) {
+                (false, _) => Grade::Refused,
+                (true, Some(_)) => Grade::Degraded,
+                (true, None) => Grade::Found,
+            },
             reasons: analysis.err().map(ToString::to_string).into_iter().collect(),
             found,
             facts: all,

@@ -5,7 +5,7 @@ use host::report::{Columns, Lines, Part, Report, Table};
 use proptest::prelude::*;
 use serde_json::Value;
 
-use crate::support::files::Scratch;
+use crate::support::files::{Scratch, stored};
 use crate::support::pages::figures;
 use crate::support::program::{code, meridian, object, text};
 
@@ -186,4 +186,17 @@ fn what_is_refused_prints_no_empty_line() {
 fn a_plan_on_the_equator_from_the_south_has_no_negative_latitude() {
     let output = meridian(&["plan", "--latitude=-0", "--arw", "0.001", "--seconds", "600"]);
     assert_no_negative_zero("plan", &text(&output.stdout));
+}
+
+#[test]
+fn a_recording_from_a_pole_is_refused_without_numbers_that_mean_nothing() {
+    for name in ["stepwise-circle", "rotating-gyro", "drive-fog-three-stops"] {
+        let output = meridian(&["replay", &stored(name), "--latitude", "90", "-v"]);
+        assert_eq!(code(&output), 1, "{name}");
+        let printed = text(&output.stdout);
+        assert!(printed.contains("latitude 90.00° is beyond ±85°"), "{name}: {printed}");
+        for told in ["Error budget", "Earth rate  ", "limit  "] {
+            assert!(!printed.contains(told), "{name}: {printed}");
+        }
+    }
 }

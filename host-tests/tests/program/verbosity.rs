@@ -59,6 +59,24 @@ fn progress_has_its_part_and_the_time_that_is_left_from_the_first_line() {
 }
 
 #[test]
+fn progress_counts_no_more_than_is_planned_and_names_what_comes_after_the_alignment() {
+    let run = "run vehicle --rate=50 --stops=2 --stop-seconds=30 --realign --hold=700";
+    let run: Vec<String> = run.split(' ').map(str::to_owned).collect();
+    let told = text(&told(&run, &[]).stderr);
+    let steps = told.lines().filter_map(|line| line.strip_prefix("stops ")?.split_once(','));
+    for (steps, _) in steps {
+        let (done, planned) = steps.split_once('/').expect("so many of so many");
+        let [done, planned] = [done, planned].map(|count| count.parse::<u32>().expect("a number"));
+        assert!(done <= planned, "{told}");
+    }
+    let kept = told.lines().skip_while(|line| !line.starts_with("keeping, "));
+    assert!(
+        kept.clone().count() > 2 && kept.clone().all(|line| line.starts_with("keeping, ")),
+        "{told}"
+    );
+}
+
+#[test]
 fn who_reads_objects_gets_no_progress_and_the_same_object_however_much_is_told() {
     for arguments in commands() {
         let usual = told(&arguments, &["--json"]);

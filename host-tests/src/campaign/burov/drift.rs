@@ -60,7 +60,9 @@ pub fn compare(gyro: Grade, runs: usize, tick: Tick<'_>) -> Option<Comparison> {
     let row = |plan| row(&Trial { grade: gyro, plan, rotation }, runs, tick);
     let [planned, one_pass] = [planned, one_pass].map(row);
     let gain = one_pass.precision.rms_deg / planned.precision.rms_deg;
-    Some(Comparison { planned, one_pass, gain })
+    // Without a run of either, where the campaign was interrupted, there is nothing to compare.
+    let is_run = [&planned, &one_pass].iter().all(|row| row.precision.runs > 0);
+    is_run.then_some(Comparison { planned, one_pass, gain })
 }
 
 fn row(trial: &Trial, runs: usize, tick: Tick<'_>) -> Row {

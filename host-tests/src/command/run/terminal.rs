@@ -73,8 +73,11 @@ impl<'t> Terminal<'t> {
         Self { inputs, manner, shown, steps, stage, stops, expected, latest }
     }
 
-    /// Notes how many of the planned dwells, turns or stops are done.
+    /// Notes how many of the planned dwells, turns or stops are done; alignments anew are part of the keeping.
     fn follow(&self, progress: &alignment::Progress) {
+        if matches!(self.stage.get(), Stage::Keeping) {
+            return;
+        }
         let (done, planned) = match *progress {
             alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => (done, of),
             alignment::Progress::Rotating(rotating::Progress::Turned(done, of)) => {

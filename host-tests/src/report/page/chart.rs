@@ -17,7 +17,7 @@ const BAR: i64 = 40;
 pub(super) const TICKS: f64 = 8.0;
 const LOW_TICKS: f64 = 4.0;
 /// Where the right end of an axis begins, %.
-const END: f64 = 94.0;
+const END: f64 = 97.0;
 /// How many colours the page's style has for series.
 const COLOURS: usize = 8;
 /// Digits of a value under the pointer.

@@ -90,7 +90,11 @@ pub(super) fn convergence(
             [carried, known.azimuth.sigma, known.limit].map(Radians::degrees);
         Milestone { time_s: replay.zero_s + end.0, azimuth_deg, sigma_deg, limit_deg }
     };
-    let all: Vec<Milestone> = known.iter().map(milestone).collect();
+    let mut all: Vec<Milestone> = known.iter().map(milestone).collect();
+    // What was found at last knows the drive after the last stop, too.
+    if let Some(last) = all.last_mut() {
+        [last.sigma_deg, last.limit_deg] = [found.azimuth.sigma, found.limit].map(Radians::degrees);
+    }
     figures("Azimuth at the end", &all, truth_deg)
 }
 
