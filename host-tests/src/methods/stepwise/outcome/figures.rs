@@ -89,6 +89,8 @@ fn shown<'a>(session: &'a Session, conclusion: &Conclusion) -> Vec<Shown<'a>> {
 
 /// Angles between neighbours of a curve at most, °.
 const STEP: f64 = 2.0;
+/// Angles that differ by no more are the same, °.
+const SAME: f64 = 1e-6;
 /// An arc without dwells of this length makes the others one arc instead of a circle, °.
 const OPEN: f64 = 100.0;
 /// What the axis of a circle shows beyond its ends, °.
@@ -119,28 +121,55 @@ fn axis(dwells: &[Shown]) -> Axis {
     if reach > 360.0 - OPEN { axis.between([-BEYOND, 360.0 + BEYOND]) } else { axis }
 }
 
-/// What the model gives along the way of the stage, °/h over °: the horizontal Earth rate of each angle, and all else
-/// as it changes evenly from dwell to dwell.
-fn path(dwells: &[&Shown], zero: f64, earth_rate: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+/// A stage angle, °, with the rate that the model gives there, °/h.
+type Place = (f64, f64);
+
+/// What the model gives along the way of the stage, and between neighbouring dwells on arcs where it never goes: the
+/// horizontal Earth rate of each angle, and all else as it changes evenly from dwell to dwell.
+fn path(dwells: &[&Shown], zero: f64, earth_rate: impl Fn(f64) -> f64) -> Vec<Place> {
     let at = |shown: &Shown| Some((shown.stage_deg(), degrees_per_hour(shown.prediction?.rate.0)));
-    let all: Vec<(f64, f64)> = dwells.iter().filter_map(|shown| at(shown)).collect();
+    let all: Vec<Place> = dwells.iter().filter_map(|shown| at(shown)).collect();
     let turned: f64 = all.windows(2).map(|pair| azimuth_error(pair[1].0, pair[0].0).abs()).sum();
     // A stage that goes to and fro has a longer way, of which fewer places can be drawn.
-    let step_deg = STEP.max(turned / (POINTS - all.len().min(POINTS / 2)) as f64);
-    let mut path: Vec<(f64, f64)> = all.first().copied().into_iter().collect();
-    for pair in all.windows(2) {
-        let [(from, before), (to, after)] = [pair[0], pair[1]];
+    let ends = (3 * all.len()).min(POINTS / 2);
+    let step_deg = STEP.max((turned + 360.0) / (POINTS - ends) as f64);
+    let mut path = Vec::new();
+    let mut leg = |[(from, before), (to, after)]: [Place; 2]| {
         let way = azimuth_error(to, from);
         let beside = [before - earth_rate(from), after - earth_rate(to)];
         let steps = (way.abs() / step_deg).round().max(1.0);
-        for step in 1..=steps as u32 {
+        // Where it does not begin at the end of the one before, a leg stands alone.
+        let begun = around(zero, from);
+        if path.last().is_some_and(|last: &Place| (last.0 - begun).abs() > SAME) {
+            path.push((f64::NAN, f64::NAN));
+        }
+        for step in 0..=steps as u32 {
             let part = f64::from(step) / steps;
             let angle = from + way * part;
             let rate = earth_rate(angle) + beside[0] + (beside[1] - beside[0]) * part;
             push_around(&mut path, (around(zero, angle), rate));
         }
-    }
+    };
+    all.windows(2).for_each(|pair| leg([pair[0], pair[1]]));
+    unturned(&all).into_iter().for_each(leg);
     path
+}
+
+/// Neighbouring dwells of a circle between which the stage never turned.
+fn unturned(all: &[Place]) -> Vec<[Place; 2]> {
+    let mut places = all.to_vec();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let neighbours = places.iter().zip(places.iter().cycle().skip(1));
+    let is_unturned = |(from, to): &(&Place, &Place)| {
+        let arc = (to.0 - from.0).rem_euclid(360.0);
+        let middle = from.0 + 0.5 * arc;
+        let passes = |pair: &[Place]| {
+            let way = azimuth_error(pair[1].0, pair[0].0);
+            (way.signum() * (middle - pair[0].0)).rem_euclid(360.0) < way.abs()
+        };
+        (STEP..OPEN).contains(&arc) && !all.windows(2).any(passes)
+    };
+    neighbours.filter(is_unturned).map(|(from, to)| [*from, *to]).collect()
 }
 
 /// Adds a point to a path, which is interrupted where it goes over the end of the axis.
