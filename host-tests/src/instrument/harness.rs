@@ -24,6 +24,7 @@ use orientation::units;
 use super::kept::Kept;
 use super::latest::Latest;
 use super::{Run, RunError};
+use crate::output::seconds;
 use crate::{interrupt, virtual_time};
 
 /// A harness on which a board is put: it keeps what the board reports and passes it on.
@@ -161,7 +162,7 @@ impl<'w> Harness<'w> {
             reports: self.reports.into_inner(),
             base: self.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
-            seconds: at.as_micros() as f64 * 1e-6,
+            seconds: seconds(at),
             found: self.found.get(),
             found_rad: None,
             kept: Kept::default(),

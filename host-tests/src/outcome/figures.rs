@@ -8,7 +8,7 @@ use orientation::attitude::Trust;
 
 use crate::campaign::faults::notice;
 use crate::instrument::kept::{Kept, Point};
-use crate::output::{azimuth_error, degrees};
+use crate::output::{azimuth_error, degrees, seconds};
 use crate::report::{self, Figure, Kind, Lane, Series, Shape, Stretch, Style};
 
 /// The name of a true angle, and the angle, °.
@@ -146,7 +146,7 @@ fn kind(point: &Point) -> Kind {
 pub(super) fn faults(events: &[(Instant, Event)]) -> Vec<Lane> {
     let wrong = events.iter().filter(|(_, event)| notice::is_wrong(event));
     let mark = |(at, event): &(Instant, Event)| {
-        let at_s = at.as_micros() as f64 * 1e-6;
+        let at_s = seconds(*at);
         Stretch {
             from_s: at_s,
             to_s: at_s,

@@ -44,7 +44,7 @@ impl Outcome {
         let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
             let this = match run.disagreement.filter(|_| this.is_ok()) {
-                Some(sigmas) => this.withdrawn(sigmas),
+                Some(sigmas) => this.disagreeing(sigmas),
                 None => this,
             };
             return Self { run: Some(run), ..this };
@@ -67,11 +67,10 @@ impl Outcome {
     }
 
     /// The outcome of an alignment whose azimuth disagrees by so many σ with what was kept.
-    fn withdrawn(self, sigmas: f64) -> Self {
+    fn disagreeing(self, sigmas: f64) -> Self {
         let reason = format!(
             "the azimuth found disagrees with what was kept, by {sigmas:.1} σ: neither is believed"
         );
-        let (azimuth_deg, sigma_deg, error_deg) = Default::default();
-        Self { azimuth_deg, sigma_deg, error_deg, ..self.settled(Some(reason)) }
+        self.withdrawn(reason)
     }
 }

@@ -262,10 +262,14 @@ impl Outcome {
         let so_far = budget.map(|BudgetDetails(budget)| {
             format!("; what was measured until then gives 1σ of {:.4}°", budget.sigma().degrees())
         });
-        let reason = Some(why + &so_far.unwrap_or_default());
+        let reason = why + &so_far.unwrap_or_default();
+        Self { status: "failed", remedy: "", ..self.withdrawn(reason) }
+    }
+
+    /// The outcome without its azimuth, for a reason.
+    fn withdrawn(self, reason: String) -> Self {
         let (azimuth_deg, sigma_deg, error_deg) = Default::default();
-        let this = Self { azimuth_deg, sigma_deg, error_deg, remedy: "", ..self.settled(reason) };
-        Self { status: "failed", ..this }
+        Self { azimuth_deg, sigma_deg, error_deg, ..self.settled(Some(reason)) }
     }
 
     /// The roll of a spinning body at the last sample, within a turn, °, where it was found.

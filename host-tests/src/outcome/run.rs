@@ -17,7 +17,7 @@ use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::instrument::replay::Done;
 use crate::interrupt;
-use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, signed};
+use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, seconds, signed};
 use crate::report::{Lane, Lines, Part};
 
 /// What only a simulated run has.
@@ -255,7 +255,7 @@ fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
             Event::Navigation(progress) => found.take(progress),
             Event::Alignment(Progress::Concluded(_)) => (is_first, found.refused) = (false, None),
             Event::Alignment(Progress::Refused(reason)) if !is_first => {
-                let at_s = at.as_micros() as f64 * 1e-6;
+                let at_s = seconds(*at);
                 found.refused = Some(format!("at {at_s:.1} s: {reason}"));
             }
             _ => {}

@@ -9,6 +9,7 @@ pub mod progress;
 
 use std::io::{self, Write};
 
+use embassy_time::Instant;
 use orientation::alignment::stepwise::fit::{Fit, Hypothesis};
 use orientation::math::regression::Column;
 use orientation::noise::model::GyroNoise;
@@ -17,6 +18,12 @@ use orientation::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, Radia
 /// Writes a line to standard error. A line that has no reader is lost, which is no error.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// A time of the instrument's clock, s from power-on.
+#[must_use]
+pub fn seconds(at: Instant) -> f64 {
+    at.as_micros() as f64 * 1e-6
 }
 
 /// Radians to degrees.

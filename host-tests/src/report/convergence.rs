@@ -2,7 +2,7 @@
 
 use crate::output::azimuth_error;
 
-use super::{Axis, Figure, Point, Series, Shape, Style};
+use super::{Axis, BREAK, Figure, Point, Series, Shape, Style};
 
 /// An azimuth on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ fn azimuths(what: &str, all: &[Milestone], last: &Milestone, truth_deg: Option<f
     let band = shown().map(|at| Point::within(at.time_s, near(at.azimuth_deg), at.sigma_deg));
     let limit =
         |sign: f64| shown().map(move |at| (at.time_s, last.azimuth_deg + sign * at.limit_deg));
-    let limits = limit(1.0).chain([(f64::NAN, f64::NAN)]).chain(limit(-1.0));
+    let limits = limit(1.0).chain([BREAK]).chain(limit(-1.0));
     let curve = shown().map(|at| (at.time_s, near(at.azimuth_deg)));
     let ends = [shown().next().map_or(0.0, |at| at.time_s), last.time_s];
     let mut series = vec![

@@ -180,9 +180,6 @@ impl Axis {
 }
 
 impl Point {
-    /// Where a curve is interrupted.
-    pub const BREAK: Self = Self { x: f64::NAN, y: f64::NAN, limits: None };
-
     /// A point with limits of one σ on either side.
     #[must_use]
     pub fn within(x: f64, y: f64, sigma: f64) -> Self {
@@ -198,6 +195,9 @@ impl From<(f64, f64)> for Point {
 
 /// Most points of a series that a figure draws: more could hardly be distinguished.
 pub const POINTS: usize = 600;
+
+/// A point at which a curve is interrupted.
+pub const BREAK: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// Whether a curve is interrupted here.
 fn is_break(point: &Point) -> bool {
@@ -238,7 +238,7 @@ impl Series {
         }
         let pieces: Vec<Vec<Point>> =
             all.split(is_break).map(|piece| thinned(piece, 2 * step)).collect();
-        pieces.join(&Point::BREAK)
+        pieces.join(&Point::from(BREAK))
     }
 
     /// A curve through (x, y).

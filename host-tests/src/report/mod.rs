@@ -18,7 +18,7 @@ use crate::unwritten;
 
 pub use self::columns::Columns;
 pub use self::convergence::{Milestone, convergence};
-pub use self::figure::{Axis, Figure, Note, POINTS, Point, Scale, Series, Shape, Style};
+pub use self::figure::{Axis, BREAK, Figure, Note, POINTS, Point, Scale, Series, Shape, Style};
 pub use self::parts::{Kind, Lane, Lines, Share, Shares, Stretch, Table, Timeline};
 pub use self::summary::{Grade, Rose, Summary};
 

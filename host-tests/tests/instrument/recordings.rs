@@ -110,8 +110,8 @@ fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
     compare_stage(&plain, scenario, &frames, &samples.taken);
 }
 
-/// Samples a second, of a platform that turns at a rate, rad/s, for a second and rests for another; its encoder is read
-/// with every so-manieth.
+/// So many samples a second of a platform that turns at a rate, rad/s, for a second and rests for another; its encoder is
+/// read with one in `every` of them.
 fn turned_and_rested(hz: u64, rate: f64, every: u64) -> Vec<Sample> {
     let read = |index: u64| (index - index % every).min(hz) as f64 / hz as f64;
     let sample = |index: u64| Sample {

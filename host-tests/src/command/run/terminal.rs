@@ -10,6 +10,7 @@ use host::instrument::RunError;
 use host::interrupt;
 use host::output::manner::Manner;
 use host::output::progress::Progress;
+use host::output::seconds;
 use orientation::alignment::{self, rotating, stepwise, stops};
 use orientation::navigation::{self, aligner};
 
@@ -132,8 +133,8 @@ impl Observer for Terminal<'_> {
 
     fn event(&self, at: Instant, event: &Event) {
         if self.manner.shows_log() {
-            let seconds = at.as_micros() as f64 * 1e-6;
-            self.shown.log(&format!("{seconds:>11.6} {event}"));
+            let at_s = seconds(at);
+            self.shown.log(&format!("{at_s:>11.6} {event}"));
         }
         if let Event::Alignment(progress) = event {
             self.follow(progress);

@@ -9,8 +9,8 @@ use orientation::units::Radians;
 
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{
-    Axis, Figure, Kind, Lane, Milestone, POINTS, Point, Series, Shape, Stretch, Style, Timeline,
-    convergence as figures,
+    Axis, BREAK, Figure, Kind, Lane, Milestone, POINTS, Point, Series, Shape, Stretch, Style,
+    Timeline, convergence as figures,
 };
 
 /// A dwell as figures show it.
@@ -138,16 +138,13 @@ fn path(dwells: &[&Shown], zero: f64, earth_rate: impl Fn(f64) -> f64) -> Vec<Pl
         let way = azimuth_error(to, from);
         let beside = [before - earth_rate(from), after - earth_rate(to)];
         let steps = (way.abs() / step_deg).round().max(1.0);
-        // Where it does not begin at the end of the one before, a leg stands alone.
-        let begun = around(zero, from);
-        if path.last().is_some_and(|last: &Place| (last.0 - begun).abs() > SAME) {
-            path.push((f64::NAN, f64::NAN));
-        }
         for step in 0..=steps as u32 {
             let part = f64::from(step) / steps;
             let angle = from + way * part;
             let rate = earth_rate(angle) + beside[0] + (beside[1] - beside[0]) * part;
-            push_around(&mut path, (around(zero, angle), rate));
+            // Where it does not begin at the end of the one before, a leg stands alone.
+            let most_deg = if step == 0 { SAME } else { 180.0 };
+            push_within(&mut path, (around(zero, angle), rate), most_deg);
         }
     };
     all.windows(2).for_each(|pair| leg([pair[0], pair[1]]));
@@ -172,10 +169,10 @@ fn unturned(all: &[Place]) -> Vec<[Place; 2]> {
     neighbours.filter(is_unturned).map(|(from, to)| [*from, *to]).collect()
 }
 
-/// Adds a point to a path, which is interrupted where it goes over the end of the axis.
-fn push_around(path: &mut Vec<(f64, f64)>, point: (f64, f64)) {
-    if path.last().is_some_and(|last| (last.0 - point.0).abs() > 180.0) {
-        path.push((f64::NAN, f64::NAN));
+/// Adds a place to a path, which is interrupted where that lies farther off than this, as over the end of the axis.
+fn push_within(path: &mut Vec<Place>, point: Place, most_deg: f64) {
+    if path.last().is_some_and(|last| (last.0 - point.0).abs() > most_deg) {
+        path.push(BREAK);
     }
     path.push(point);
 }
