@@ -15,7 +15,7 @@ use firmware::ports::{Aiding, BaseReading, Observer, Recorder, Store};
 use firmware::run::{Outside, navigate};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
-use orientation::alignment::{Method, Progress};
+use orientation::alignment::{Azimuth, Method, Progress};
 use orientation::attitude::Report;
 use orientation::navigation::{self, aligner};
 use orientation::signal::Timed;
@@ -33,7 +33,7 @@ pub(super) struct Harness<'w> {
     reports: RefCell<Vec<Report>>,
     base: RefCell<Vec<(Instant, BaseReading)>>,
     bytes: RefCell<Vec<u8>>,
-    found: Cell<Option<units::Instant>>,
+    found: RefCell<Vec<(units::Instant, Azimuth)>>,
     /// Whether the run was interrupted.
     is_interrupted: Cell<bool>,
     watch: &'w dyn Observer,
@@ -55,8 +55,8 @@ impl Observer for Harness<'_> {
     }
 
     fn navigates(&self, input: &navigation::Input) {
-        if let navigation::Input::Found(at, _) = input {
-            self.found.set(Some(*at));
+        if let navigation::Input::Found(at, azimuth) = input {
+            self.found.borrow_mut().push((*at, *azimuth));
         }
         self.watch.navigates(input);
     }
@@ -163,7 +163,7 @@ impl<'w> Harness<'w> {
             base: self.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: seconds(at),
-            found: self.found.get(),
+            found: self.found.into_inner(),
             found_rad: None,
             kept: Kept::default(),
             health,

@@ -8,6 +8,7 @@ use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::sensor_fault::SensorFault;
 use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
+use orientation::alignment::Azimuth;
 use orientation::attitude::{Realigned, Report};
 use orientation::navigation::Progress;
 use orientation::units;
@@ -18,9 +19,11 @@ use simulated::scenario::Scenario;
 
 use super::{Run, RunError};
 
-/// How azimuths that came while one was kept agreed with it.
+/// What alignments found to be kept, and how azimuths that came while one was kept agreed with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Realignments {
+    /// What each alignment found, and the sample to which it belongs.
+    pub found: Vec<(units::Instant, Azimuth)>,
     /// How often one agreed.
     pub fused: usize,
     /// When the latest alignment anew was refused, and why; none where none was, and where it is not told.
@@ -151,11 +154,12 @@ impl<R, T> Run<R, T> {
             motion.advance(at.seconds());
             motion.attitude()
         };
+        let latest = self.found.last().map(|(at, _)| *at);
         let (mut points, mut found_rad) = (Vec::with_capacity(self.reports.len()), None);
         for report in &self.reports {
             // The course goes on alone: what lies before the report is asked for first.
             let is_next = |found: &units::Instant| found_rad.is_none() && *found <= report.time;
-            if let Some(found) = self.found.filter(is_next) {
+            if let Some(found) = latest.filter(is_next) {
                 found_rad = Some(truth(found).azimuth_rad);
             }
             points.push(Point { report: *report, truth: truth(report.time) });

@@ -24,10 +24,10 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::BaseReading;
-use orientation::alignment::Progress;
 use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::mount::MountError;
+use orientation::alignment::{Azimuth, Progress};
 use orientation::attitude::Report;
 use orientation::units;
 
@@ -57,9 +57,9 @@ pub struct Run<R = Replay, T = ()> {
     pub lines: String,
     /// Virtual time from power-on to the end, s.
     pub seconds: f64,
-    /// The sample to which the latest azimuth belongs that was handed over to be kept.
-    pub found: Option<units::Instant>,
-    /// The true azimuth at that sample, rad; none where nothing was kept after it.
+    /// The azimuths that alignments handed over to be kept, and the samples to which they belong.
+    pub found: Vec<(units::Instant, Azimuth)>,
+    /// The true azimuth at the latest of those samples, rad; none where nothing was kept after it.
     pub found_rad: Option<f64>,
     /// What was kept after the alignment, with the truth.
     pub kept: Kept,

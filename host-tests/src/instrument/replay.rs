@@ -225,6 +225,7 @@ impl<'h, S: Timed> Halves<'h, S> {
     fn navigate(&mut self, input: &navigation::Input) {
         if let navigation::Input::Found(at, azimuth) = input {
             self.has_diverged |= self.aligner.hand_over() != Some((*at, *azimuth));
+            self.realignments.found.push((*at, *azimuth));
         }
         self.navigator.take(input, &mut |output| match output {
             Output::Report(report, _) => self.reports.push(report),

@@ -5,7 +5,7 @@ use std::time::Duration;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::remembered::Remembered;
-use orientation::alignment::Progress;
+use orientation::alignment::{Azimuth, Progress};
 use orientation::attitude::Report;
 use orientation::units;
 use serde::Serialize;
@@ -18,7 +18,7 @@ use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::instrument::replay::Done;
 use crate::interrupt;
 use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, seconds, signed};
-use crate::report::{Lane, Lines, Part};
+use crate::report::{Lane, Lines, Part, Table};
 
 /// What only a simulated run has.
 #[derive(Clone, Debug, Serialize)]
@@ -54,6 +54,9 @@ pub struct RunDetails {
     #[serde(skip)]
     pub(super) cut_short: Option<String>,
 }
+
+/// What an alignment found, and the sample to which it belongs.
+type Found = (units::Instant, Azimuth);
 
 /// Why an alignment has no end in a file of inputs.
 const BROKEN_OFF: &str = "the file breaks off before the alignment is over";
@@ -108,9 +111,8 @@ impl RunDetails {
         let this = Self::with(keys, Some(board), &run.kept, &realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
-        let facts = run.found.filter(|_| run.is_realigned()).map(found_anew).into_iter().collect();
         let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
-        Self { facts, degradations, lanes, cut_short, ..this }
+        Self { degradations, lanes, cut_short, ..this }
     }
 
     /// What the inputs of a run did: what was kept, and how later azimuths agreed with it.
@@ -133,10 +135,13 @@ impl RunDetails {
         let is_lost = last_kept.is_some_and(|last| last.report.azimuth.is_none());
         let lost = "the azimuth is not known any more at the end of what was kept".to_owned();
         Self {
-            keys: keys.with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
-            facts: Vec::new(),
+            keys: keys
+                .with_found("alignments", of_alignments(&later.found))
+                .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
+            facts: found_anew(&later.found).into_iter().collect(),
             degradations: is_lost.then_some(lost).into_iter().collect(),
             parts: lines
+                .chain(alignments(&later.found).map(Part::from))
                 .chain(figures::all(kept).into_iter().map(Part::from))
                 .chain(board)
                 .collect(),
@@ -238,8 +243,31 @@ fn aligned_anew(Realignments { fused, refused, .. }: &Realignments) -> Option<St
 }
 
 /// Which of several alignments an azimuth is of.
-fn found_anew(at: units::Instant) -> [String; 2] {
-    ["found".to_owned(), format!("at {:.1} s, by the latest alignment", at.seconds())]
+fn found_anew(found: &[Found]) -> Option<[String; 2]> {
+    let [_, .., (at, _)] = found else { return None };
+    Some(["found".to_owned(), format!("at {:.1} s, by the latest alignment", at.seconds())])
+}
+
+/// What each of several alignments found.
+fn of_alignments(found: &[Found]) -> Option<Vec<Keys>> {
+    let keys = |(at, Azimuth { angle, sigma }): &Found| {
+        Keys::default()
+            .with("at_s", at.seconds())
+            .with("azimuth_deg", angle.degrees())
+            .with("sigma_deg", sigma.degrees())
+    };
+    (found.len() > 1).then(|| found.iter().map(keys).collect())
+}
+
+/// What each of several alignments found, as a table.
+fn alignments(found: &[Found]) -> Option<Table> {
+    let row = |(at, Azimuth { angle, sigma }): &Found| {
+        let angle = in_circle(angle.degrees(), 4);
+        vec![format!("{:.1}", at.seconds()), angle, format!("{:.4}", sigma.degrees())]
+    };
+    let rows = (found.len() > 1).then(|| found.iter().map(row).collect());
+    let head = ["at, s", "azimuth of body x, °", "1σ, °"].map(str::to_owned).to_vec();
+    rows.map(|rows| Table { title: "Alignments".to_owned(), head, rows })
 }
 
 /// The greatest error of the azimuth on the way, over its σ of the moment.
@@ -249,7 +277,8 @@ fn greatest_sigmas(kept: &Kept) -> Option<f64> {
 
 /// How later azimuths of a run agreed with what was kept.
 fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
-    let (mut found, mut is_first) = (Realignments::default(), true);
+    let mut found = Realignments { found: run.found.clone(), ..Realignments::default() };
+    let mut is_first = true;
     for (at, event) in &run.events {
         match event {
             Event::Navigation(progress) => found.take(progress),

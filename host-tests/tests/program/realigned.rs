@@ -33,6 +33,26 @@ fn the_alignment_stands_beside_what_was_kept() {
 }
 
 #[test]
+fn each_of_several_alignments_stands_in_the_output() {
+    let run = ["run", "vehicle", "--rate=50", "--stops=2", "--stop-seconds=30", "--realign"];
+    let found = object(&meridian(&[&run[..], &["--hold=1200", "--json"]].concat()));
+    let all = found["alignments"].as_array().expect("there are several");
+    let latest = all.last().expect("there are several");
+    assert!(all.len() > 1 && all.is_sorted_by_key(|one| one["at_s"].as_f64()), "{all:?}");
+    for key in ["azimuth_deg", "sigma_deg"] {
+        let apart = latest[key].as_f64().zip(found[key].as_f64()).map(|(a, b)| (a - b).abs());
+        assert!(apart.is_some_and(|apart| apart < 1e-9), "{key}: {latest} beside {}", found[key]);
+    }
+    let told = text(&meridian(&[&run[..], &["--hold=1200"]].concat()).stdout);
+    for one in all {
+        let [azimuth, sigma] = ["azimuth_deg", "sigma_deg"].map(|key| one[key].as_f64());
+        for value in [azimuth, sigma].map(|value| format!("{:.4}", value.expect("a number"))) {
+            assert!(told.contains(&value), "{value} in {told}");
+        }
+    }
+}
+
+#[test]
 fn its_replay_says_the_same() {
     let scratch = Scratch::new("realigned");
     for run in RUNS {
@@ -40,7 +60,7 @@ fn its_replay_says_the_same() {
         let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
         let ran = object(&meridian(&[&arguments[..], &["--json", "--record", &path]].concat()));
         let replayed = object(&meridian(&["replay", &path, "--json"]));
-        for key in ["method", "azimuth_deg", "sigma_deg", "budget", "kept"] {
+        for key in ["method", "azimuth_deg", "sigma_deg", "budget", "alignments", "kept"] {
             assert_eq!(ran[key], replayed[key], "{run}: {key}");
         }
     }

@@ -214,8 +214,8 @@ impl VehicleScenario {
     pub fn day(&self, fault: Option<Fault>) -> Day {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
-        let Hold { seconds, drive_s, stop_s, .. } = self.base.hold;
-        day.go_on(self.base.seed, seconds, drive_s, stop_s.unwrap_or(STOP_SECONDS));
+        let Hold { seconds, drive_s, .. } = self.base.hold;
+        day.go_on(self.base.seed, seconds, drive_s, self.later_stop_s());
         match fault {
             Some(Fault::NeverDrives) => day.legs.truncate(1),
             Some(Fault::NeverStops) => never_stop(&mut day),
@@ -263,6 +263,12 @@ impl VehicleScenario {
     /// How long the vehicle stands at a stop, s.
     fn standing_s(&self) -> f64 {
         self.stop_s + FIND_SECONDS
+    }
+
+    /// How long the vehicle stands at a stop after the alignment, s: as at those of the alignment where it aligns anew.
+    fn later_stop_s(&self) -> f64 {
+        let Hold { realigns, stop_s, .. } = self.base.hold;
+        stop_s.unwrap_or(if realigns { self.standing_s() } else { STOP_SECONDS })
     }
 
     /// Length of the whole day, s.

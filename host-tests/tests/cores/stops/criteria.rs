@@ -1,7 +1,7 @@
 //! Stops as the criteria find them on simulated days.
 
 use hal_mock::vehicle::scenario::Scenario;
-use hal_mock::vehicle::{Drive, Event, Leg, Stop};
+use hal_mock::vehicle::{Drive, Event, Leg, Stop, Vehicle};
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::stops;
 use orientation::signal::rest::Sensors;
@@ -11,7 +11,7 @@ use orientation::units::{
 
 use super::assert_near;
 use super::drives::two;
-use super::world::Day;
+use super::world::{Day, Place};
 
 /// A day whose legs are these.
 pub fn day(legs: &[Leg], seed: u64) -> Day {
@@ -117,6 +117,44 @@ fn a_halt_at_a_crossing_is_no_stop_and_spoils_nothing() {
             day(&[stop(60.0), drive(200.0), stop(seconds), drive(200.0), stop(60.0)], 9).run();
         assert_eq!(outcome.stops.len(), 2, "{seconds} s");
         assert!(outcome.ratios().iter().all(|ratio| ratio.abs() < 3.5), "{seconds} s");
+    }
+}
+
+/// Where the vehicle stands at its stops, north and east of the beginning, m.
+fn places(day: &Day) -> Vec<[f64; 2]> {
+    let configuration = day.scenario.configuration();
+    let mut vehicle = Vehicle::new(&configuration, day.seed);
+    let mut place_at = |[_, until]: [f64; 2]| {
+        while vehicle.next().is_some_and(|sample| sample.time_s < until) {}
+        vehicle.truth().displacement_m
+    };
+    configuration.stops().map(&mut place_at).collect()
+}
+
+#[test]
+fn a_halt_too_short_for_a_stop_leaves_no_place_behind() {
+    let (long, way) = (stop(60.0), drive(200.0));
+    for halt in [0, 1] {
+        let mut short = 0;
+        for tenths in 125..=150 {
+            let brief = stop(0.1 * f64::from(tenths));
+            let mut legs = vec![long, way, long];
+            legs.splice(2 * halt..2 * halt, [brief, way]);
+            let day = Day { place: Place::Asked, ..day(&legs, 9) };
+            let outcome = day.run();
+            // A longer one is a stop.
+            let [_, last] = &outcome.stops[..] else { continue };
+            short += 1;
+            let mut truth = places(&day);
+            truth.remove(halt);
+            let found = last.displacement.expect("the session asked where it stands");
+            for axis in 0..2 {
+                assert_near(found[axis].0, truth[1][axis] - truth[0][axis], 0.1);
+            }
+            let [_, ratio] = outcome.ratios();
+            assert!(ratio.abs() < 3.5, "{tenths} tenths of a second at {halt}: {ratio} σ");
+        }
+        assert!(short >= 5, "{short} halts were too short");
     }
 }
 

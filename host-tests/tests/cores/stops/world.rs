@@ -11,7 +11,7 @@ use orientation::alignment::stops::residual::Residual;
 use orientation::alignment::stops::session::{Procedure, Session};
 use orientation::alignment::stops::stop::Stop;
 use orientation::alignment::stops::stop_detector::Rests;
-use orientation::alignment::{Input, Method};
+use orientation::alignment::{Input, Method, Request};
 use orientation::earth::Latitude;
 use orientation::noise::model::{GyroNoise, StatedNoise};
 use orientation::signal::InertialSample;
@@ -29,6 +29,8 @@ pub enum Place {
     Nothing,
     /// The truth, with an error of this 1σ, m, on either axis.
     Fix(f64),
+    /// The truth, whenever the session asks for it.
+    Asked,
     /// The truth and so much, m, north and east, at every stop but the first.
     Wrong([f64; 2]),
 }
@@ -164,12 +166,11 @@ impl Day {
         let start = vehicle.truth().attitude.azimuth_rad;
         while let Some(mut sample) = vehicle.next() {
             if change(&mut sample) {
-                session.feed(Input::Sample(&converted(
-                    &sample,
-                    &mut carried,
-                    period,
-                    &configuration,
-                )));
+                let taken = converted(&sample, &mut carried, period, &configuration);
+                let request = session.feed(Input::Sample(&taken));
+                if self.place == Place::Asked && request == Request::Locate {
+                    session.feed(Input::Displaced(&vehicle.truth().displacement_m.map(Metres)));
+                }
             }
             look(&session, sample.time_s);
             if stops.get(next).is_some_and(|stop| sample.time_s + 0.5 * period >= stop[1]) {
@@ -192,7 +193,7 @@ impl Day {
 
     fn fix(&self, stop: usize, there: [f64; 2], fixes: &mut Generator) -> Option<[f64; 2]> {
         match self.place {
-            Place::Nothing => None,
+            Place::Nothing | Place::Asked => None,
             _ if stop == 0 => Some([0.0; 2]),
             Place::Fix(sigma) => Some(there.map(|part| part + sigma * fixes.gaussian())),
             Place::Wrong(by) => Some([there[0] + by[0], there[1] + by[1]]),

@@ -1,7 +1,10 @@
 //! The azimuth is found anew at stops.
 
+use rayon::prelude::*;
+
 use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
+use host::campaign::statistics::rms;
 use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;
 use host::output::azimuth_error;
@@ -10,6 +13,8 @@ use orientation::navigation::Progress;
 use simulated::hold::Hold;
 use simulated::scenario::{Aim, Scenario};
 use simulated::turntable::TurntableScenario;
+
+use crate::support::campaign::{Extent, campaigns};
 
 #[test]
 fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
@@ -31,7 +36,9 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
 #[test]
 fn an_alignment_that_ends_in_motion_has_the_truth_of_its_last_sample_and_a_budget_that_adds_up() {
     for seed in [2, 6] {
-        let run = drive(&vehicle(seed, Hold { realigns: true, ..Hold::of(1800.0) }));
+        // Its stops are too short for it, so that its time ends in the middle of a drive.
+        let hold = Hold { realigns: true, stop_s: Some(60.0), ..Hold::of(1800.0) };
+        let run = drive(&vehicle(seed, hold));
         assert!(run.is_realigned(), "seed {seed}");
         let conclusion = run.replay.conclusion().expect("it is over");
         let azimuth = conclusion.verdict.expect("it is aligned anew");
@@ -43,6 +50,33 @@ fn an_alignment_that_ends_in_motion_has_the_truth_of_its_last_sample_and_a_budge
         let budget = conclusion.found.as_ref().expect("there is a solution").budget;
         assert!((budget.sigma().0 / sigma - 1.0).abs() < 1e-6, "seed {seed}: {budget:?}");
     }
+}
+
+campaigns! {
+    azimuths_found_anew_are_as_good_as_sigma_says;
+}
+
+fn azimuths_found_anew_are_as_good_as_sigma_says(extent: Extent) {
+    let runs = extent.of(60);
+    let sigmas = |seed: u64| {
+        let run = drive(&vehicle(seed, Hold { realigns: true, ..Hold::of(1800.0) }));
+        assert!(run.is_realigned(), "seed {seed}");
+        let azimuth = run.replay.conclusion().and_then(|conclusion| conclusion.verdict.ok());
+        let azimuth = azimuth.expect("the latest alignment found an azimuth");
+        let truth_deg = run.azimuth_rad().to_degrees();
+        azimuth_error(azimuth.angle.degrees(), truth_deg) / azimuth.sigma.degrees()
+    };
+    let all: Vec<f64> = (0..runs as u64).into_par_iter().map(sigmas).collect();
+    let within = [1.0, 2.0, 3.0].map(|most| {
+        let inside = all.iter().filter(|sigmas| sigmas.abs() <= most).count();
+        100.0 * inside as f64 / runs as f64
+    });
+    let off = rms(&all);
+    let [one, two, three] = within.map(|share| format!("{share:.1}"));
+    extent.assert_in_accuracy(&[format!(
+        "RMS of error over σ {off:.2}, within 1, 2, 3 σ {one}, {two}, {three} %"
+    )]);
+    assert!((off - 1.0).abs() < extent.rms(0.25, runs), "{off}");
 }
 
 #[test]

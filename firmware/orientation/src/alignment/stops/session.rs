@@ -229,6 +229,7 @@ impl Session {
         let begun = *self.begun.get_or_insert(now);
         self.report_displacements();
         let count = self.stop_detector.stops.len();
+        self.discard(count);
         let phase = match (self.stop_detector.state.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
@@ -246,6 +247,17 @@ impl Session {
             return self.conclude();
         }
         self.stand(count, listener)
+    }
+
+    /// Forgets the place of the present stop where so many stops are left without it: it was too short for one.
+    fn discard(&mut self, left: usize) {
+        if self.phase != Phase::Standing(left) {
+            return;
+        }
+        self.placed = left.saturating_sub(1);
+        if left == 0 {
+            self.origin = None;
+        }
     }
 
     /// Enters a phase, and reports the begin of a stop, with the duration of the drive before it, or
