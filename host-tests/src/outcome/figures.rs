@@ -9,7 +9,7 @@ use orientation::attitude::Trust;
 use crate::campaign::faults::notice;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{azimuth_error, degrees, seconds};
-use crate::report::{self, Figure, Kind, Lane, Series, Shape, Stretch, Style};
+use crate::report::{self, Axis, Figure, Kind, Lane, Series, Shape, Stretch, Style};
 
 /// The name of a true angle, and the angle, °.
 type Truth = (&'static str, fn(&Point) -> f64);
@@ -35,7 +35,7 @@ pub(super) fn all(kept: &Kept) -> Vec<Figure> {
     page
 }
 
-fn over_time(title: &str, axis: [&str; 2], series: Vec<Series>) -> Figure {
+fn over_time(title: &str, axis: impl Into<Axis>, series: Vec<Series>) -> Figure {
     Figure::new(title, ["time from power-on", "s"], axis, series)
 }
 
@@ -59,7 +59,7 @@ fn azimuth(moments: &[Moment<'_>], is_true: bool) -> Figure {
     ];
     let truth = || Series::of("truth", Style::Dashed, &all, |&(at, _, _, truth)| (at, truth));
     series.extend(is_true.then(truth));
-    over_time("Azimuth as it was kept", ["azimuth", "°"], series)
+    over_time("Azimuth as it was kept", Axis::circle("azimuth"), series)
 }
 
 fn error(moments: &[Moment<'_>]) -> Figure {
@@ -129,7 +129,10 @@ pub(super) fn lanes(kept: &Kept) -> Vec<Lane> {
         let kind = kind(last);
         Some(Stretch { from_s: first.seconds(), to_s: last.seconds() + 1.0, kind, words })
     };
-    let spans: Vec<Stretch> = kept.points.chunk_by(same).filter_map(stretch).collect();
+    // Before there is an azimuth nothing is kept.
+    let begun = kept.points.iter().position(|point| point.report.azimuth.is_some());
+    let points = begun.map_or(&[][..], |begun| &kept.points[begun..]);
+    let spans: Vec<Stretch> = points.chunk_by(same).filter_map(stretch).collect();
     if spans.is_empty() { Vec::new() } else { vec![Lane::new("keeping", spans)] }
 }
 

@@ -89,11 +89,15 @@ impl<'r> Lines<'r> {
 
     /// The next line that is not blank, or `None` at the end, or where the program is interrupted.
     pub fn next(&mut self) -> Result<Option<Line<'_>>, Fault> {
-        while !interrupt::ends_input() && self.fill()? {
+        while !interrupt::ends_input() {
+            if !self.fill()? {
+                return Ok(None);
+            }
             if !self.content().is_empty() {
                 return self.line().map(Some);
             }
         }
+        interrupt::note(&format!("line {}", self.number));
         Ok(None)
     }
 

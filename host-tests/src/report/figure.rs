@@ -60,6 +60,8 @@ pub enum Scale {
     Linear,
     /// Equal ratios are equally long; values must be above zero.
     Logarithmic,
+    /// Angles in degrees that go on beyond a turn, so that there is no step at north, named within a turn.
+    Circle,
 }
 
 /// A curve.
@@ -161,6 +163,12 @@ impl Axis {
         Self { scale: Scale::Logarithmic, ..[label, unit].into() }
     }
 
+    /// An axis of directions, which are named from 0 to 360°.
+    #[must_use]
+    pub fn circle(label: &str) -> Self {
+        Self { scale: Scale::Circle, ..[label, "°"].into() }
+    }
+
     /// The axis from this value to that, whatever its points are.
     #[must_use]
     pub fn between(self, reach: [f64; 2]) -> Self {
@@ -169,7 +177,7 @@ impl Axis {
 
     /// Whether the axis has a place for a value.
     fn shows(&self, value: f64) -> bool {
-        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
+        value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
     }
 
     /// What stands beside the axis.

@@ -4,6 +4,8 @@ use super::{Grade, Lines, Look, Part, REMARKS, Report, Share, Shares, Summary, T
 
 /// Least width of a label, characters.
 const LABEL: usize = 18;
+/// Width of a terminal, characters; tables are as wide as they are.
+const WIDTH: usize = 80;
 
 /// Heading, what was found, lines below it, labelled lines and tables; figures are left out.
 pub(super) fn document(report: &Report, look: Look) -> String {
@@ -31,7 +33,7 @@ fn unshown(parts: &[Part]) -> String {
     if titles.is_empty() {
         return String::new();
     }
-    format!("\n  --verbose adds     {}\n", titles.join("; "))
+    "\n".to_owned() + &aligned(&[["--verbose adds".to_owned(), titles.join("; ")]])
 }
 
 impl Look {
@@ -94,8 +96,28 @@ fn of_part(part: &Part, verbosity: Verbosity) -> String {
 fn aligned(lines: &[[String; 2]]) -> String {
     let widest = lines.iter().map(|[label, _]| label.chars().count()).max().unwrap_or(0);
     let width = widest.max(LABEL);
-    let line = |[label, value]: &[String; 2]| format!("  {label:<width$} {value}\n");
+    let line =
+        |[label, value]: &[String; 2]| format!("  {label:<width$} {}\n", wrapped(value, width + 3));
     lines.iter().map(line).collect()
+}
+
+/// Words in lines that fit into a terminal, all of them indented but the first, which stands there already.
+fn wrapped(words: &str, indent: usize) -> String {
+    let most = WIDTH.saturating_sub(indent);
+    let (mut text, mut width) = (String::new(), 0);
+    for word in words.split(' ') {
+        let long = word.chars().count();
+        if width > 0 && width + 1 + long > most {
+            text += &format!("\n{:indent$}", "");
+            width = 0;
+        } else if width > 0 {
+            text.push(' ');
+            width += 1;
+        }
+        text += word;
+        width += long;
+    }
+    text
 }
 
 fn of_lines(Lines { title, lines }: &Lines) -> String {
@@ -113,7 +135,7 @@ fn table(Shares { title, head, rows, sum }: &Shares, verbosity: Verbosity) -> Ta
 
 /// A blank line and the heading, if there is one.
 fn heading(title: &str) -> String {
-    if title.is_empty() { "\n".to_owned() } else { format!("\n  {title}\n") }
+    if title.is_empty() { "\n".to_owned() } else { format!("\n  {}\n", wrapped(title, 2)) }
 }
 
 /// Columns as wide as their widest cell: names and words to the left, numbers to the right; nothing of a table without

@@ -226,6 +226,11 @@ fn found(outcome: &Outcome) -> String {
     }
 }
 
+/// A limit, which is never nothing.
+fn limit(degrees: f64) -> String {
+    if degrees < 5e-5 { "<0.0001".to_owned() } else { format!("{degrees:.4}") }
+}
+
 /// The table of all recordings, and below it why some have no result.
 fn table(rows: &[Row]) -> String {
     let title = "Recordings: what was found, 1σ, Cramér–Rao limit, found less true";
@@ -233,7 +238,7 @@ fn table(rows: &[Row]) -> String {
         .column("file", |row| &row.shown)
         .column("method", |row| row.method)
         .column("found", |row| &row.found)
-        .found("limit, °", 4, |row| row.limit_deg)
+        .column("limit, °", |row| row.limit_deg.map_or("-".to_owned(), limit))
         .found("seconds", 0, |row| row.seconds)
         .column("error, °", |row| &row.error);
     let without = rows.iter().filter(|row| !row.reason.is_empty());

@@ -11,6 +11,7 @@ use orientation::roll::Progress;
 use simulated::spin::{SAMPLE_RATE, SpinScenario};
 
 use super::options::{COURSE, Common, number, seconds};
+use super::terminal::FLIGHT;
 use super::{Begun, Ran, Shown, Simulated, Terminal};
 
 /// What is asked of a flight.
@@ -37,7 +38,7 @@ impl Simulated for SpinOptions {
             ..usual
         };
         let (run, wall) =
-            Terminal::watching((*manner, "samples", scenario.seconds), &None, |watch| {
+            Terminal::watching((*manner, FLIGHT, scenario.seconds), &None, |watch| {
                 Trial::of(&scenario).fault(*fault).watch(watch).run()
             })?;
         let written = Common::write(record.as_ref(), &scenario, &run, (&run.truth.samples, None));

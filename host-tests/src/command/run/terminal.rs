@@ -18,6 +18,8 @@ use super::options::Inputs;
 
 /// Parts of a run after each of which its progress is shown.
 const PARTS: u64 = 200;
+/// What is followed of a spinning body, which has no steps.
+pub(super) const FLIGHT: &str = "flight";
 /// Power-on, self-tests and level, s.
 const BEGIN_SECONDS: f64 = 10.0;
 
@@ -46,6 +48,8 @@ enum Stage {
     Aligning(usize, usize),
     /// It keeps what it found.
     Keeping,
+    /// It follows a roll.
+    Flying,
 }
 
 /// A run for a terminal: how it is shown, what its steps are called, and how long it takes by its own time, s.
@@ -63,13 +67,20 @@ impl<'t> Terminal<'t> {
         interrupt::end_input();
         watch.show();
         let ran = run(&watch);
+        if interrupt::ended().is_some() {
+            watch.show();
+        }
         watch.shown.finish();
         ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
     }
 
     fn new((manner, steps, seconds): Watched, inputs: &'t Inputs) -> Self {
-        let expected = ((BEGIN_SECONDS + seconds) * 1e3) as u64;
-        let (stage, stops, latest) = (Cell::new(Stage::Preparing), Cell::new(0), Cell::new(0));
+        let (begin_s, stage) = match steps {
+            FLIGHT => (0.0, Stage::Flying),
+            _ => (BEGIN_SECONDS, Stage::Preparing),
+        };
+        let expected = ((begin_s + seconds) * 1e3) as u64;
+        let (stage, stops, latest) = (Cell::new(stage), Cell::new(0), Cell::new(0));
         let shown = Progress::new(manner, expected, steps);
         Self { inputs, manner, shown, steps, stage, stops, expected, latest }
     }
@@ -115,6 +126,7 @@ impl<'t> Terminal<'t> {
             Stage::Preparing => format!("start, {time}"),
             Stage::Aligning(done, planned) => format!("{} {done}/{planned}, {time}", self.steps),
             Stage::Keeping => format!("keeping, {time}"),
+            Stage::Flying => format!("{}, {time}", self.steps),
         };
         self.shown.reached((now, self.expected), &words);
     }

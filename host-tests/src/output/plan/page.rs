@@ -5,7 +5,7 @@ use orientation::planner::{Plan, burov};
 use orientation::units::Seconds;
 
 use crate::output::plan;
-use crate::planning::{self, Planned, Request};
+use crate::planning::{self, Optimum, Planned, Request};
 use crate::report::{Axis, Figure, Part, Report, Series, Style};
 
 /// Most passes that the figure shows.
@@ -20,7 +20,7 @@ pub fn report(request: &Request, planned: &Planned) -> Report {
     let seconds = planned.optimum.seconds;
     let burov = autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds));
     let mut report = plan::report(request, planned);
-    let figures = [burov, orders(request, seconds), times(request, seconds)];
+    let figures = [burov, orders(request, planned), times(request, planned)];
     report.parts.extend(figures.map(Part::from));
     report
 }
@@ -38,29 +38,38 @@ fn autocompensation(request: &Request, seconds: f64) -> Figure {
     Figure::new(title, ["number of positions", ""], ["rate error, 1σ", "°/h"], series)
 }
 
+/// The plan among others.
+fn plan_itself(place: (f64, f64)) -> Series {
+    Series::new("the plan", Style::Hollow, [place])
+}
+
 /// σ of every order over its number of positions.
-fn orders(request: &Request, seconds: f64) -> Figure {
+fn orders(request: &Request, planned: &Planned) -> Figure {
+    let Optimum { seconds, positions, sigma_deg, .. } = planned.optimum;
     let conditions = request.conditions();
     let degrees = |plan: &Plan| plan.sigma(request.latitude).degrees();
-    let series = Order::COMPARED.map(|order| {
+    let compared = Order::COMPARED.map(|order| {
         let plans =
             (1..=MOST_PASSES).filter_map(|n| Plan::of(&conditions, order, n, Seconds(seconds)));
         let points = plans.map(|plan| (plan.positions() as f64, degrees(&plan)));
         Series::new(order.name(), Style::LineAndPoints, points)
     });
+    let series = compared.into_iter().chain([plan_itself((positions as f64, sigma_deg))]);
     let title = format!("Orders of positions in {seconds:.0} s");
     Figure::new(title, ["number of positions", ""], ["full azimuth, 1σ", "°"], series)
 }
 
 /// σ of the best schedule over the total time.
-fn times(request: &Request, seconds: f64) -> Figure {
+fn times(request: &Request, planned: &Planned) -> Figure {
+    let Optimum { seconds, sigma_deg, .. } = planned.optimum;
     let [low, high] = REACH;
     let time = |i| seconds * low * (high / low).powf(f64::from(i) / f64::from(TIMES));
     let curve = (0..=TIMES).map(time).filter_map(|time| {
         let plan = planning::best(&request.conditions(), Seconds(time)).ok()?;
         Some((time, plan.sigma(request.latitude).degrees()))
     });
-    let series = [Series::new("optimum", Style::LineAndPoints, curve)];
+    let series =
+        [Series::new("optimum", Style::LineAndPoints, curve), plan_itself((seconds, sigma_deg))];
     let title = "The best schedule over the time it may take";
     let (x, y) = (Axis::logarithmic("total time", "s"), Axis::logarithmic("full azimuth, 1σ", "°"));
     Figure::new(title, x, y, series)

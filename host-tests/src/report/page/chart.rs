@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::markup::{element, escaped, script};
+use super::palette::Palette;
 use super::span::{Span, place};
 use crate::report::{Figure, Point, Scale, Series, Shape, Style};
 
@@ -18,8 +19,6 @@ pub(super) const TICKS: f64 = 8.0;
 const LOW_TICKS: f64 = 4.0;
 /// Where the right end of an axis begins, %.
 const END: f64 = 97.0;
-/// How many colours the page's style has for series.
-const COLOURS: usize = 8;
 /// Digits of a value under the pointer.
 const DIGITS: usize = 6;
 
@@ -38,7 +37,8 @@ struct Placed {
 }
 
 /// The figure with its heading, its legend and the numbers behind it; nothing where no point can be drawn.
-pub(super) fn figure(figure: &Figure) -> String {
+pub(super) fn figure(figure: &Figure, palette: &mut Palette) -> String {
+    let classes = palette.classes(figure);
     let thinned = |series: &Series| Series { points: series.distinguished(), ..series.clone() };
     let series = figure.series.iter().map(thinned).collect();
     let figure = &Figure { series, ..figure.clone() };
@@ -49,8 +49,8 @@ pub(super) fn figure(figure: &Figure) -> String {
         Shape::Low => "chart low",
         Shape::Map => "chart map",
     };
-    let (legend, plot) = (legend(figure), frame.plot(figure));
-    let data = script("application/json", &frame.data(figure).to_string());
+    let (legend, plot) = (legend(figure, &classes), frame.plot(figure, &classes));
+    let data = script("application/json", &frame.data(figure, &classes).to_string());
     format!("<figure class=\"{class}\">{heading}{legend}{plot}{data}</figure>\n")
 }
 
@@ -86,11 +86,11 @@ impl Frame {
     }
 
     /// The drawing between its axes.
-    fn plot(&self, figure: &Figure) -> String {
+    fn plot(&self, figure: &Figure, classes: &[String]) -> String {
         let titles = [&figure.y, &figure.x].map(|axis| escaped(&axis.title()));
         let [y_title, x_title] = titles;
         let (y_labels, x_labels) = (self.y_labels(), self.x_labels());
-        let (drawing, notes) = (self.drawing(figure), self.notes(figure));
+        let (drawing, notes) = (self.drawing(figure, classes), self.notes(figure));
         format!(
             "<div class=\"y-title\">{y_title}</div>\n<div class=\"plot\">\n\
              <div class=\"y-labels\">{y_labels}</div>\n\
@@ -139,13 +139,12 @@ impl Frame {
     }
 
     /// Grid and curves.
-    fn drawing(&self, figure: &Figure) -> String {
+    fn drawing(&self, figure: &Figure, classes: &[String]) -> String {
         let mut svg = format!(
             "<svg viewBox=\"0 0 {SIZE} {SIZE}\" preserveAspectRatio=\"none\" aria-hidden=\"true\">\n"
         );
         svg += &self.grid();
-        for (index, series) in figure.series.iter().enumerate() {
-            let class = class(index);
+        for (class, series) in classes.iter().zip(&figure.series) {
             let points: Vec<Option<Placed>> = placed(figure, series).collect();
             let _ = writeln!(svg, "<g class=\"{class}\">{}</g>", self.curve(series.style, &points));
         }
@@ -223,13 +222,16 @@ impl Frame {
     }
 
     /// The numbers of the figure.
-    fn data(&self, figure: &Figure) -> Value {
+    fn data(&self, figure: &Figure, classes: &[String]) -> Value {
         let axis = |axis: &crate::report::Axis, span: &Span| {
             let is_logarithmic = axis.scale == Scale::Logarithmic;
             let [low, high] = [span.low, span.high].map(significant);
-            json!({ "label": axis.label, "unit": axis.unit, "logarithmic": is_logarithmic, "low": low, "high": high })
+            json!({
+                "label": axis.label, "unit": axis.unit, "logarithmic": is_logarithmic,
+                "circle": axis.scale == Scale::Circle, "low": low, "high": high,
+            })
         };
-        let series: Vec<Value> = figure.series.iter().enumerate().map(numbers).collect();
+        let series: Vec<Value> = classes.iter().zip(&figure.series).map(numbers).collect();
         json!({
             "title": figure.title,
             "x": axis(&figure.x, &self.x),
@@ -262,7 +264,7 @@ fn path(corners: impl Iterator<Item = [i64; 2]>) -> String {
 }
 
 /// The numbers of a series: `[x, y]` of each point, and its limits where it has them.
-fn numbers((index, series): (usize, &Series)) -> Value {
+fn numbers((class, series): (&String, &Series)) -> Value {
     let point = |Point { x, y, limits }: &Point| {
         let all = [*x, *y].into_iter().chain(limits.iter().flatten().copied());
         json!(all.map(significant).collect::<Vec<_>>())
@@ -270,17 +272,12 @@ fn numbers((index, series): (usize, &Series)) -> Value {
     let is_there = |point: &&Point| point.x.is_finite() && point.y.is_finite();
     let points: Vec<Value> = series.points.iter().filter(is_there).map(point).collect();
     let style = format!("{:?}", series.style).to_lowercase();
-    json!({ "name": series.name, "class": class(index), "style": style, "points": points })
+    json!({ "name": series.name, "class": class, "style": style, "points": points })
 }
 
 /// A number in as many digits as are shown, zero without a sign; JSON has none for what is not finite.
 fn significant(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value) + 0.0
-}
-
-/// Name of a series' colour in the page's style.
-fn class(index: usize) -> String {
-    format!("s{}", index % COLOURS)
 }
 
 /// The points of a series, none in the place of one that cannot be drawn.
@@ -295,15 +292,15 @@ fn placed<'a>(figure: &'a Figure, series: &'a Series) -> impl Iterator<Item = Op
 }
 
 /// A sample of each series with its name.
-fn legend(figure: &Figure) -> String {
-    let entry = |(index, series): (usize, &Series)| {
-        let (class, name) = (class(index), escaped(&series.name));
+fn legend(figure: &Figure, classes: &[String]) -> String {
+    let entry = |(class, series): (&String, &Series)| {
+        let name = escaped(&series.name);
         let sample = sample(series.style);
         format!(
             "<li><svg class=\"{class}\" viewBox=\"0 0 30 14\" aria-hidden=\"true\">{sample}</svg>{name}</li>\n"
         )
     };
-    let entries: String = figure.series.iter().enumerate().map(entry).collect();
+    let entries: String = classes.iter().zip(&figure.series).map(entry).collect();
     format!("<ul class=\"legend\">\n{entries}</ul>\n")
 }
 

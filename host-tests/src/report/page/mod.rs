@@ -2,11 +2,13 @@
 
 mod chart;
 mod markup;
+mod palette;
 mod rose;
 mod span;
 mod timeline;
 
 use self::markup::{element, escaped};
+use self::palette::Palette;
 use super::{Lines, Part, REMARKS, Report, Share, Shares, Summary, Table};
 
 /// How the page looks, in light and dark, on paper and on a phone.
@@ -26,7 +28,8 @@ pub(super) fn document(report: &Report) -> String {
         None => format!("<h1>{title}</h1>\n"),
     };
     let subtitle: String = report.subtitle.iter().map(|line| element("p", line)).collect();
-    let parts: String = report.parts.iter().map(part).collect();
+    let mut palette = Palette::default();
+    let parts: String = report.parts.iter().map(|each| part(each, &mut palette)).collect();
     let origin = origin();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -42,7 +45,13 @@ pub(super) fn document(report: &Report) -> String {
 fn headed(report: &Report, summary: &Summary) -> String {
     let Summary { grade, reasons, remarks, found, facts, circumstances, rose } = summary;
     let class = grade.word();
-    let badge = format!("<span class=\"badge {class}\">{class}</span>\n");
+    // An answer to a question, as a plan is, was not found in anything.
+    let is_answer = found.is_none() && reasons.is_empty() && remarks.is_empty();
+    let badge = if is_answer {
+        String::new()
+    } else {
+        format!("<span class=\"badge {class}\">{class}</span>\n")
+    };
     let what = found.as_ref().map_or(String::new(), |[what, is]| {
         let (what, is) = (element("p class=\"what\"", what), element("p class=\"value\"", is));
         format!("{is}{what}")
@@ -94,14 +103,14 @@ fn quoted(word: &str) -> String {
     if is_safe { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
-fn part(part: &Part) -> String {
+fn part(part: &Part, palette: &mut Palette) -> String {
     match part {
-        Part::Figure(figure) => chart::figure(figure),
+        Part::Figure(figure) => chart::figure(figure, palette),
         Part::Timeline(timeline) => timeline::timeline(timeline),
         Part::Table(table) => section(&table.title, &of_table(table)),
         Part::Lines(lines) => section(&lines.title, &of_lines(lines)),
         Part::Shares(shares) => section(&shares.title, &of_shares(shares)),
-        Part::Detail(part) => of_detail(part),
+        Part::Detail(part) => of_detail(part, palette),
     }
 }
 
@@ -112,14 +121,14 @@ fn section(title: &str, content: &str) -> String {
 }
 
 /// A part that is folded away under its heading.
-fn of_detail(detail: &Part) -> String {
+fn of_detail(detail: &Part, palette: &mut Palette) -> String {
     let (title, content) = match detail {
         Part::Table(table) => (&table.title, of_table(table)),
         Part::Lines(lines) => (&lines.title, of_lines(lines)),
         Part::Shares(shares) => (&shares.title, of_shares(shares)),
-        Part::Figure(figure) => (&figure.title, chart::figure(figure)),
+        Part::Figure(figure) => (&figure.title, chart::figure(figure, palette)),
         Part::Timeline(timeline) => (&timeline.title, timeline::timeline(timeline)),
-        Part::Detail(inner) => return of_detail(inner),
+        Part::Detail(inner) => return of_detail(inner, palette),
     };
     format!("<details>\n{}{content}</details>\n", element("summary", title))
 }

@@ -10,9 +10,11 @@ for (const area of document.querySelectorAll(".area")) {
   };
   const inside = (part) => part >= -0.001 && part <= 1.001;
   const is_map = area.closest(".map") !== null;
-  const shown = (value, axis) => `${Number(value.toPrecision(6))}${axis.unit ? " " + axis.unit : ""}`;
+  const within = (value, axis) => axis.circle ? ((value % 360) + 360) % 360 : value;
+  const shown = (value, axis) =>
+    `${Number(within(value, axis).toPrecision(6))}${axis.unit ? " " + axis.unit : ""}`;
   const limits = ([, , low, high], axis) =>
-    low === undefined ? "" : ` (${shown(low, { unit: "" })} … ${shown(high, axis)})`;
+    low === undefined ? "" : ` (${shown(low, { ...axis, unit: "" })} … ${shown(high, axis)})`;
   const cross = document.createElement("div");
   const tip = document.createElement("div");
   cross.className = "cross";

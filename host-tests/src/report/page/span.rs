@@ -17,6 +17,10 @@ const CLOSER: f64 = 2.6;
 /// Decades over which the lines between powers of ten can still be distinguished.
 const FINE_DECADES: f64 = 7.0;
 
+/// A turn, and the steps of directions that divide it, °.
+const TURN: f64 = 360.0;
+const CIRCLE_STEPS: [f64; 6] = [10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
+
 /// Powers of ten up to this are written as plain numbers.
 const PLAIN: i32 = 3;
 
@@ -44,7 +48,7 @@ pub(super) fn place(scale: Scale, value: f64) -> f64 {
     match scale {
         Scale::Logarithmic if value <= 0.0 => f64::NEG_INFINITY,
         Scale::Logarithmic => value.log10(),
-        Scale::Linear => value,
+        Scale::Linear | Scale::Circle => value,
     }
 }
 
@@ -90,6 +94,8 @@ impl Span {
     pub fn label(&self, place: f64) -> String {
         match self.scale {
             Scale::Linear => self.linear_label(place),
+            // A tick at north is often a rounding error away from it.
+            Scale::Circle => self.linear_label((place + 1e-6 * self.step).rem_euclid(TURN)),
             Scale::Logarithmic if self.is_in_powers => logarithmic_label(place),
             Scale::Logarithmic => self.linear_label(10_f64.powf(place)),
         }
@@ -97,11 +103,14 @@ impl Span {
 
     /// An axis that reaches so far.
     fn between(scale: Scale, most: f64, [low, high]: [f64; 2]) -> Self {
-        let step = round_step((high - low) / most);
+        let step = (high - low) / most;
+        let of_circle = CIRCLE_STEPS.into_iter().find(|round| *round >= step);
+        let is_wide = scale == Scale::Circle && step > CIRCLE_STEPS[0] / 2.0;
+        let step = of_circle.filter(|_| is_wide).unwrap_or_else(|| round_step(step));
         let (major, minor) = (Vec::new(), Vec::new());
         let span = Self { low, high, major, minor, scale, most, step, is_in_powers: false };
         match scale {
-            Scale::Linear => span.linear(),
+            Scale::Linear | Scale::Circle => span.linear(),
             Scale::Logarithmic => span.logarithmic(),
         }
     }
@@ -160,7 +169,7 @@ impl Span {
 /// Half the reach of an axis for one place.
 fn half_width(scale: Scale, place: f64) -> f64 {
     match scale {
-        Scale::Linear if place != 0.0 => 0.1 * place.abs(),
+        Scale::Linear | Scale::Circle if place != 0.0 => 0.1 * place.abs(),
         _ => 1.0,
     }
 }

@@ -126,7 +126,8 @@ impl Finished for Replay {
         let mut page: Vec<Part> = answer.map(Part::from).collect();
         page.push(figures::timeline(self.answer()).into());
         let others = [figures::scale(self), figures::lift(self)].into_iter();
-        page.extend(others.chain(figures::errors(self, truth)).map(Part::from));
+        page.extend(others.map(Part::from));
+        page.extend(figures::errors(self, truth).into_iter().map(|one| Part::from(one).detail()));
         page
     }
 }
