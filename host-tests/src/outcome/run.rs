@@ -115,6 +115,13 @@ impl RunDetails {
         Self { degradations, lanes, cut_short, ..this }
     }
 
+    /// With something more that takes from the result.
+    #[must_use]
+    pub fn noting(mut self, words: Option<String>) -> Self {
+        self.degradations.extend(words);
+        self
+    }
+
     /// What the inputs of a run did: what was kept, and how later azimuths agreed with it.
     #[must_use]
     pub fn of_inputs(done: &Done) -> Self {

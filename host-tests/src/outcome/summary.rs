@@ -69,7 +69,7 @@ fn degradations(outcome: &Outcome) -> Vec<String> {
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
     let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
     let interruption = outcome.interruption.iter().map(|why| format!("{why}: {SO_FAR}"));
-    left_out.chain(outcome.degradations.iter().cloned()).chain(run).chain(interruption).collect()
+    run.chain(left_out).chain(outcome.degradations.iter().cloned()).chain(interruption).collect()
 }
 
 /// What is shown of what was interrupted.

@@ -80,6 +80,10 @@ impl Layout {
     pub fn new(columns: Vec<Column>, line: u64, names: &str) -> Result<Self, Fault> {
         let present = [false; MAX_COLUMNS];
         let mut layout = Self { columns, fields: Vec::new(), present, truths: Vec::new() };
+        let other = [';', '\t'].into_iter().find(|other| names.contains(*other));
+        if let Some(other) = other.filter(|_| !names.contains(',')) {
+            return Err(Fault::line(line, Problem::Separator(other)));
+        }
         let mut seen = HashSet::new();
         for (index, name) in names.split(',').map(str::trim_ascii).enumerate() {
             check_name(line, index, name, seen.insert(name))?;

@@ -58,6 +58,11 @@ pub enum Problem {
     /// The header ends without a line of column names.
     #[error("the file ends without a line of column names")]
     NoColumnNames,
+    /// The names of the columns are separated by this, and not by commas.
+    #[error(
+        "columns are separated by {0:?}; commas must separate them, and points stand in numbers"
+    )]
+    Separator(char),
     /// A needed column is missing; the columns that the kind needs.
     #[error("is missing; the kind needs {0}")]
     MissingColumn(String),
@@ -118,7 +123,10 @@ pub enum Problem {
         period_s: f64,
     },
     /// The header's rate, in Hz, and the rate that the times have.
-    #[error("{} Hz contradicts the times, which have {} Hz; correct it", Rounded(*.0), Rounded(*.1))]
+    #[error(
+        "{} Hz contradicts the times, which have {} Hz; {}", Rounded(*.0), Rounded(*.1),
+        correction(*.0, *.1)
+    )]
     Rate(f64, f64),
     /// Not two numbers with a minus.
     #[error("{} is not a stop; write from-to;from-to in seconds", quoted(.0))]
@@ -218,5 +226,17 @@ impl fmt::Display for Rounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rounded = format!("{:.5e}", self.0).parse::<f64>().unwrap_or(self.0);
         Short(rounded).fmt(f)
+    }
+}
+
+/// Deviation of a ratio of rates from a thousand at which the times are milliseconds.
+const NEAR: f64 = 0.3;
+
+/// What to do about a rate, and another one that the times have, Hz.
+fn correction(stated: f64, found: f64) -> &'static str {
+    if (stated / (1000.0 * found) - 1.0).abs() < NEAR {
+        "the times are in ms, as it seems, and must be in s"
+    } else {
+        "correct it"
     }
 }

@@ -154,6 +154,19 @@ impl BaseOptions {
         Ok(Ran { written, ..shown(run, truth, wall) })
     }
 
+    /// That the base sways and nothing of it is subtracted, where that is so.
+    fn sway_left(&self, replay: &Replay) -> Option<String> {
+        let sway = self.sway.filter(|sway| *sway > 0.0)?;
+        let is_subtracted = replay.session.setting.sway.mean_variance(1.0) > 0.0;
+        let why = if self.no_base_imu {
+            "no coarse IMU shows it"
+        } else {
+            "it is too small for the coarse IMU on the base"
+        };
+        (!is_subtracted)
+            .then(|| format!("the base sways by {sway}°, which is not subtracted: {why}"))
+    }
+
     /// What keeping needs, and what it takes the place of.
     fn check(
         &self,
@@ -197,7 +210,8 @@ impl Simulated for StageOptions {
         let seconds = scenario.alignment_seconds() + scenario.hold.seconds;
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
-                RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default());
+                RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default())
+                    .noting(self.base.sway_left(&run.replay));
             ran("the simulated run", run, details, truth)
         })
     }
@@ -229,7 +243,8 @@ impl Simulated for FramesOptions {
                 run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
             let off_deg = degrees(forward.hypot(right).atan2(down));
             let beside = OfPlatform::stored(is_vertical, off_deg);
-            let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
+            let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside)
+                .noting(self.base.sway_left(&run.replay));
             ran("the simulated run on two frames", run, details, truth)
         })
     }

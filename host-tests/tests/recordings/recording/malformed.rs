@@ -45,6 +45,20 @@ fn every_kind_is_read_and_its_missing_columns_are_named_before_its_rows() {
 }
 
 #[test]
+fn columns_that_are_not_separated_by_commas_are_told_so() {
+    for kind in Kind::ALL {
+        for separator in [';', '\t'] {
+            let names = ["t_s", "g_rad_s", "stage_rad"].join(&separator.to_string());
+            let expected = format!(
+                "walk.csv: line 2: columns are separated by {separator:?}; commas must separate \
+                 them, and points stand in numbers"
+            );
+            assert_eq!(message(format!("# kind: {kind}\n{names}\n")), expected);
+        }
+    }
+}
+
+#[test]
 fn the_message_for_an_unknown_kind_names_every_kind() {
     let text = message("# kind: x\n");
     assert!(Kind::ALL.iter().all(|kind| text.contains(kind.name())), "{text}");
