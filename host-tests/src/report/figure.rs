@@ -131,8 +131,12 @@ impl Figure {
 
     /// Whether no point of it can be drawn.
     pub(super) fn is_empty(&self) -> bool {
-        let is_drawn = |point: &Point| self.x.shows(point.x) && self.y.shows(point.y);
-        !self.series.iter().any(|series| series.points.iter().any(is_drawn))
+        !self.series.iter().any(|series| self.draws(series))
+    }
+
+    /// Whether a point of a series can be drawn.
+    pub(super) fn draws(&self, series: &Series) -> bool {
+        series.points.iter().any(|point| self.x.shows(point.x) && self.y.shows(point.y))
     }
 
     /// The figure in another shape.

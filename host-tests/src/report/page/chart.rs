@@ -38,10 +38,10 @@ struct Placed {
 
 /// The figure with its heading, its legend and the numbers behind it; nothing where no point can be drawn.
 pub(super) fn figure(figure: &Figure, palette: &mut Palette) -> String {
-    let classes = palette.classes(figure);
     let thinned = |series: &Series| Series { points: series.distinguished(), ..series.clone() };
-    let series = figure.series.iter().map(thinned).collect();
+    let series = figure.series.iter().filter(|series| figure.draws(series)).map(thinned).collect();
     let figure = &Figure { series, ..figure.clone() };
+    let classes = palette.classes(figure);
     let heading = element("figcaption", &figure.title);
     let Some(frame) = Frame::around(figure) else { return String::new() };
     let class = match figure.shape {

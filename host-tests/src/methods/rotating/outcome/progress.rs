@@ -44,7 +44,8 @@ pub(super) fn timeline(replay: &Replay) -> Timeline {
             stretch.sense
         );
         let [from_s, to_s] = [from, to].map(|time| replay.zero_s + time);
-        Some(Stretch { from_s, to_s, kind: Kind::Used, words })
+        let kind = if stretch.count() > 0 { Kind::Used } else { Kind::Between };
+        Some(Stretch { from_s, to_s, kind, words })
     });
     let mut spans: Vec<Stretch> = spans.collect();
     spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
