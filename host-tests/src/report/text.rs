@@ -108,7 +108,8 @@ fn wrapped(words: &str, indent: usize) -> String {
     for word in words.split(' ') {
         let long = word.chars().count();
         if width > 0 && width + 1 + long > most {
-            text += &format!("\n{:indent$}", "");
+            text.push('\n');
+            text.extend(std::iter::repeat_n(' ', indent));
             width = 0;
         } else if width > 0 {
             text.push(' ');
