@@ -67,8 +67,11 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     let residuals = kept().filter_map(Shown::residual);
     let left = [Series::new("measured less the whole model", Style::Points, residuals)];
     let angle = || axis(&dwells);
+    let sways = session.setting.sway.mean_variance(1.0) > 0.0;
+    let also = if sways { ", which follows the noise of the sway from dwell to dwell" } else { "" };
+    let title = format!("Mean rate of each dwell, and the fit{also}");
     [
-        Figure::new("Mean rate of each dwell, and the fit", angle(), ["rate", "°/h"], series),
+        Figure::new(title, angle(), ["rate", "°/h"], series),
         Figure::new("What the fit leaves", angle(), ["residual", "°/h"], left).shaped(Shape::Low),
     ]
 }
