@@ -74,8 +74,9 @@ fn stops_begin_and_end_within_seconds_of_the_truth() {
         }
     }
     println!("stops begin {late:?} s after the truth and end {early:?} s before it");
-    // T₀ is 3 s, the end of a stop is not believed for 2 s.
-    assert!(late[0] >= 3.0 && late[1] <= 7.0, "{late:?}");
+    // T₀ is 3 s, and up to 7 s more in which the vehicle still rocks are no part of it; the end of a stop is not believed for
+    // 2 s.
+    assert!(late[0] >= 3.0 && late[1] <= 10.0, "{late:?}");
     assert!(early[0] >= 1.0 && early[1] <= 4.0, "{early:?}");
 }
 

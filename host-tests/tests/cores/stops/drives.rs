@@ -129,6 +129,7 @@ campaigns! {
     biases_that_walk_are_covered;
     biases_that_flicker_are_covered;
     the_southern_hemisphere_and_steep_ground_change_nothing;
+    a_vehicle_that_still_rocks_as_its_stop_begins_at_any_part_of_a_second_is_covered;
 }
 
 fn two_stops_give_both_azimuths_as_well_as_sigma_says(extent: Extent) {
@@ -280,6 +281,23 @@ fn the_southern_hemisphere_and_steep_ground_change_nothing(extent: Extent) {
         day
     })
     .assert_calibrated("40° south, tilts up to 12°", extent, 0.2);
+}
+
+fn a_vehicle_that_still_rocks_as_its_stop_begins_at_any_part_of_a_second_is_covered(
+    extent: Extent,
+) {
+    Figures::of(extent.of(120), |seed| {
+        let mut day = with_gyros(three(seed), 0.001, 0.3);
+        for leg in &mut day.scenario.legs {
+            match leg {
+                // Every arrival comes another quarter of a second later, within those of the session.
+                Leg::Stop(stop) => (stop.seconds, stop.settling_deg) = (60.25, [0.4, 0.1]),
+                Leg::Drive(drive) => drive.seconds += 0.013 * (seed % 20) as f64,
+            }
+        }
+        day
+    })
+    .assert_calibrated("rocking by 0.4° after its arrival", extent, 0.2);
 }
 
 #[test]

@@ -126,10 +126,10 @@ fn a_rate_that_contradicts_the_times_is_refused() {
 #[test]
 fn times_in_milliseconds_are_told_from_a_wrong_rate() {
     for rate in [1.0, 50.0, 400.0] {
-        let rows: String =
-            (0..20).map(|i| format!("{},0,{i}e-6,0,0,-9.8\n", f64::from(i) * 1e3 / rate)).collect();
+        let row = |i: u32| format!("{},0,{i}e-6,0,0,-9.8", f64::from(i) * 1e3 / rate);
+        let rows = (0..20).map(row).collect::<Vec<_>>().join("\n");
         let names = "t_s,stage_rad,g_rad_s,fx_m_s2,fy_m_s2,fz_m_s2";
-        let text = message(format!("# kind: stage\n# rate_hz: {rate}\n{names}\n{rows}"));
+        let text = message(format!("# kind: stage\n# rate_hz: {rate}\n{names}\n{rows}\n"));
         let told = "contradicts the times";
         let hint = "the times are in ms, as it seems, and must be in s";
         assert!(text.contains(told) && text.ends_with(hint), "{rate} Hz: {text}");

@@ -468,15 +468,17 @@ impl Run<'_> {
 
     /// Variance of the sway of the body's axes between both ends of a stop, rad²: from the rotation
     /// of its seconds beyond the gyros' noise, or from the swing within them if they return to
-    /// their beginning: twice the variance of a swing is a quarter of its square.
+    /// their beginning: twice the variance of a swing is a quarter of its square. Where the body still rocked at one end,
+    /// as after an arrival, that end's own swing counts.
     fn sway(&self, stop: &Stop) -> Vector {
         if self.belief == Belief::Ideal {
             return [LEAST_SWAY; 3];
         }
-        let (excess, swinging) = (self.excess(stop), stop.swinging());
+        let (excess, swinging, ends) =
+            (self.excess(stop), stop.swinging(), stop.swinging_at_ends());
         let walk = self.setting.site.noise.model().angle_random_walk;
         core::array::from_fn(|axis| {
-            let swung = 0.25 * swinging[axis] - walk.0 * walk.0;
+            let swung = (0.25 * swinging[axis]).max(0.125 * ends[axis]) - walk.0 * walk.0;
             (SLOW_SWAY * excess[axis]).max(swung).max(0.0) + LEAST_SWAY
         })
     }

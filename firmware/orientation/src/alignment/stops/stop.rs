@@ -69,6 +69,8 @@ pub struct Stop {
     pub turned: Scatter,
     /// Sum of the squared angles of back-and-forth motion within each second, rad².
     pub swung: [f32; 3],
+    /// Squared angles of back-and-forth motion within the first second and the latest, rad².
+    pub ends: [[f32; 3]; 2],
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
     /// Sums of the squared changes of the force along and across from second to second, (m/s²)²: as
@@ -99,7 +101,9 @@ impl Stop {
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
         self.turned.push(&rates);
-        self.swung = sum(&self.swung, &second.swung.map(|angle| angle * angle));
+        let swung = second.swung.map(|angle| angle * angle);
+        self.swung = sum(&self.swung, &swung);
+        self.ends = [if self.turned.count > 1.0 { self.ends[0] } else { swung }, swung];
         if let Some(force) = second.force {
             self.force.push(&force);
         }
@@ -110,6 +114,12 @@ impl Stop {
     /// Mean square of the angles of back-and-forth motion within a second, rad².
     pub(super) fn swinging(&self) -> Vector {
         self.swung.map(|sum| f64::from(sum) / self.turned.count.max(1.0))
+    }
+
+    /// Sum of the squared angles of back-and-forth motion within the first second and the latest, rad².
+    pub(super) fn swinging_at_ends(&self) -> Vector {
+        let [first, latest] = self.ends;
+        sum(&first, &latest).map(f64::from)
     }
 
     /// Accumulates the changes of the force as measured and as rotated.

@@ -22,8 +22,12 @@ use crate::units::{AngleIncrement, Instant, Metres, MetresPerSecondSquared, Seco
 pub(crate) const WINDOW: usize = 10;
 /// Seconds at the end of a stop in which the vehicle may have set off.
 const LATEST: usize = 2;
-/// Delay T₀ after which a vehicle that stopped no longer rocks, s.
+/// Delay T₀ after which a vehicle that stopped hardly rocks any more, s.
 const DELAY: usize = 3;
+/// Latest seconds of the window that show how quiet a vehicle is that no longer rocks.
+const QUIET: usize = 3;
+/// Ratio of the power of back-and-forth motion to theirs up to which a second is as quiet; noise alone stays below it.
+const ROCKING: f32 = 4.0;
 /// Length of a block at rest as long as there is room, s.
 const REST_SPAN: f32 = 5.0;
 /// Length of a block of a drive as long as there is room, s.
@@ -354,12 +358,22 @@ impl StopDetector {
         let stop = self.stops.len() - usize::from(goes_on);
         // Further seconds are added to the last stop, so there must be one for this.
         self.state.is_at_rest = stop < STOPS;
-        for index in 0..WINDOW - LATEST {
+        let first = if goes_on { 0 } else { self.rocking() };
+        for index in first..WINDOW - LATEST {
             let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
             if is_new {
                 self.rest(index, stop);
             }
         }
+    }
+
+    /// Number of seconds at the beginning of the window in which a vehicle that stopped still rocks. Between both ends of a
+    /// stop it would have turned by more than the Earth.
+    fn rocking(&self) -> usize {
+        let power = |second: &Second| second.swung.iter().map(|angle| angle * angle).sum::<f32>();
+        let quiet = self.window.iter().rev().take(QUIET).map(power).sum::<f32>() / QUIET as f32;
+        let rocks = |second: &&Second| power(second) > ROCKING * quiet;
+        self.window.iter().take(WINDOW - LATEST - 1).take_while(rocks).count()
     }
 
     /// Ends a stop, and discards it if it was shorter than the criteria's average: a halt at a
