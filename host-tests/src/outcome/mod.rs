@@ -162,6 +162,15 @@ pub struct FitDetails {
     pub excluded: Vec<Excluded>,
 }
 
+/// An outcome as its object has it, with what takes from the result in words.
+#[derive(Debug, Serialize)]
+pub struct Noted<'o> {
+    #[serde(flatten)]
+    outcome: &'o Outcome,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    noted: Vec<String>,
+}
+
 /// The 1σ parts of σ, serialised in degrees under the names of their sources.
 #[derive(Clone, Copy, Debug)]
 pub struct BudgetDetails(Budget);
@@ -270,6 +279,12 @@ impl Outcome {
     fn withdrawn(self, reason: String) -> Self {
         let (azimuth_deg, sigma_deg, error_deg) = Default::default();
         Self { azimuth_deg, sigma_deg, error_deg, ..self.settled(Some(reason)) }
+    }
+
+    /// The outcome with what takes from the result, as text and page tell it.
+    #[must_use]
+    pub fn noted(&self) -> Noted<'_> {
+        Noted { outcome: self, noted: summary::degradations(self) }
     }
 
     /// The roll of a spinning body at the last sample, within a turn, °, where it was found.

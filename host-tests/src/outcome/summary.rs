@@ -63,7 +63,7 @@ fn summary(outcome: &Outcome) -> Summary {
 }
 
 /// What takes from a result: what was left out, and what the board reports.
-fn degradations(outcome: &Outcome) -> Vec<String> {
+pub(super) fn degradations(outcome: &Outcome) -> Vec<String> {
     let excluded = outcome.fit.iter().flat_map(|fit| &fit.excluded);
     let left_out =
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));

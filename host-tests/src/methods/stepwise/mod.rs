@@ -68,8 +68,13 @@ impl Replay {
 
     /// Whether the gyro's white noise was stated rather than estimated.
     pub(crate) fn noise_is_known(&self) -> bool {
-        self.session.setting.site.noise.is_white_known()
-            || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
+        self.session.setting.site.noise.is_white_known() || self.has_stated_dwells()
+    }
+
+    /// Whether the 1σ of every dwell was stated, so that no N weighs them.
+    pub(crate) fn has_stated_dwells(&self) -> bool {
+        let mut dwells = self.session.dwells().iter().peekable();
+        dwells.peek().is_some() && dwells.all(|dwell| dwell.stated_variance.get().is_some())
     }
 }
 

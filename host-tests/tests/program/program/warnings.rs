@@ -150,3 +150,21 @@ fn a_true_attitude_in_parts_or_of_no_length_is_reported() {
     assert!(reported[0].contains("no row holds a quaternion of length one"), "{reported:?}");
     assert_eq!(warnings(&scratch, &recording(all, ",1,0,0,0")), [""; 0]);
 }
+
+#[test]
+fn what_takes_from_a_result_stands_in_text_and_object_alike() {
+    for run in ["run --fault gyro-reset --hold 0", "run --sway 0.02"] {
+        let arguments: Vec<&str> = run.split(' ').collect();
+        let object = object(&meridian(&[&arguments[..], &["--json"]].concat()));
+        let noted = object["noted"].as_array().expect("something takes from it");
+        let told = text(&meridian(&[&arguments[..], &["-v"]].concat()).stdout);
+        let unfolded = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        for words in noted {
+            let words = words.as_str().expect("it is words");
+            assert!(unfolded.contains(&format!("noted {words}")), "{run}: {words} in {told}");
+        }
+        assert_eq!(told.matches("\n  noted ").count(), noted.len(), "{run}");
+    }
+    let sound = object(&meridian(&["run", "--hold", "0", "--json"]));
+    assert!(sound.get("noted").is_none(), "{sound}");
+}

@@ -52,6 +52,16 @@ impl Scatter {
     }
 }
 
+/// What is carried on from second to second of a stop.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Course {
+    /// Squared angles of back-and-forth motion within the first second, rad².
+    first: [f32; 3],
+    /// Specific force along and across in the latest second, m/s²: as measured, and rotated to the
+    /// attitude at the beginning of the stop.
+    latest: Option<[[f32; 2]; 2]>,
+}
+
 /// Interval in which the vehicle stood.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stop {
@@ -69,17 +79,14 @@ pub struct Stop {
     pub turned: Scatter,
     /// Sum of the squared angles of back-and-forth motion within each second, rad².
     pub swung: [f32; 3],
-    /// Squared angles of back-and-forth motion within the first second and the latest, rad².
-    pub ends: [[f32; 3]; 2],
+    /// Sum of the squared angles of back-and-forth motion within the first second and the latest, rad².
+    pub ends: [f32; 3],
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
     /// Sums of the squared changes of the force along and across from second to second, (m/s²)²: as
     /// measured, and rotated to the attitude at the beginning of the stop; and the number of
     /// changes. A sway that the gyros measure correctly shows in the first alone.
     pub changes: ([[f32; 2]; 2], u32),
-    /// Specific force along and across in the latest second, m/s²: as measured, and rotated to the
-    /// attitude at the beginning of the stop.
-    pub latest: Option<[[f32; 2]; 2]>,
     /// Number of seconds excluded for a shock or a saturated accelerometer.
     pub left_out: u32,
 }
@@ -96,19 +103,22 @@ impl Stop {
     }
 
     /// Adds a second to the stop, which then ends with that second.
-    pub(crate) fn take(&mut self, second: &Second) {
+    pub(super) fn take(&mut self, second: &Second, course: &mut Course) {
         self.to = Seconds(second.to);
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
         self.turned.push(&rates);
         let swung = second.swung.map(|angle| angle * angle);
         self.swung = sum(&self.swung, &swung);
-        self.ends = [if self.turned.count > 1.0 { self.ends[0] } else { swung }, swung];
+        if self.turned.count <= 1.0 {
+            *course = Course { first: swung, latest: None };
+        }
+        self.ends = sum(&course.first, &swung);
         if let Some(force) = second.force {
             self.force.push(&force);
         }
         self.left_out += u32::from(second.block_force().is_none());
-        self.compare(second);
+        self.compare(second, course);
     }
 
     /// Mean square of the angles of back-and-forth motion within a second, rad².
@@ -118,17 +128,16 @@ impl Stop {
 
     /// Sum of the squared angles of back-and-forth motion within the first second and the latest, rad².
     pub(super) fn swinging_at_ends(&self) -> Vector {
-        let [first, latest] = self.ends;
-        sum(&first, &latest).map(f64::from)
+        self.ends.map(f64::from)
     }
 
     /// Accumulates the changes of the force as measured and as rotated.
-    fn compare(&mut self, second: &Second) {
+    fn compare(&mut self, second: &Second, course: &mut Course) {
         let forces = second.block_force().zip(second.force).map(|(start, felt)| {
             let stays = turned(&transposed(&self.begin.attitude.rough_matrix()), &start);
             [[felt[0] as f32, felt[1] as f32], [stays[0], stays[1]]]
         });
-        if let (Some(before), Some(now)) = (self.latest, forces) {
+        if let (Some(before), Some(now)) = (course.latest, forces) {
             let (sums, count) = &mut self.changes;
             let parts = before.as_flattened().iter().zip(now.as_flattened());
             for (sum, (before, now)) in sums.as_flattened_mut().iter_mut().zip(parts) {
@@ -136,7 +145,7 @@ impl Stop {
             }
             *count += 1;
         }
-        self.latest = forces;
+        course.latest = forces;
     }
 
     /// Ratio of the power of the force changes after rotation by the gyros' angles to that before,

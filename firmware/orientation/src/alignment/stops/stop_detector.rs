@@ -11,7 +11,7 @@ use heapless::{Deque, Vec};
 use super::Refusal;
 use super::block::{AT_REST, Block, Blocks, DRIVEN, combined};
 use super::lever::Lever;
-use super::stop::{STOPS, Second, Stop};
+use super::stop::{Course, STOPS, Second, Stop};
 use crate::math::rotation::{length, scaled, sum};
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits, Sensors};
@@ -84,6 +84,8 @@ pub(super) struct State {
     held: usize,
     /// Length of the longest halt that was too short for a stop, s; zero without one.
     pub(super) fleeting: f64,
+    /// What is carried on within the latest stop.
+    course: Course,
     /// Lever arm from the axis of the sway to the sensors.
     lever: Lever,
     /// Loss of rotation that first made the carried attitude invalid.
@@ -406,7 +408,7 @@ impl StopDetector {
             }
         }
         let last = self.stops.len() - 1;
-        self.stops[last].take(&second);
+        self.stops[last].take(&second, &mut self.state.course);
         if let Some(force) = second.block_force().filter(|_| is_relieved) {
             self.blocks.push(block(&second, force, last as u8));
         }

@@ -49,10 +49,12 @@ pub(super) fn timeline(replay: &Replay) -> Timeline {
     });
     let mut spans: Vec<Stretch> = spans.collect();
     spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+    // The rate-modulated turns show the axis misalignment.
+    let is_felt = replay.session.conclusion().is_some_and(|all| !all.misalignments.is_empty());
     let first = spans.first().map(|first| Stretch {
         from_s: replay.zero_s,
         to_s: first.from_s,
-        kind: Kind::Between,
+        kind: if is_felt { Kind::Used } else { Kind::Between },
         words: "before the first even turn: rate-modulated turns".to_owned(),
     });
     let spans = first.into_iter().chain(spans);

@@ -101,6 +101,7 @@ impl Replay {
     fn noise_source(&self) -> &'static str {
         match (&self.session.surveyed, self.noise_is_known()) {
             (Some(_), _) => "surveyed",
+            (None, true) if self.has_stated_dwells() => "dwells",
             (None, true) => "stated",
             (None, false) => "estimated",
         }
@@ -110,7 +111,12 @@ impl Replay {
     fn circumstances(&self, kept: &[&Dwell]) -> Vec<[String; 2]> {
         let seconds: f64 = kept.iter().map(|dwell| dwell.seconds.0).sum();
         let time = format!("{} s in {}", fixed(seconds, 1), counted(kept.len(), "dwell"));
-        of_site(&self.session.setting.site).with("time", time).lines
+        let mut lines = of_site(&self.session.setting.site).with("time", time).lines;
+        if self.has_stated_dwells() {
+            let gyro = lines.iter_mut().find(|[label, _]| label == "gyro");
+            gyro.into_iter().for_each(|[_, words]| OF_DWELLS.clone_into(words));
+        }
+        lines
     }
 
     fn details(&self, conclusion: &Conclusion, dwells: &[DwellDetails]) -> Keys {
@@ -118,7 +124,7 @@ impl Replay {
         Keys::default()
             .with("criterion", self.criterion_name())
             .with("horizontal_earth_rate", fit.map(earth_rate))
-            .with("gyro_n_deg_sqrt_h", walk_deg_sqrt_h(conclusion))
+            .with("gyro_n_deg_sqrt_h", self.walk_deg_sqrt_h(conclusion))
             .with("gyro_noise", self.noise_source())
             .with("chi_square", fit.map(|fit| fit.chi_square))
             .with("degrees_of_freedom", fit.map(|fit| fit.degrees))
@@ -128,22 +134,27 @@ impl Replay {
 
     fn lines(&self, conclusion: &Conclusion) -> Lines {
         let fit = conclusion.fit.as_ref();
-        let (noise, source) = (walk_deg_sqrt_h(conclusion), self.noise_source());
+        let noise = self.walk_deg_sqrt_h(conclusion).map_or(OF_DWELLS.to_owned(), |noise| {
+            format!("{noise:.6} °/√h ({})", self.noise_source())
+        });
         let residuals =
             |fit: &Fit| format!("χ² {:.1} for {} degrees of freedom", fit.chi_square, fit.degrees);
         let lines = Lines::new("Fit")
             .with("criterion", self.criterion_name())
             .with("Earth rate is", fit.map_or("not fitted", earth_rate))
-            .with("gyro noise N", format!("{noise:.6} °/√h ({source})"))
+            .with("gyro noise N", noise)
             .with_found("residuals", fit.map(residuals));
         self.autocompensation(conclusion).iter().fold(lines, positions)
     }
+
+    /// N of the gyro, °/√h, that a fit was weighted by; none where the 1σ of each dwell was stated.
+    fn walk_deg_sqrt_h(&self, conclusion: &Conclusion) -> Option<f64> {
+        (!self.has_stated_dwells()).then(|| degrees(conclusion.angle_random_walk.0) * 60.0)
+    }
 }
 
-/// N of the gyro, °/√h, that a fit was weighted by.
-fn walk_deg_sqrt_h(conclusion: &Conclusion) -> f64 {
-    degrees(conclusion.angle_random_walk.0) * 60.0
-}
+/// What stands for N of the gyro where none weighs the dwells.
+const OF_DWELLS: &str = "the stated 1σ of each dwell";
 
 /// Every dwell in the order of time.
 fn table(dwells: &[DwellDetails]) -> Part {
