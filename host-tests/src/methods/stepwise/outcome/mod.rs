@@ -113,8 +113,9 @@ impl Replay {
         let time = format!("{} s in {}", fixed(seconds, 1), counted(kept.len(), "dwell"));
         let mut lines = of_site(&self.session.setting.site).with("time", time).lines;
         if self.has_stated_dwells() {
-            let gyro = lines.iter_mut().find(|[label, _]| label == "gyro");
-            gyro.into_iter().for_each(|[_, words]| OF_DWELLS.clone_into(words));
+            for [_, words] in lines.iter_mut().filter(|[label, _]| label == "gyro") {
+                OF_DWELLS.clone_into(words);
+            }
         }
         lines
     }
