@@ -7,7 +7,7 @@ use firmware::event::Event;
 use host::angle::Quantity;
 use host::instrument::recorder::Recorded;
 use host::instrument::{Run, Trial};
-use host::methods::stepwise::Replay;
+use host::methods::stepwise::{Replay, subtracts_sway};
 use host::outcome::kept::finished;
 use host::outcome::run::{OfPlatform, RunDetails};
 use host::output::degrees;
@@ -157,13 +157,12 @@ impl BaseOptions {
     /// That the base sways and nothing of it is subtracted, where that is so.
     fn sway_left(&self, replay: &Replay) -> Option<String> {
         let sway = self.sway.filter(|sway| *sway > 0.0)?;
-        let is_subtracted = replay.session.setting.sway.mean_variance(1.0) > 0.0;
         let why = if self.no_base_imu {
             "no coarse IMU shows it"
         } else {
             "it is too small for the coarse IMU on the base"
         };
-        (!is_subtracted)
+        (!subtracts_sway(&replay.session))
             .then(|| format!("the base sways by {sway}°, which is not subtracted: {why}"))
     }
 

@@ -78,6 +78,12 @@ impl Replay {
     }
 }
 
+/// Whether the sway of the base is subtracted from what a session is given.
+#[must_use]
+pub fn subtracts_sway(session: &Session) -> bool {
+    session.setting.sway.mean_variance(1.0) > 0.0
+}
+
 /// Replays a recording; `progress` sees the session after each dwell.
 ///
 /// # Errors

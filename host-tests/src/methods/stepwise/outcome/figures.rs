@@ -7,6 +7,7 @@ use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
 use orientation::units::Radians;
 
+use crate::methods::stepwise::subtracts_sway;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{
     Axis, BREAK, Figure, Kind, Lane, Milestone, POINTS, Point, Series, Shape, Stretch, Style,
@@ -67,8 +68,11 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     let residuals = kept().filter_map(Shown::residual);
     let left = [Series::new("measured less the whole model", Style::Points, residuals)];
     let angle = || axis(&dwells);
-    let sways = session.setting.sway.mean_variance(1.0) > 0.0;
-    let also = if sways { ", which follows the noise of the sway from dwell to dwell" } else { "" };
+    let also = if subtracts_sway(session) {
+        ", which follows the noise of the sway from dwell to dwell"
+    } else {
+        ""
+    };
     let title = format!("Mean rate of each dwell, and the fit{also}");
     [
         Figure::new(title, angle(), ["rate", "°/h"], series),
