@@ -7,14 +7,13 @@
 
 mod command;
 
-use std::path::Path;
 use std::process::ExitCode;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use host::interrupt;
 use host::new_file;
-use host::output::manner::Manner;
+use host::output::manner::{self, Manner};
 use host::output::say;
 use host::report::Verbosity;
 
@@ -27,7 +26,7 @@ use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
 use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
-use crate::command::{Answer, Failure, OUTPUT, Output, examples, print};
+use crate::command::{Answer, Failure, OUTPUT, Output, examples, mistyped, print};
 
 /// Finds true north, with its standard deviation, from precise gyros on a stage, in two frames, on a turntable or in a
 /// vehicle; and the roll of a spinning body.
@@ -76,6 +75,9 @@ impl CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
+    ///
+    /// Without a platform it is a stage, with the options below; each other platform has its own, as
+    /// `meridian run vehicle --help` lists them.
     #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]", after_help = examples::RUN)]
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, finds the
@@ -117,11 +119,16 @@ struct Parsed {
     stated: Stated,
 }
 
+/// The program as shells, manual pages and its help know it: a run takes the options of a stage without its name.
+fn program() -> clap::Command {
+    usual::optional(CommandLine::command())
+}
+
 /// The command line; without a command it is a run of a stage with all its defaults.
 fn parse() -> Result<Parsed, clap::Error> {
     let mut arguments: Vec<_> = std::env::args_os().collect();
     let named = usual::named(arguments.split_off(1.min(arguments.len())));
-    let program = taking_negative_numbers(CommandLine::command());
+    let program = taking_negative_numbers(program());
     let matches = program.try_get_matches_from(arguments.iter().chain(&named))?;
     let line = CommandLine::from_arg_matches(&matches)?;
     Ok(Parsed { manner: line.manner()?, command: line.command, stated: Stated::of(&matches) })
@@ -174,41 +181,14 @@ fn explained(failure: Failure) -> Failure {
     }
 }
 
-/// How the lines of a misuse begin that only hint at what else there is.
-const HINTS: [&str; 2] = ["tip: ", "For more information"];
-
-/// Prints help where that was asked for, else what is wrong with the options in one line, and whose help says more.
+/// Prints help where that was asked for, else what is wrong with the options.
 fn misuse(error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() {
-        // Nothing is to be done where even the help cannot be printed.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
+    if error.use_stderr() {
+        return misused(&mistyped::message(error, &program()));
     }
-    let text = error.render().to_string();
-    let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let message: Vec<&str> = lines
-        .filter(|line| !line.is_empty() && !HINTS.iter().any(|hint| line.starts_with(hint)))
-        .collect();
-    let message = message.join(" ");
-    let message = message.strip_prefix("error: ").unwrap_or(&message);
-    let usage = text.lines().find_map(|line| line.trim().strip_prefix("Usage: "));
-    let is_name = |word: &&str| !word.starts_with(['-', '[', '<']);
-    let words = usage.unwrap_or_default().split(' ').take_while(is_name);
-    let command = words.collect::<Vec<_>>().join(" ");
-    match error.kind() {
-        ErrorKind::UnknownArgument => misused(&format!("{message}; see `{command} --help`")),
-        ErrorKind::InvalidSubcommand => misused(&format!("{message}{}", replayed(error))),
-        _ => misused(message),
-    }
-}
-
-/// The command that takes a file, where the name of one stands in the place of a command.
-fn replayed(error: &clap::Error) -> String {
-    let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand) else {
-        return String::new();
-    };
-    let is_file = Path::new(name).exists() || Path::new(name).extension().is_some();
-    if is_file { format!("; `meridian replay {name}` replays a recording") } else { String::new() }
+    // Nothing is to be done where even the help cannot be printed.
+    let _ = error.print();
+    ExitCode::SUCCESS
 }
 
 /// Says what is wrong with the options.
@@ -227,13 +207,20 @@ fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCod
     if manner.as_json {
         let output = Output::Object(serde_json::json!({}));
         let refusal = Some(reason.clone());
-        let nothing = Answer { output, refusal, warnings: warnings.clone() };
+        let nothing = Answer { output, refusal, is_told: true, warnings: warnings.clone() };
         // The reason goes to standard error all the same.
         let _ = print(&nothing.printed());
     }
     warn(warnings, manner);
-    say(&one_line(&format!("meridian: {reason}")));
+    say_why(reason, manner.as_json);
     ExitCode::from(1)
+}
+
+/// Says why there is no result, unless that stands in the output already and a person sees both.
+fn say_why(reason: &str, is_told: bool) {
+    if !(is_told && manner::is_one_terminal()) {
+        say(&one_line(&format!("meridian: {reason}")));
+    }
 }
 
 /// Ends the program at once, and says why.
@@ -260,15 +247,13 @@ fn answer(command: &Command, stated: &Stated, manner: Manner) -> Result<bool, Fa
         Command::Campaign(options) => command::campaign::run(options, manner)?,
         Command::Emulate(options) => command::emulate::run(options, manner)?,
         Command::Log(options) => command::log::run(options, manner)?,
-        Command::Completions(options) => {
-            shell::completions(options, CommandLine::command(), manner)?
-        }
-        Command::Man(options) => shell::man(options, CommandLine::command(), manner)?,
+        Command::Completions(options) => shell::completions(options, program(), manner)?,
+        Command::Man(options) => shell::man(options, program(), manner)?,
     };
     print(&answer.printed())?;
     warn(&answer.warnings, manner);
     if let Some(reason) = &answer.refusal {
-        say(&one_line(&format!("meridian: {reason}")));
+        say_why(reason, answer.is_told);
     }
     Ok(answer.refusal.is_none())
 }

@@ -40,7 +40,7 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let page = files::opened("the report", options.report.as_ref())?;
     let name = source.name();
     let mut warnings = Vec::new();
-    let progress = Progress::new(manner, 0, "reading");
+    let progress = Progress::new(manner, "reading");
     interrupt::end_input();
     let rest = read(&source, options.column.as_deref(), &progress, &mut warnings);
     progress.finish();

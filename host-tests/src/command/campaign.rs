@@ -10,6 +10,7 @@ use host::output::progress::Progress;
 use simulated::fault::Platform;
 
 use super::files::Written;
+use super::mistyped::nearest;
 use super::{Answer, Failure, OUTPUT, faults as of_run, files, registered, whole};
 
 /// Which campaign, how long.
@@ -56,7 +57,8 @@ impl CampaignOptions {
             && disturbed::classes().all(|of| of.fault.name != *class)
         {
             let names: Vec<_> = disturbed::classes().map(|class| class.fault.name).collect();
-            return Err(format!("--class: the classes are {}", names.join(", ")));
+            let meant = nearest(class, names.iter());
+            return Err(format!("--class: the classes are {}{meant}", names.join(", ")));
         }
         files::check(None, &[Written::page(self.report.as_ref())])
     }
@@ -78,7 +80,7 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
         class: options.class.clone(),
     };
     let page = files::opened("the report", options.report.as_ref())?;
-    let progress = Progress::new(manner, (campaign.count)(&asked) as u64, campaign.steps);
+    let progress = Progress::of_steps(manner, (campaign.count)(&asked) as u64, campaign.steps);
     interrupt::heed();
     let Done { mut object, mut report, refusal } = (campaign.run)(&asked, &progress)?;
     progress.finish();

@@ -12,6 +12,7 @@ use host::output::manner::Manner;
 use host::output::progress::Progress;
 use host::output::{emulation, executed, say};
 
+use super::mistyped::nearest;
 use super::{Answer, Failure};
 
 /// What to emulate.
@@ -45,7 +46,10 @@ fn carriers(name: &str) -> Result<Carriers, String> {
         return Ok(Carriers(Platform::ALL.to_vec()));
     }
     let found = options::carrier(name).map(|carrier| Carriers(vec![carrier]));
-    found.map_err(|names| format!("{names} or all are meant"))
+    found.map_err(|names| {
+        let meant = nearest(name, Platform::ALL.map(Platform::name).into_iter());
+        format!("{names} or all are meant{meant}")
+    })
 }
 
 /// Runs the firmware's images; whether all is as it must be.
@@ -53,7 +57,7 @@ pub fn run(options: &EmulateOptions, manner: Manner) -> Result<Answer, Failure> 
     if let Some(Carriers(carriers)) = &options.board {
         return run_boards(carriers, options, manner);
     }
-    let progress = Progress::new(manner, STEPS as u64, "emulated runs");
+    let progress = Progress::of_steps(manner, STEPS as u64, "emulated runs");
     let mut log = Log { progress: &progress, is_shown: manner.shows_log(), last: VecDeque::new() };
     let found = emulate(options.seed, |line| log.take(line.to_string()), &progress);
     progress.finish();
@@ -99,7 +103,7 @@ fn run_boards(
     }
     let EmulateOptions { seed, cycles, afterwards, link, .. } = *options;
     let options = Options { seed, cycles, afterwards, link };
-    let progress = Progress::new(manner, carriers.len() as u64, "executed images");
+    let progress = Progress::of_steps(manner, carriers.len() as u64, "executed images");
     let found = execute(carriers, &options, manner.shows_log(), &progress);
     progress.finish();
     let found = found?;

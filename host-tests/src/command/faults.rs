@@ -6,6 +6,7 @@ use serde_json::json;
 use simulated::fault::{Fault, Platform};
 
 use super::Answer;
+use super::mistyped::nearest;
 
 /// A fault that is asked for, or the wish to see the names.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +32,12 @@ pub fn parse(text: &str) -> Result<FaultChoice, String> {
     if text == "list" {
         return Ok(FaultChoice::List);
     }
-    let mut faults = Platform::ALL.into_iter().flat_map(Fault::all);
-    let found = faults.find(|fault| fault.to_string() == text);
-    found.map(FaultChoice::One).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
+    let faults = || Platform::ALL.into_iter().flat_map(Fault::all);
+    let found = faults().find(|fault| fault.to_string() == text);
+    found.map(FaultChoice::One).ok_or_else(|| {
+        let meant = nearest(text, faults().map(|fault| fault.to_string()));
+        format!("no such fault; `--fault list` names them{meant}")
+    })
 }
 
 /// A platform by its name.
@@ -43,7 +47,10 @@ pub fn parse(text: &str) -> Result<FaultChoice, String> {
 pub fn platform(text: &str) -> Result<Platform, String> {
     let found = Platform::ALL.into_iter().find(|platform| platform.name() == text);
     let names = Platform::ALL.map(Platform::name).join(", ");
-    found.ok_or_else(|| format!("no such platform; there are {names}"))
+    found.ok_or_else(|| {
+        let meant = nearest(text, Platform::ALL.map(Platform::name).into_iter());
+        format!("no such platform; there are {names}{meant}")
+    })
 }
 
 /// Refuses a fault that cannot happen on a platform.
@@ -61,12 +68,17 @@ pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
     ))
 }
 
-/// Names the faults of a platform.
+/// The names of the faults of a platform.
+pub fn names(platform: Platform) -> impl Iterator<Item = String> {
+    Fault::all(platform).map(|fault| fault.to_string())
+}
+
+/// Lists the faults of a platform.
 ///
 /// # Errors
 /// The object cannot be serialised.
 pub fn list(platform: Platform, manner: Manner) -> Result<Answer, String> {
-    let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
+    let names: Vec<String> = names(platform).collect();
     let object = json!({ "status": "ok", "faults": names });
     Answer::of(None, manner, &object, || names.join("\n"))
 }

@@ -7,6 +7,7 @@ pub mod examples;
 pub mod faults;
 pub mod files;
 pub mod log;
+pub mod mistyped;
 pub mod plan;
 pub mod replay;
 pub mod run;
@@ -38,6 +39,8 @@ pub struct Answer {
     pub output: Output,
     /// Why there was no result, where there was none.
     pub refusal: Option<String>,
+    /// Whether the output itself says why.
+    pub is_told: bool,
     /// What there is to be said beside that: a line each.
     pub warnings: Vec<String>,
 }
@@ -48,6 +51,17 @@ pub enum Output {
     Text(String),
     /// One object, with `--json`.
     Object(Value),
+}
+
+impl Output {
+    /// Whether it says so, in lines of whatever width; an object has every reason.
+    fn says(&self, reason: &str) -> bool {
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match self {
+            Self::Text(text) => words(text).contains(&words(reason)),
+            Self::Object(_) => true,
+        }
+    }
 }
 
 /// Why a command came to nothing.
@@ -95,7 +109,16 @@ impl Answer {
         } else {
             Output::Text(text())
         };
-        Ok(Self { output, refusal, warnings: Vec::new() })
+        let answer = Self { output, refusal: None, is_told: false, warnings: Vec::new() };
+        Ok(match refusal {
+            Some(reason) => answer.refused(reason),
+            None => answer,
+        })
+    }
+
+    /// This answer without a result, and why there is none.
+    fn refused(self, reason: String) -> Self {
+        Self { is_told: self.output.says(&reason), refusal: Some(reason), ..self }
     }
 
     /// The object, or so much of a report as is asked for.
@@ -157,10 +180,10 @@ impl Answer {
     /// rest is not lost with it, nor is why there was no result.
     fn with_written(mut self, written: Result<(), String>) -> Self {
         let Err(reason) = written else { return self };
-        match &self.refusal {
-            Some(_) => self.warnings.push(reason),
-            None => self.refusal = Some(reason),
+        if self.refusal.is_none() {
+            return self.refused(reason);
         }
+        self.warnings.push(reason);
         self
     }
 

@@ -4,11 +4,13 @@ use std::mem::discriminant;
 
 use embassy_time::Instant;
 use firmware::event::Event;
+use orientation::alignment::Azimuth;
 use orientation::attitude::Trust;
+use orientation::units::{self, Radians};
 
 use crate::campaign::faults::notice;
 use crate::instrument::kept::{Kept, Point};
-use crate::output::{azimuth_error, degrees, seconds};
+use crate::output::{azimuth as in_circle, azimuth_error, degrees, seconds};
 use crate::report::{self, Axis, Figure, Kind, Lane, Series, Shape, Stretch, Style};
 
 /// The name of a true angle, and the angle, °.
@@ -52,7 +54,7 @@ fn unwrapped(moments: &[Moment<'_>]) -> Vec<(f64, f64, f64, f64)> {
 fn azimuth(moments: &[Moment<'_>], is_true: bool) -> Figure {
     let all = unwrapped(moments);
     let mut series = vec![
-        Series::of("±1σ", Style::Band, &all, |&(at, azimuth, sigma, _)| {
+        Series::of("kept ±1σ", Style::Band, &all, |&(at, azimuth, sigma, _)| {
             report::Point::within(at, azimuth, sigma)
         }),
         Series::of("kept", Style::Line, &all, |&(at, azimuth, ..)| (at, azimuth)),
@@ -67,8 +69,8 @@ fn error(moments: &[Moment<'_>]) -> Figure {
         move |&(_, at, [_, sigma, _]): &Moment<'_>| report::Point::within(at, 0.0, times * sigma)
     };
     let series = vec![
-        Series::of("±3σ", Style::Band, moments, band(3.0)),
-        Series::of("±1σ", Style::Band, moments, band(1.0)),
+        Series::of("error ±3σ", Style::WideBand, moments, band(3.0)),
+        Series::of("error ±1σ", Style::Band, moments, band(1.0)),
         Series::of("error", Style::Line, moments, |&(_, at, [.., error])| (at, error)),
     ];
     let title = "Error of the kept azimuth, and its stated 1σ and 3σ";
@@ -111,6 +113,18 @@ fn level_errors(moments: &[Moment<'_>]) -> Figure {
         Series::of("roll", Style::Line, moments, off(1)),
     ];
     over_time("Errors of pitch and roll", ["error", "°"], series).shaped(Shape::Low)
+}
+
+/// When each of several alignments found which azimuth.
+pub(super) fn alignments(found: &[(units::Instant, Azimuth)]) -> Option<Lane> {
+    let mark = |(index, (at, azimuth)): (usize, &(units::Instant, Azimuth))| {
+        let [angle, sigma] = [azimuth.angle, azimuth.sigma].map(Radians::degrees);
+        let (number, angle) = (index + 1, in_circle(angle, 4));
+        let at_s = at.seconds();
+        let words = format!("alignment {number}, {at_s:.1} s: {angle}° ± {sigma:.4}° (1σ)");
+        Stretch { from_s: at_s, to_s: at_s, kind: Kind::Used, words }
+    };
+    (found.len() > 1).then(|| Lane::new("azimuth found", found.iter().enumerate().map(mark)))
 }
 
 /// How far the level could be relied on while something was kept.

@@ -32,6 +32,9 @@ use crate::report::Part as ReportPart;
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;
 
+/// The status of what was not carried to its end.
+const FAILED: &str = "failed";
+
 /// A finished analysis of a recording or of a simulated run, whatever the method.
 pub trait Finished {
     /// What was found. The truth is for errors alone.
@@ -272,7 +275,7 @@ impl Outcome {
             format!("; what was measured until then gives 1σ of {:.4}°", budget.sigma().degrees())
         });
         let reason = why + &so_far.unwrap_or_default();
-        Self { status: "failed", remedy: "", ..self.withdrawn(reason) }
+        Self { status: FAILED, remedy: "", ..self.withdrawn(reason) }
     }
 
     /// The outcome without its azimuth, for a reason.

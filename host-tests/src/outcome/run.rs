@@ -152,7 +152,10 @@ impl RunDetails {
                 .chain(figures::all(kept).into_iter().map(Part::from))
                 .chain(board)
                 .collect(),
-            lanes: figures::lanes(kept),
+            lanes: figures::alignments(&later.found)
+                .into_iter()
+                .chain(figures::lanes(kept))
+                .collect(),
             kept: last,
             was_known,
             disagreement: later.disagreement,
@@ -164,17 +167,21 @@ impl RunDetails {
 
 /// What went wrong on the board, counted; nothing where nothing did.
 fn faults(health: &Health) -> Option<String> {
-    let sum = |counts: &[u16]| counts.iter().map(|count| u32::from(*count)).sum();
     let all = [
-        (health.missing, "samples missing"),
-        (health.late, "samples late"),
-        (health.overflowed, "samples discarded"),
-        (sum(&health.lost), "readings lost"),
-        (sum(&health.restarts), "restarts of a device"),
+        (health.missing, "missing sample"),
+        (health.late, "late sample"),
+        (health.overflowed, "discarded sample"),
+        (sum(&health.lost), "lost reading"),
+        (sum(&health.restarts), "device restart"),
     ];
     let there = all.into_iter().filter(|(count, _)| *count > 0);
-    let words: Vec<String> = there.map(|(count, what)| format!("{count} {what}")).collect();
+    let words: Vec<String> = there.map(|(count, what)| counted(count as usize, what)).collect();
     (!words.is_empty()).then(|| format!("faults on the way: {}", words.join(", ")))
+}
+
+/// Of all devices together.
+fn sum(counts: &[u16]) -> u32 {
+    counts.iter().map(|count| u32::from(*count)).sum()
 }
 
 /// How the board did.
@@ -184,13 +191,13 @@ fn board<R, T>(run: &Run<R, T>, rate: f64, wall: f64, beside: OfPlatform) -> Lin
         format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
     let Health { samples, missing, late, overflowed, lost, restarts, .. } = &run.health;
     let taken = format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
-    let [lost, restarts]: [u32; 2] =
-        [lost, restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
+    let lost = counted(sum(lost) as usize, "lost reading");
+    let restarts = counted(sum(restarts) as usize, "restart");
     Lines::new("The simulated board")
         .with_found("recalled", beside.recalled)
         .with("simulated", simulated)
         .with("samples", taken)
-        .with("devices", format!("{lost} readings lost, {restarts} restarts"))
+        .with("devices", format!("{lost}, {restarts}"))
         .with_found("FORBIDDEN", &run.violations)
         .with_found("gyro", beside.gyro)
 }

@@ -3,7 +3,7 @@
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::site::Site;
 
-use super::{Excluded, Finished, FitDetails, Outcome};
+use super::{Excluded, FAILED, Finished, FitDetails, Outcome};
 use crate::methods;
 use crate::output::{azimuth as in_circle, degrees, fixed, noise_in_words, positive_zero, signed};
 use crate::recording::GIVEN;
@@ -47,6 +47,7 @@ fn add_lanes(parts: &mut Vec<ReportPart>, outcome: &Outcome) {
 fn summary(outcome: &Outcome) -> Summary {
     let remarks = degradations(outcome);
     let grade = match (outcome.is_ok(), remarks.is_empty()) {
+        (false, _) if outcome.status == FAILED => Grade::Interrupted,
         (false, _) => Grade::Refused,
         (true, true) => Grade::Found,
         (true, false) => Grade::Degraded,

@@ -1,8 +1,14 @@
 //! How a command says what came of it: as an object or as text, and how much beside it.
 
-use std::io::{IsTerminal as _, stderr};
+use std::io::{IsTerminal as _, stderr, stdout};
 
 use crate::report::Verbosity;
+
+/// Whether results and errors come to a terminal both, so that a person reads the ones below the others.
+#[must_use]
+pub fn is_one_terminal() -> bool {
+    stdout().is_terminal() && stderr().is_terminal()
+}
 
 /// How a command says what came of it.
 #[derive(Clone, Copy, Debug, Default)]

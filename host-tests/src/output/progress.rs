@@ -17,12 +17,17 @@ use crate::work::Follower;
 const LINES: u64 = 12;
 /// How often the bar is drawn while nothing comes.
 const REDRAWN: Duration = Duration::from_millis(500);
+/// What the steps of a session are called.
+const POSITIONS: &str = "positions";
+/// What the bar shows in the place of the time that is left, before anything is done.
+const ESTIMATING: &str = "estimating time left, ";
 /// What the bar shows; the rest of a line is cut.
 const TEMPLATE: &str = "{bar:20} {percent:>3} % {left}{wide_msg}";
 
 /// The progress of one task; shared by the threads that work at it.
 pub struct Progress {
     bar: ProgressBar,
+    /// What its steps are called.
     what: &'static str,
     /// Whether lines take the place of a bar, where there is no terminal.
     prints_lines: bool,
@@ -32,7 +37,17 @@ pub struct Progress {
 impl Progress {
     /// Progress of a task of `length` steps, shown as a command is asked to; `what` names them.
     #[must_use]
-    pub fn new(manner: Manner, length: u64, what: &'static str) -> Self {
+    pub fn of_steps(manner: Manner, length: u64, what: &'static str) -> Self {
+        Self::beginning(manner, length, what, counted(what, 0, length))
+    }
+
+    /// Progress of a task of which it is not known yet what will be counted; `words` say what it begins with.
+    #[must_use]
+    pub fn new(manner: Manner, words: &'static str) -> Self {
+        Self::beginning(manner, 1, POSITIONS, words.to_owned())
+    }
+
+    fn beginning(manner: Manner, length: u64, what: &'static str, words: String) -> Self {
         let bar = ProgressBar::new(length.max(1));
         if !manner.shows_progress() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
@@ -43,7 +58,7 @@ impl Progress {
         };
         let prints_lines = manner.shows_progress() && bar.is_hidden();
         if !bar.is_hidden() {
-            bar.set_message(what);
+            bar.set_message(words);
             bar.enable_steady_tick(REDRAWN);
         }
         Self { bar, what, prints_lines, printed: AtomicU64::new(0) }
@@ -69,11 +84,18 @@ impl Progress {
         self.show(words, String::new);
     }
 
+    /// A part of the task begins whose length is not known yet; what was done before tells nothing of its time.
+    pub fn begin(&self, words: &'static str) {
+        self.bar.reset();
+        self.printed.store(0, Ordering::Relaxed);
+        if !self.bar.is_hidden() {
+            self.bar.set_message(words);
+        }
+    }
+
     /// How many steps are done, of how many.
-    #[must_use]
-    pub fn counted(&self) -> String {
-        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
-        format!("{} {done}/{all}", self.what)
+    fn counted(&self) -> String {
+        counted(self.what, self.bar.position(), self.bar.length().unwrap_or(0))
     }
 
     /// Prints a line of a log above the bar.
@@ -119,11 +141,16 @@ impl Follower for Progress {
     }
 }
 
-/// Writes the time that is left into the bar, where anything is done to tell it from.
+/// So many of so many steps.
+fn counted(what: &str, done: u64, all: u64) -> String {
+    format!("{what} {done}/{all}")
+}
+
+/// Writes the time that is left into the bar, or that nothing is done yet to tell it from.
 fn write_left(state: &ProgressState, to: &mut dyn Write) {
     let left = left(state.elapsed(), state.pos(), state.len().unwrap_or(0));
     // A bar that lacks it does no harm.
-    let _ = write!(to, "{}", left.map(in_words).unwrap_or_default());
+    let _ = write!(to, "{}", left.map_or_else(|| ESTIMATING.to_owned(), in_words));
 }
 
 /// The time that is left where the rest goes on as what is done; none before anything is.

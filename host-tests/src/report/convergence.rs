@@ -2,7 +2,7 @@
 
 use crate::output::azimuth_error;
 
-use super::{Axis, BREAK, Figure, Point, Series, Shape, Style};
+use super::{Axis, BREAK, Figure, Note, Point, Series, Shape, Style};
 
 /// An azimuth on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Milestone {
     pub sigma_deg: f64,
     /// Its Cramér–Rao bound for the data until then, °.
     pub limit_deg: f64,
+    /// Why σ is not less than before, where that is so.
+    pub remark: Option<&'static str>,
 }
 
 /// Multiples of the last σ up to which an azimuth is shown: before, it says nothing yet.
@@ -56,6 +58,9 @@ fn sigmas(all: &[Milestone]) -> Figure {
         curve("σ", Style::LineAndPoints, |at| at.sigma_deg),
         curve("limit (Cramér–Rao)", Style::Dashed, |at| at.limit_deg),
     ];
+    let notes = all
+        .iter()
+        .filter_map(|at| Some(Note { x: at.time_s, y: at.sigma_deg, text: at.remark?.to_owned() }));
     let axis = Axis::logarithmic("1σ of the azimuth", "°");
-    Figure::over_time("σ and its limit", axis, series).shaped(Shape::Low)
+    Figure::over_time("σ and its limit", axis, series).shaped(Shape::Low).noted(notes)
 }

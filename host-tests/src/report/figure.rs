@@ -75,7 +75,7 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
-/// How a curve is drawn. Limits are error bars, but in [`Style::Band`].
+/// How a curve is drawn. Limits are error bars, but in [`Style::Band`] and [`Style::WideBand`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// A line through the points.
@@ -94,6 +94,8 @@ pub enum Style {
     LineAndPoints,
     /// The area between the limits; the points themselves are not drawn.
     Band,
+    /// The paler area between wider limits, behind a [`Style::Band`].
+    WideBand,
 }
 
 /// A point of a curve.
@@ -243,8 +245,10 @@ impl Series {
         if step <= 1 {
             return all.clone();
         }
-        let is_curve =
-            !matches!(self.style, Style::Points | Style::Hollow | Style::Pale | Style::Band);
+        let is_curve = !matches!(
+            self.style,
+            Style::Points | Style::Hollow | Style::Pale | Style::Band | Style::WideBand
+        );
         if !is_curve {
             return all.iter().step_by(step).copied().collect();
         }

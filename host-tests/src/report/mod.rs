@@ -107,7 +107,7 @@ impl Part {
     fn is_empty(&self) -> bool {
         match self {
             Self::Lines(lines) => lines.lines.is_empty(),
-            Self::Timeline(timeline) => timeline.lanes.iter().all(|lane| lane.spans.is_empty()),
+            Self::Timeline(timeline) => timeline.is_empty(),
             Self::Detail(part) => part.is_empty(),
             Self::Table(table) => table.rows.is_empty(),
             Self::Figure(figure) => figure.is_empty(),

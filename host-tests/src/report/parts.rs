@@ -94,6 +94,18 @@ impl Timeline {
     pub fn of(lanes: Vec<Lane>) -> Self {
         Self { title: "What was done when".to_owned(), lanes }
     }
+
+    /// The rows in which there is something.
+    pub(super) fn filled(&self) -> impl Iterator<Item = &Lane> {
+        self.lanes.iter().filter(|lane| !lane.spans.is_empty())
+    }
+
+    /// Whether no time passes in it.
+    pub(super) fn is_empty(&self) -> bool {
+        let spans = || self.filled().flat_map(|lane| &lane.spans);
+        let begin = spans().map(|span| span.from_s).fold(f64::INFINITY, f64::min);
+        spans().all(|span| span.to_s <= begin)
+    }
 }
 
 /// A row of a timeline.
@@ -146,7 +158,7 @@ impl Kind {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Used => "measured",
-            Self::Between => "on the way",
+            Self::Between => "in motion",
             Self::Coasting => "by the gyros alone",
             Self::LeftOut => "left out",
             Self::Wrong => "went wrong",

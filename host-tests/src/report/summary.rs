@@ -30,6 +30,8 @@ pub enum Grade {
     Degraded,
     /// No result.
     Refused,
+    /// No result, because it was not carried to its end.
+    Interrupted,
 }
 
 impl Grade {
@@ -39,6 +41,7 @@ impl Grade {
             Self::Found => "found",
             Self::Degraded => "degraded",
             Self::Refused => "refused",
+            Self::Interrupted => "interrupted",
         }
     }
 }

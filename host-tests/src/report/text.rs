@@ -42,7 +42,7 @@ impl Look {
         match grade {
             Some(Grade::Found) => self.coloured(title, "1;32"),
             Some(Grade::Degraded) => self.coloured(title, "1;33"),
-            Some(Grade::Refused) => self.coloured(title, "1;31"),
+            Some(Grade::Refused | Grade::Interrupted) => self.coloured(title, "1;31"),
             None => self.coloured(title, "1"),
         }
     }

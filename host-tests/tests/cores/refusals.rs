@@ -32,6 +32,7 @@ fn a_sentence_ends_with_its_remedy() {
         (Refusal::TiltTooGreat { tilt: Degrees(7.25), allowed: Degrees(5.0) }, ": level it"),
         (disturbed.into(), ": keep the platform still"),
         (stepwise::Refusal::AzimuthUnobservable.into(), ": turn the stage over a longer arc"),
+        (stepwise::Refusal::TrendNotSeparable.into(), ": turn a full circle"),
         (
             rotating::Refusal::TurnsDisturbed { disturbed: 9, turns: 24 }.into(),
             ": keep the base still, let the sensor settle",

@@ -1,6 +1,9 @@
 //! Help: grouped, narrow enough, with examples that run; completions, manual pages, and the version.
 
+use std::collections::BTreeSet;
 use std::fs;
+#[cfg(unix)]
+use std::process::Command;
 use std::process::Output;
 
 use crate::support::files::{Scratch, stored};
@@ -89,7 +92,8 @@ fn the_first_help_names_what_carries_the_sensors_and_leaves_the_command_open() {
 #[test]
 fn options_stand_under_their_headings() {
     for (name, headings) in [
-        ("run stage", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"][..]),
+        ("run", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"][..]),
+        ("run stage", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
         ("run two-frame", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
         ("run turntable", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
         ("run vehicle", &["Place", "Attitude", "Sensor", "Course", "Keeping", "Output"]),
@@ -106,6 +110,25 @@ fn options_stand_under_their_headings() {
         let last = found.iter().rev().nth(1);
         assert_eq!(last, Some(&"Output:"), "{name}: {found:?}");
     }
+}
+
+/// The long options that a help lists.
+fn options(help: &str) -> BTreeSet<String> {
+    let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let long = lines.filter_map(|line| line.split([' ', ',']).find(|word| word.starts_with("--")));
+    long.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_help_of_a_run_lists_the_options_that_it_takes_without_a_platform() {
+    let [run, stage] = ["run", "run stage"].map(help);
+    assert!(run.contains("Without a platform it is a stage, with the options below"), "{run}");
+    assert_eq!(options(&run), options(&stage));
+    assert!(options(&run).len() > 20, "{run}");
+    let place = |help: &str| help.find("\nPlace:\n").map(|at| help[at..].to_owned());
+    let listed = |help: &str| place(help)?.split_once("Examples:").map(|(all, _)| all.to_owned());
+    let (run, stage) = (listed(&run), listed(&stage));
+    assert!(run.is_some() && run.map(|all| all.len()) == stage.map(|all| all.len()));
 }
 
 /// A folder with what examples name.
@@ -172,6 +195,82 @@ fn completions_of_every_shell_know_commands_and_options() {
         }
     }
     assert_misuse(&["completions", "sh"], "sh");
+}
+
+/// What bash completes behind these words, of which the last one is begun.
+#[cfg(unix)]
+fn completed(scratch: &Scratch, line: &[&str]) -> BTreeSet<String> {
+    let before = line.len() - 1;
+    let script = format!(
+        "source '{}'; COMP_WORDS=(\"$@\"); COMP_CWORD={before}; \
+         _meridian meridian '{}' '{}' 2>/dev/null; printf '%s\\n' \"${{COMPREPLY[@]}}\"",
+        scratch.path("meridian.bash"),
+        line[before],
+        line[before - 1]
+    );
+    let output = Command::new("bash").args(["-c", &script, "bash"]).args(line).output();
+    text(&output.expect("there is bash").stdout).lines().map(str::to_owned).collect()
+}
+
+/// A folder with the completions of bash.
+#[cfg(unix)]
+fn with_completions() -> Scratch {
+    let scratch = Scratch::new("completions");
+    scratch.with("meridian.bash", text(&meridian(&["completions", "bash"]).stdout));
+    scratch
+}
+
+#[cfg(unix)]
+#[test]
+fn a_shell_completes_the_options_of_a_run_with_and_without_a_platform() {
+    let scratch = with_completions();
+    for name in ["run", "run stage", "run two-frame", "run turntable", "run vehicle", "run spin"] {
+        let line = [&["meridian"][..], &words(name), &["--"]].concat();
+        assert_eq!(completed(&scratch, &line), options(&help(name)), "{name}");
+    }
+    let platforms = completed(&scratch, &["meridian", "run", ""]);
+    assert!(platforms.contains("turntable") && platforms.contains("--azimuth"), "{platforms:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_shell_completes_the_names_of_every_closed_list() {
+    let scratch = with_completions();
+    for name in ["run", "run stage", "run two-frame", "run turntable", "run vehicle", "run spin"] {
+        let listed = text(&meridian(&[&words(name)[..], &["--fault", "list"]].concat()).stdout);
+        let faults: BTreeSet<_> = listed.lines().chain(["list"]).map(str::to_owned).collect();
+        let line = [&["meridian"][..], &words(name), &["--fault", ""]].concat();
+        assert_eq!(completed(&scratch, &line), faults, "{name}");
+    }
+    for (line, some) in [
+        ("run --gyro", "fog-coarse"),
+        ("run --half", "west"),
+        ("replay --method", "siap"),
+        ("campaign --platform", "two-frame"),
+        ("campaign --class", "base-turn"),
+        ("emulate --board", "all"),
+    ] {
+        let line = [&["meridian"][..], &words(line), &[""]].concat();
+        assert!(completed(&scratch, &line).contains(some), "{line:?}");
+    }
+}
+
+#[test]
+fn a_manual_page_has_a_whole_title_and_the_usage_of_the_help() {
+    let version = text(&meridian(&["--version"]).stdout);
+    for name in COMMANDS {
+        let page = text(&meridian(&[&["man"][..], &words(name)].concat()).stdout);
+        let title = [&["meridian"][..], &words(name)].concat().join("-");
+        let title = format!(".TH {title} 1 \"\" \"{}\" \"Meridian manual\"", version.trim_end());
+        assert!(page.lines().any(|line| line == title), "{name}: {page}");
+        let synopsis = page.split("\n.SH ").find_map(|part| part.strip_prefix("SYNOPSIS\n"));
+        let synopsis = ["\\fB", "\\fR", "\\"]
+            .iter()
+            .fold(synopsis.expect("it has one").to_owned(), |text, mark| text.replace(mark, ""));
+        let help = help(name);
+        let usage = help.lines().find_map(|line| line.strip_prefix("Usage: "));
+        assert_eq!(Some(synopsis.as_str()), usage, "{name}");
+    }
 }
 
 #[test]

@@ -92,7 +92,8 @@ fn parted(text: &str, percent: usize) -> [String; 2] {
 
 #[test]
 fn a_campaign_prints_the_tables_of_the_runs_that_were_done() {
-    for (name, table) in [("spin", "RMS errors"), ("sokolov", "runs"), ("faults", "outcome")] {
+    for (name, table) in [("spin", "RMS errors"), ("sokolov", "runs"), ("faults", "greatest error")]
+    {
         let (code, printed, said) = interrupted(&format!("campaign {name} --runs 100000"));
         assert_eq!(code, Some(1), "{name}: {said}");
         assert!(printed.contains(table), "{name}: {printed}");

@@ -20,4 +20,5 @@ mod records;
 mod report;
 mod rotating_run;
 mod stops_run;
+mod terminal;
 mod verbosity;

@@ -119,7 +119,7 @@ fn the_pages_of_simulated_runs_show_fits_within_error_bars_too() {
     let left = figure(&vehicle, "What the solution leaves of the vertical");
     let all = ["north", "east"].map(|axis| normalised(&series(&left, axis))).concat();
     assert!(all.iter().all(|z| z.abs() < 4.5), "{all:?}");
-    let kept = series(&figure(&vehicle, "Azimuth as it was kept"), "±1σ");
+    let kept = series(&figure(&vehicle, "Azimuth as it was kept"), "kept ±1σ");
     assert!(kept.len() > 50, "a minute, a point a second");
 }
 

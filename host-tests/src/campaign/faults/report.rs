@@ -8,7 +8,7 @@ use std::fmt::Display;
 use super::{Row, count, rows};
 use crate::campaign::columns::Columns;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
-use crate::report::Report;
+use crate::report::{Part, Report};
 
 /// Every fault of one platform or of all with every seed.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -33,9 +33,17 @@ fn platforms(asked: &Asked) -> Vec<Platform> {
     asked.platform.map_or_else(|| Platform::ALL.to_vec(), |platform| vec![platform])
 }
 
-/// What came of every fault on every platform.
+/// What came of all faults together, of those that did what no fault may, and of each.
 fn report(rows: &[Row]) -> Report {
-    let table = Columns::of("Faults", rows)
+    let bad: Vec<&Row> = rows.iter().filter(|row| row.is_bad()).collect();
+    let bad = table("Wrong, failed or not noticed", &bad);
+    let all = table("Faults", &rows.iter().collect::<Vec<_>>());
+    Report::new("Every fault on every platform", [summary(rows), bad, all.detail()])
+}
+
+/// What came of these faults, one by one.
+fn table(title: &str, rows: &[&Row]) -> Part {
+    Columns::of(title, rows)
         .column("platform", |row| row.platform)
         .column("fault", |row| &row.fault)
         .column("outcome", |row| row.outcome)
@@ -49,8 +57,30 @@ fn report(rows: &[Row]) -> Report {
             let reason = row.reason.as_ref().map(|reason| format!(" → {reason}"));
             let first = row.noticed.as_deref().unwrap_or("nothing");
             format!("{first}{}", reason.unwrap_or_default())
-        });
-    Report::new("Every fault on every platform", [table.into()])
+        })
+        .into()
+}
+
+/// What came of all faults of each platform together.
+fn summary(rows: &[Row]) -> Part {
+    let platforms: Vec<&[Row]> = rows.chunk_by(|a, b| a.platform == b.platform).collect();
+    let ended = |outcome: &'static str| {
+        move |rows: &&[Row]| rows.iter().filter(|row| row.outcome == outcome).count()
+    };
+    Columns::of("What came of them", &platforms)
+        .column("platform", |rows| rows[0].platform)
+        .column("faults", |rows| rows.len())
+        .column("ok", ended("ok"))
+        .column("refused", ended("refused"))
+        .column("WRONG", ended("WRONG"))
+        .column("FAILED", ended("FAILED"))
+        .column("not noticed", |rows| {
+            rows.iter().filter(|row| row.is_noticed == Some(false)).count()
+        })
+        .found("greatest error, σ", 2, |rows| {
+            rows.iter().filter_map(|row| Some(row.error_sigmas?.abs())).reduce(f64::max)
+        })
+        .into()
 }
 
 fn or_dash(value: Option<impl Display>) -> String {

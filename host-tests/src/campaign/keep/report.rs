@@ -91,6 +91,7 @@ fn of_errors(rows: &[Row]) -> Part {
     };
     Columns::of("Table 1: what is kept after half an hour", &lines.collect::<Vec<_>>())
         .column("class", |(row, what, ..)| format!("{}: {what}", row.class))
+        .column("mount", |(row, ..)| &row.mount)
         .fixed("RMS, °", 3, |(_, _, spread, ..)| spread.rms_deg)
         .fixed("σ, °", 3, |(_, _, spread, ..)| spread.sigma_deg)
         .covered(|(_, _, spread, ..)| spread.coverage_percent)

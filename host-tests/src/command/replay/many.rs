@@ -107,7 +107,7 @@ pub fn replay(
     folders: &Folders,
     manner: Manner,
 ) -> Result<Answer, Failure> {
-    let progress = Progress::new(manner, sources.len() as u64, "recordings");
+    let progress = Progress::of_steps(manner, sources.len() as u64, "recordings");
     interrupt::heed();
     let shown = shown(&sources);
     let named = sources.into_iter().zip(shown);
@@ -206,7 +206,7 @@ impl Row {
     fn failed(file: &str, Failure { reason, warnings, .. }: Failure) -> Self {
         let nothing = Self::of(&Outcome::default());
         let object = Output::Object(json!({ "file": file }));
-        let answer = Answer { output: object, refusal: Some(reason), warnings };
+        let answer = Answer { output: object, refusal: Some(reason), is_told: false, warnings };
         Self { found: "failed".to_owned(), seconds: None, ..nothing.answered(file, answer) }
     }
 }

@@ -79,6 +79,7 @@ impl One<'_> {
     ) -> Result<Done, String> {
         let (header, body, truth) = recording.into_parts();
         let asked = self.options.asked();
+        self.progress.iter().for_each(|progress| progress.begin("computing"));
         let watch = |session: &Session| {
             self.progress.iter().for_each(|progress| progress.session(session));
         };

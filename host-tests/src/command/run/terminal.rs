@@ -20,6 +20,8 @@ use super::options::Inputs;
 const PARTS: u64 = 200;
 /// What is followed of a spinning body, which has no steps.
 pub(super) const FLIGHT: &str = "flight";
+/// What is followed before the first step.
+const START: &str = "start";
 /// Power-on, self-tests and level, s.
 const BEGIN_SECONDS: f64 = 10.0;
 
@@ -75,13 +77,13 @@ impl<'t> Terminal<'t> {
     }
 
     fn new((manner, steps, seconds): Watched, inputs: &'t Inputs) -> Self {
-        let (begin_s, stage) = match steps {
-            FLIGHT => (0.0, Stage::Flying),
-            _ => (BEGIN_SECONDS, Stage::Preparing),
+        let (begin_s, stage, words) = match steps {
+            FLIGHT => (0.0, Stage::Flying, FLIGHT),
+            _ => (BEGIN_SECONDS, Stage::Preparing, START),
         };
         let expected = ((begin_s + seconds) * 1e3) as u64;
         let (stage, stops, latest) = (Cell::new(stage), Cell::new(0), Cell::new(0));
-        let shown = Progress::new(manner, expected, steps);
+        let shown = Progress::new(manner, words);
         Self { inputs, manner, shown, steps, stage, stops, expected, latest }
     }
 
@@ -123,7 +125,7 @@ impl<'t> Terminal<'t> {
         let now = Instant::now().as_millis().min(self.expected - 1);
         let time = format!("{} of {} s", now / 1000, self.expected / 1000);
         let words = match self.stage.get() {
-            Stage::Preparing => format!("start, {time}"),
+            Stage::Preparing => format!("{START}, {time}"),
             Stage::Aligning(done, planned) => format!("{} {done}/{planned}, {time}", self.steps),
             Stage::Keeping => format!("keeping, {time}"),
             Stage::Flying => format!("{}, {time}", self.steps),

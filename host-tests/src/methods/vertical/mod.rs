@@ -7,6 +7,7 @@ pub mod errors;
 pub mod outcome;
 
 use std::io::{self, BufWriter, Write};
+use std::mem::discriminant;
 use std::path::Path;
 
 use orientation::attitude::{Gyro, Keeper, Report, Setting, Trust};
@@ -62,6 +63,8 @@ pub struct Replay {
     pub last: Report,
     /// The states in the order in which they were first met.
     pub states: Vec<Met>,
+    /// How far the level could be relied on, each from when on, s on the recording's clock.
+    pub phases: Vec<(f64, Trust)>,
     /// Turn about the vertical since the first sample, rad, whole turns included.
     pub turned: f64,
     /// Length of the recording, s.
@@ -83,9 +86,9 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let mut assumed = Vec::new();
     let latitude = latitude(header, asked, &mut assumed);
     let mut keeper = Keeper::new(&setting(header, latitude, period_s, &mut assumed));
-    let (last, moments, states) = (keeper.report(), Vec::new(), Vec::new());
+    let (last, (moments, states, phases)) = (keeper.report(), Default::default());
     let mut replay =
-        Replay { moments, last, states, turned: 0.0, seconds: 0.0, assumed, refusal: None };
+        Replay { moments, last, states, phases, turned: 0.0, seconds: 0.0, assumed, refusal: None };
     for (sample, row) in samples::samples(&rows, period_s).zip(rows.iter()) {
         keeper.push(&sample);
         replay.push(row.time_s, &keeper.report(), period_s);
@@ -157,6 +160,11 @@ impl Replay {
     fn push(&mut self, time_s: f64, report: &Report, period_s: f64) {
         let seconds = self.moments.last().map_or(period_s, |before| time_s - before.time_s);
         self.meet(name(report.state.trust), seconds);
+        let trust = report.state.trust;
+        if self.phases.last().is_none_or(|(_, before)| discriminant(before) != discriminant(&trust))
+        {
+            self.phases.push((time_s, trust));
+        }
         if let Some(before) =
             self.moments.last().filter(|_| self.last.state.trust != Trust::Starting)
         {
@@ -195,7 +203,7 @@ fn refusal(last: &Report, required_sigma: f64) -> Option<String> {
 }
 
 /// Reliability of the level in a word.
-fn name(trust: Trust) -> &'static str {
+pub(super) fn name(trust: Trust) -> &'static str {
     match trust {
         Trust::Starting => "starting",
         Trust::Level => "level",

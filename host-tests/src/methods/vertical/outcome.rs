@@ -1,16 +1,19 @@
 //! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
 
+use orientation::attitude::Trust;
 use orientation::math::quaternion::angles;
 
 use crate::cause;
 use crate::methods::asked::Question;
 use crate::methods::vertical::errors::{Errors, Off};
-use crate::methods::vertical::{Moment, Replay};
+use crate::methods::vertical::{Moment, Replay, name};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome, of_biases};
 use crate::output::{degrees, degrees_per_hour, in_degrees_per_hour, positive_zero, signed};
 use crate::recording::{Body, Truth};
-use crate::report::{Axis, Columns, Figure, Lines, Part, Point, Series, Style};
+use crate::report::{
+    Axis, Columns, Figure, Kind, Lane, Lines, Part, Point, Series, Stretch, Style, Timeline,
+};
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
@@ -59,7 +62,7 @@ impl Finished for Replay {
             None => vec![sigma(&self.moments)],
         };
         page.extend([level(&self.moments), biases(&self.moments)]);
-        page.into_iter().map(Part::from).collect()
+        page.into_iter().map(Part::from).chain([timeline(self).into()]).collect()
     }
 
     fn attitude(&self) -> Option<&[Moment]> {
@@ -115,7 +118,7 @@ fn inclination(off: &[Off]) -> Figure {
     let tilt = |axis: usize| move |off: &Off| (off.time_s, off.tilts_deg[axis]);
     let limits = |off: &Off| Point::within(off.time_s, 0.0, off.sigma_deg);
     let series = vec![
-        Series::of("±σ", Style::Band, off, limits),
+        Series::of("±1σ", Style::Band, off, limits),
         Series::of("about north of the level frame", Style::Line, off, tilt(1)),
         Series::of("about east of the level frame", Style::Line, off, tilt(0)),
         Series::of("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
@@ -134,6 +137,28 @@ fn sigma(moments: &[Moment]) -> Figure {
     // From what is known of them before the first sample, a half turn, down to arcseconds.
     let sigma = Axis::logarithmic("1σ", "°");
     Figure::new("How good pitch and roll are", ["time", "s"], sigma, series)
+}
+
+/// How far the level could be relied on when.
+fn timeline(replay: &Replay) -> Timeline {
+    let phases = &replay.phases;
+    let ends = phases.iter().skip(1).map(|(from_s, _)| *from_s);
+    let ends = ends.chain(replay.moments.last().map(|last| last.time_s));
+    let stretch = |((from_s, trust), to_s): (&(f64, Trust), f64)| {
+        let words = format!("{} for {:.1} s", name(*trust), to_s - from_s);
+        Some(Stretch { from_s: *from_s, to_s, kind: kind(*trust)?, words })
+    };
+    Timeline::of(vec![Lane::new("level", phases.iter().zip(ends).filter_map(stretch))])
+}
+
+/// The accelerometers correct the level, the gyros carry it alone, or it is lost; none before there is one.
+fn kind(trust: Trust) -> Option<Kind> {
+    match trust {
+        Trust::Level => Some(Kind::Used),
+        Trust::Coasting | Trust::FreeFall | Trust::NoForce => Some(Kind::Coasting),
+        Trust::RotationLost => Some(Kind::Wrong),
+        Trust::Starting => None,
+    }
 }
 
 fn level(moments: &[Moment]) -> Figure {
@@ -155,7 +180,7 @@ fn biases(moments: &[Moment]) -> Figure {
         let limits =
             move |moment: &Moment| Point::within(moment.time_s, bias(moment), sigma(moment));
         [
-            Series::of(&format!("{name} ±σ"), Style::Band, moments, limits),
+            Series::of(&format!("{name} ±1σ"), Style::Band, moments, limits),
             Series::of(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
         ]
     });

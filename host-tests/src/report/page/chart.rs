@@ -173,7 +173,8 @@ impl Frame {
         let line = |class: &str| format!("<path class=\"{class}\" d=\"{}\"/>", self.line(points));
         let dots = |class: &str| format!("<path class=\"{class}\" d=\"{}\"/>", self.dots(points));
         match style {
-            Style::Band => self.band(points),
+            Style::Band => self.band("band", points),
+            Style::WideBand => self.band("band wide", points),
             Style::Line => line("line"),
             Style::Dashed => line("line dashed"),
             Style::Dotted => line("line dotted"),
@@ -201,12 +202,12 @@ impl Frame {
     }
 
     /// The area between the limits.
-    fn band(&self, points: &[Option<Placed>]) -> String {
+    fn band(&self, class: &str, points: &[Option<Placed>]) -> String {
         let limits = points.iter().flatten().filter_map(|point| Some((point.x, point.limits?)));
         let side = |which: usize| {
             limits.clone().map(move |(x, limits)| self.at(x, self.cut(limits)[which]))
         };
-        format!("<path class=\"band\" d=\"{}Z\"/>", path(side(0).chain(side(1).rev())))
+        format!("<path class=\"{class}\" d=\"{}Z\"/>", path(side(0).chain(side(1).rev())))
     }
 
     /// A bar with ends through every point that has limits.
@@ -319,5 +320,6 @@ fn sample(style: Style) -> &'static str {
             "<path class=\"line\" d=\"M0 7H30\"/><path class=\"dots\" d=\"M15 7h0\"/>"
         }
         Style::Band => "<path class=\"band\" d=\"M0 1H30V13H0Z\"/>",
+        Style::WideBand => "<path class=\"band wide\" d=\"M0 1H30V13H0Z\"/>",
     }
 }

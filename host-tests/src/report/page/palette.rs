@@ -40,7 +40,7 @@ impl Palette {
     }
 }
 
-/// What a series is of: a quantity and the band of its σ have one colour.
+/// What a series is of: a quantity and the bands of its σ have one colour.
 fn quantity(name: &str) -> &str {
-    name.strip_suffix(" ±1σ").unwrap_or(name)
+    [" ±1σ", " ±3σ"].into_iter().find_map(|band| name.strip_suffix(band)).unwrap_or(name)
 }

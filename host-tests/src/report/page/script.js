@@ -25,7 +25,7 @@ for (const area of document.querySelectorAll(".area")) {
     let best = null;
     for (const point of series.points) {
       const [x, y] = [place(data.x, point[0]), place(data.y, point[1])];
-      if (!inside(x) || (series.style !== "band" && !inside(y))) continue;
+      if (!inside(x) || (!series.style.endsWith("band") && !inside(y))) continue;
       const along = (x - px) * box.width;
       const off = is_map ? Math.hypot(along, (1 - y - py) * box.height) : Math.abs(along);
       if (best === null || best.off > off) best = { series, point, x, off };
@@ -37,7 +37,7 @@ for (const area of document.querySelectorAll(".area")) {
     const dot = document.createElement("i");
     const words = document.createElement("span");
     row.className = found.series.class;
-    const value = found.series.style === "band" ? "" : `: ${shown(found.point[1], data.y)}`;
+    const value = found.series.style.endsWith("band") ? "" : `: ${shown(found.point[1], data.y)}`;
     words.textContent = found.series.name + value + limits(found.point, data.y);
     row.append(dot, words);
     return row;

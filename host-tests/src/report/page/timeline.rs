@@ -15,7 +15,7 @@ pub(super) fn timeline(timeline: &Timeline) -> String {
     let Some(span) = Span::of(&Axis::from(["time", "s"]), TICKS, times) else {
         return String::new();
     };
-    let lanes: String = timeline.lanes.iter().map(|lane| of_lane(lane, &span)).collect();
+    let lanes: String = timeline.filled().map(|lane| of_lane(lane, &span)).collect();
     let heading = element("figcaption", &timeline.title);
     let (legend, labels) = (legend(timeline), labels(&span));
     format!(

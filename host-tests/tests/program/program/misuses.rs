@@ -244,3 +244,82 @@ fn a_recording_in_the_place_of_a_command_is_told_which_command_takes_it() {
     }
     assert_misuse(&["plans"], "unrecognized subcommand");
 }
+
+/// The long options of a command, as its help lists them.
+fn options(command: &[&str]) -> Vec<String> {
+    let help = text(&meridian(&[command, &["--help"]].concat()).stdout);
+    let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let long = lines.filter_map(|line| line.split([' ', ',']).find(|word| word.starts_with("--")));
+    long.map(str::to_owned).collect()
+}
+
+#[test]
+fn every_option_that_lacks_its_last_letter_is_asked_for_whole() {
+    for command in [
+        &["run"][..],
+        &["run", "two-frame"],
+        &["run", "turntable"],
+        &["run", "vehicle"],
+        &["run", "spin"],
+        &["replay"],
+        &["plan"],
+        &["allan"],
+        &["campaign"],
+        &["emulate"],
+    ] {
+        let options = options(command);
+        assert!(options.len() > 3, "{command:?}");
+        for option in options {
+            let short = &option[..option.len() - 1];
+            let question = format!("--help`; did you mean `{option}`?");
+            assert_misuse(&[command, &[short]].concat(), &question);
+        }
+    }
+}
+
+#[test]
+fn a_mistyped_name_of_a_command_or_a_value_is_asked_for_as_it_is() {
+    for (typed, meant) in [
+        ("replya", "replay"),
+        ("camapign", "campaign"),
+        ("run stgae", "stage"),
+        ("run vehicel", "vehicle"),
+        ("run --gyro fog-corse", "fog-coarse"),
+        ("run --half eats", "east"),
+        ("run --fault encoder-slp", "encoder-slip"),
+        ("run vehicle --fault never-drive", "never-drives"),
+        ("replay x.csv --method verticle", "vertical"),
+        ("campaign disturbd", "disturbed"),
+        ("campaign disturbed --class base-trun", "base-turn"),
+        ("campaign faults --platform turntabel", "turntable"),
+        ("emulate --board vehicel", "vehicle"),
+        ("completions bsh", "bash"),
+        ("man run vehicel", "vehicle"),
+    ] {
+        let arguments: Vec<&str> = typed.split(' ').collect();
+        assert_misuse(&arguments, &format!("; did you mean `{meant}`?"));
+    }
+}
+
+#[test]
+fn what_resembles_nothing_is_asked_for_by_no_other_name() {
+    for typed in
+        ["fly", "run --criterion", "run --gyro laser", "run --fault nothing", "plan --gyro"]
+    {
+        let output = meridian(&typed.split(' ').collect::<Vec<_>>());
+        assert!(!text(&output.stderr).contains("did you mean"), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn an_option_of_another_platform_is_said_to_be_one_of_it() {
+    for (arguments, having) in [
+        ("--stops 3", "vehicle"),
+        ("vehicle --half east", "stage, two-frame"),
+        ("vehicle --flight-seconds 1", "spin"),
+        ("spin --stop-seconds 40", "vehicle"),
+    ] {
+        let arguments: Vec<&str> = ["run"].into_iter().chain(arguments.split(' ')).collect();
+        assert_misuse(&arguments, &format!("--help`; it is an option of run {having}"));
+    }
+}

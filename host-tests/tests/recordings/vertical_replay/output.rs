@@ -126,7 +126,7 @@ fn a_recording_is_not_written_over_and_no_output_over_another() {
 fn the_report_draws_errors_beside_their_sigma() {
     let [with, without] = ["imu-broad-24", "parked-swaying"]
         .map(|name| page(&["replay", &stored(name), "--method", "vertical"]).1);
-    let titles = ["Error of the vertical", "Error of the heading", "Biases of the gyros", "±σ"];
+    let titles = ["Error of the vertical", "Error of the heading", "Biases of the gyros", "±1σ"];
     assert_drawn(&with, &titles);
     assert!(!without.contains("Error of the vertical") && without.contains("Pitch and roll"));
 }

@@ -147,6 +147,7 @@ impl Refusal {
         match self {
             Self::AzimuthUnobservable => ": turn the stage over a longer arc",
             Self::TiltTooUncertain { .. } => "; turn a full circle or calibrate the accelerometer",
+            Self::TrendNotSeparable => ": turn a full circle",
             Self::Disturbed { .. } => ": keep the platform still",
             _ => "",
         }

@@ -194,7 +194,7 @@ fn without_unevenness(
 }
 
 /// The average of a stretch.
-fn nearest<'a>(conclusion: &'a Conclusion, stretch: &Stretch) -> Option<&'a Average> {
+pub(super) fn nearest<'a>(conclusion: &'a Conclusion, stretch: &Stretch) -> Option<&'a Average> {
     let speed = stretch.sense.signed(stretch.speed());
     let off = |average: &Average| (average.sense.signed(average.speed) - speed).abs();
     super::averages(conclusion).min_by(|a, b| off(a).total_cmp(&off(b)))

@@ -70,6 +70,8 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     let angle = || axis(&dwells);
     let also = if subtracts_sway(session) {
         ", which follows the noise of the sway from dwell to dwell"
+    } else if fit.budget.drift.0 > 0.0 {
+        ", which follows the gyro's drift from dwell to dwell"
     } else {
         ""
     };
@@ -209,7 +211,8 @@ fn milestone(session: &Session, dwells: &[Dwell]) -> Option<Milestone> {
     let (fit, found) = (conclusion.fit.as_ref()?, conclusion.verdict.as_ref().ok()?);
     let [azimuth_deg, sigma_deg, limit_deg] =
         [found.angle, found.sigma, fit.limit].map(Radians::degrees);
-    Some(Milestone { time_s: dwells.last()?.end().0, azimuth_deg, sigma_deg, limit_deg })
+    let (time_s, remark) = (dwells.last()?.end().0, None);
+    Some(Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark })
 }
 
 /// When the stage stood and when it turned.

@@ -133,18 +133,17 @@ impl Replay {
             .with("dwells", dwells)
     }
 
-    fn lines(&self, conclusion: &Conclusion) -> Lines {
-        let fit = conclusion.fit.as_ref();
+    /// How the fit was made.
+    fn lines(&self, conclusion: &Conclusion, fit: &Fit) -> Lines {
         let noise = self.walk_deg_sqrt_h(conclusion).map_or(OF_DWELLS.to_owned(), |noise| {
             format!("{noise:.6} °/√h ({})", self.noise_source())
         });
-        let residuals =
-            |fit: &Fit| format!("χ² {:.1} for {} degrees of freedom", fit.chi_square, fit.degrees);
+        let residuals = format!("χ² {:.1} for {} degrees of freedom", fit.chi_square, fit.degrees);
         let lines = Lines::new("Fit")
             .with("criterion", self.criterion_name())
-            .with("Earth rate is", fit.map_or("not fitted", earth_rate))
+            .with("Earth rate is", earth_rate(fit))
             .with("gyro noise N", noise)
-            .with_found("residuals", fit.map(residuals));
+            .with("residuals", residuals);
         self.autocompensation(conclusion).iter().fold(lines, positions)
     }
 
@@ -186,8 +185,8 @@ impl Finished for Replay {
         let seen = fit.filter(|fit| !fit.model.is_single_axis);
         let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
         let dwell_details = DwellDetails::all(&self.session, conclusion);
-        let parts =
-            vec![Part::from(self.lines(conclusion)).detail(), table(&dwell_details).detail()];
+        let lines = fit.map(|fit| Part::from(self.lines(conclusion, fit)));
+        let parts = lines.into_iter().chain([table(&dwell_details)]).map(Part::detail).collect();
         let dwells = self.session.dwells().iter().zip(&conclusion.disturbances);
         let kept: Vec<&Dwell> =
             dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();

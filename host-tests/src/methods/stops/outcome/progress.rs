@@ -15,6 +15,9 @@ use crate::report::{
 
 /// How many conclusions are drawn at most.
 const CONCLUSIONS: usize = 16;
+/// How many times as great σ is at least after a drive that is told, and the words.
+const DRIVEN: f64 = 1.01;
+const DROVE_ON: &str = "with the drive after the last stop";
 
 /// The way as the forces have it, fitted to the stops; none where no place but the first is known.
 pub(super) fn track(replay: &Replay, rows: &[ImuRow], found: &Found) -> Option<Figure> {
@@ -88,12 +91,15 @@ pub(super) fn convergence(
         let carried = Radians(wrapped(known.start.angle.0 + turned));
         let [azimuth_deg, sigma_deg, limit_deg] =
             [carried, known.azimuth.sigma, known.limit].map(Radians::degrees);
-        Milestone { time_s: replay.zero_s + end.0, azimuth_deg, sigma_deg, limit_deg }
+        let (time_s, remark) = (replay.zero_s + end.0, None);
+        Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark }
     };
     let mut all: Vec<Milestone> = known.iter().map(milestone).collect();
     // What was found at last knows the drive after the last stop, too.
     if let Some(last) = all.last_mut() {
+        let before = last.sigma_deg;
         [last.sigma_deg, last.limit_deg] = [found.azimuth.sigma, found.limit].map(Radians::degrees);
+        last.remark = (last.sigma_deg > DRIVEN * before).then_some(DROVE_ON);
     }
     figures("Azimuth at the end", &all, truth_deg)
 }
