@@ -2,6 +2,7 @@
 
 use orientation::alignment::budget::Source as Part;
 use orientation::alignment::site::Site;
+use orientation::units::Radians;
 
 use super::{Excluded, FAILED, Finished, FitDetails, Outcome};
 use crate::methods;
@@ -18,7 +19,7 @@ pub fn report(
     finished: &dyn Finished,
     figures: Vec<ReportPart>,
 ) -> Report {
-    let budget = outcome.fit.as_ref().and_then(shares);
+    let budget = outcome.fit.as_ref().and_then(|fit| shares(fit, outcome.sigma_deg));
     let mut parts = figures;
     add_lanes(&mut parts, outcome);
     parts.extend(budget.map(ReportPart::from));
@@ -163,26 +164,38 @@ fn assumed(outcome: &Outcome) -> Lines {
     })
 }
 
-/// The parts of σ with each part's share of the variance; none without a fit.
-fn shares(fit: &FitDetails) -> Option<Shares> {
+/// Part of σ that must be left beside the budget of the fit to be told.
+const BESIDE: f64 = 1e-3;
+
+/// The parts of σ with each part's share of the variance; none without a fit. The budget is that of maximum likelihood: what
+/// another criterion loses beside it is a part of its own.
+fn shares(fit: &FitDetails, sigma_deg: Option<f64>) -> Option<Shares> {
     let details = fit.budget.as_ref()?;
     let budget = &details.0;
-    let sigma = budget.sigma();
-    let share = |(source, part): (Part, orientation::units::Radians)| Share {
-        name: match fit.more_noise.filter(|_| source == Part::Noise) {
+    let all_deg = budget.sigma().degrees();
+    let sigma_deg = sigma_deg.unwrap_or(all_deg).max(all_deg);
+    let share = |name: String, part_deg: f64| Share {
+        name,
+        value: format!("{part_deg:.4}"),
+        percent: 100.0 * (part_deg / sigma_deg) * (part_deg / sigma_deg),
+    };
+    let of_source = |(source, part): (Part, Radians)| {
+        let name = match fit.more_noise.filter(|_| source == Part::Noise) {
             Some(more) => format!("{source}, {more}"),
             None => source.to_string(),
-        },
-        value: format!("{:.4}", part.degrees()),
-        percent: 100.0 * (part.0 / sigma.0) * (part.0 / sigma.0),
+        };
+        share(name, part.degrees())
     };
+    let lost_deg = (sigma_deg * sigma_deg - all_deg * all_deg).sqrt();
+    let lost = (sigma_deg > (1.0 + BESIDE) * all_deg)
+        .then(|| share("criterion, beside maximum likelihood".to_owned(), lost_deg));
     let dominant =
         budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
     Some(Shares {
         title: format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default()),
         head: ["source", "part, °", "share of the variance, %"].map(str::to_owned),
-        rows: details.shown().map(share).collect(),
-        sum: ["root sum of squares".to_owned(), format!("{:.4}", sigma.degrees())],
+        rows: details.shown().map(of_source).chain(lost).collect(),
+        sum: ["root sum of squares".to_owned(), format!("{sigma_deg:.4}")],
     })
 }
 

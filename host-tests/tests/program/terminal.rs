@@ -4,7 +4,7 @@
 use std::process::{Command, Stdio};
 
 use crate::support::files::stored;
-use crate::support::program::{code, meridian, object, text};
+use crate::support::program::{code, meridian, object, text, words};
 
 /// What a command shows on a terminal of its own, and its exit code.
 fn shown(arguments: &str) -> (i32, String) {
@@ -22,11 +22,6 @@ fn plain(shown: &str) -> String {
     let first = parts.next().unwrap_or_default().to_owned();
     let is_end = |letter: char| letter.is_ascii_alphabetic();
     parts.filter_map(|part| part.split_once(is_end)).fold(first, |all, (_, text)| all + text)
-}
-
-/// The words of a text, which may stand in lines of any width.
-fn words(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The states of the bar, one after the other: each begins with its share of the whole.

@@ -24,6 +24,11 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("it prints UTF-8")
 }
 
+/// The words of a text, which may stand in lines of any width.
+pub fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 pub fn object(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
 }

@@ -5,7 +5,7 @@ use std::process::Output;
 use serde_json::Value;
 
 use crate::support::files::{Scratch, recording, stored};
-use crate::support::program::{assert_drawn, meridian, object, page, reason, text};
+use crate::support::program::{assert_drawn, meridian, object, page, reason, text, words};
 
 use super::TRIALS;
 
@@ -83,8 +83,8 @@ fn inclination_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
-    let block = text(&replayed("imu-broad-06", &["-v"]).stdout);
-    for words in [
+    let block = words(&text(&replayed("imu-broad-06", &["-v"]).stdout));
+    for told in [
         "Pitch and roll kept in",
         "° (1σ)",
         "about the vertical since the beginning",
@@ -95,7 +95,7 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
         "gyro noise of a coarse unit",
         "gyro scale and axes of a coarse unit: 0.5 %",
     ] {
-        assert!(block.contains(words), "{words}: {block}");
+        assert!(block.contains(told), "{told}: {block}");
     }
     let known = text(&replayed("imu-broad-06", &["--latitude", "52.5", "-v"]).stdout);
     assert!(!known.contains("latitude 45°"), "{known}");

@@ -95,13 +95,17 @@ pub(super) fn convergence(
         Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark }
     };
     let mut all: Vec<Milestone> = known.iter().map(milestone).collect();
-    // What was found at last knows the drive after the last stop, too.
     if let Some(last) = all.last_mut() {
-        let before = last.sigma_deg;
-        [last.sigma_deg, last.limit_deg] = [found.azimuth.sigma, found.limit].map(Radians::degrees);
-        last.remark = (last.sigma_deg > DRIVEN * before).then_some(DROVE_ON);
+        drive_on(last, found);
     }
     figures("Azimuth at the end", &all, truth_deg)
+}
+
+/// What was found at last knows the drive after the last stop, too.
+fn drive_on(last: &mut Milestone, found: &Found) {
+    let before = last.sigma_deg;
+    [last.sigma_deg, last.limit_deg] = [found.azimuth.sigma, found.limit].map(Radians::degrees);
+    last.remark = (last.sigma_deg > DRIVEN * before).then_some(DROVE_ON);
 }
 
 /// What is known at a time; none where that is nothing.
