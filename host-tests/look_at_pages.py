@@ -26,6 +26,8 @@ from playwright.sync_api import sync_playwright
 RECORDINGS = Path(__file__).parent / "data" / "recordings"
 LARGEST = 500_000
 WIDTHS = {"wide": (1280, 900), "phone": (390, 844)}
+# A4 within margins of 10 mm, at 96 pixels an inch.
+PAPER = {"width": 718, "height": 1047}
 # The first of these that is there.
 BROWSERS = ["chromium", "chromium-browser", "google-chrome"]
 
@@ -180,6 +182,7 @@ def looked_at(browser, file, folder):
                 wrong += [f"{view}, unfolded: {words}" for words in page.evaluate(LOOK)]
             if scheme == "dark" and name == "wide":
                 page.emulate_media(media="print")
+                page.set_viewport_size(PAPER)
                 wrong += [f"print: {words}" for words in page.evaluate(LOOK)]
                 page.pdf(path=folder / f"{file.stem}.pdf", format="A4", print_background=True)
             context.close()

@@ -127,7 +127,7 @@ impl Frame {
             let [x, y] = [place(figure.x.scale, note.x), place(figure.y.scale, note.y)];
             let [left, top] = self.at(x, y).map(|at| at as f64 / SIZE * 100.0);
             let is_inside = (0.0..=100.0).contains(&left) && (0.0..=100.0).contains(&top);
-            let class = if left > 70.0 { "note left" } else { "note" };
+            let class = if left > 50.0 { "note left" } else { "note" };
             let text = escaped(&note.text);
             is_inside.then(|| {
                 format!(

@@ -14,7 +14,7 @@ use crate::report::{Figure, Kind, Lane, Milestone, Stretch, Timeline, convergenc
 /// How many conclusions are drawn.
 const CONCLUSIONS: usize = 24;
 /// What a further speed adds to what is solved for.
-const FURTHER_SPEED: &str = "a second speed: more is solved for";
+const FURTHER_SPEED: &str = "second speed: more unknowns";
 
 /// The azimuth of more and more of the recording, from where the platform turns the other way for the first time.
 pub(super) fn convergence(

@@ -17,7 +17,7 @@ use crate::report::{
 const CONCLUSIONS: usize = 16;
 /// How many times as great σ is at least after a drive that is told, and the words.
 const DRIVEN: f64 = 1.01;
-const DROVE_ON: &str = "with the drive after the last stop";
+const DROVE_ON: &str = "the drive after the last stop";
 
 /// The way as the forces have it, fitted to the stops; none where no place but the first is known.
 pub(super) fn track(replay: &Replay, rows: &[ImuRow], found: &Found) -> Option<Figure> {
