@@ -1,5 +1,7 @@
 //! How an azimuth came to stand, with its σ against the limit.
 
+use orientation::units::Radians;
+
 use crate::output::azimuth_error;
 
 use super::{Axis, BREAK, Figure, Note, Point, Series, Shape, Style};
@@ -17,6 +19,15 @@ pub struct Milestone {
     pub limit_deg: f64,
     /// Why σ is not less than before, where that is so.
     pub remark: Option<&'static str>,
+}
+
+impl Milestone {
+    /// An azimuth that was found until a time, s, its 1σ and its limit.
+    #[must_use]
+    pub fn new(time_s: f64, found: [Radians; 3]) -> Self {
+        let [azimuth_deg, sigma_deg, limit_deg] = found.map(Radians::degrees);
+        Self { time_s, azimuth_deg, sigma_deg, limit_deg, remark: None }
+    }
 }
 
 /// Multiples of the last σ up to which an azimuth is shown: before, it says nothing yet.

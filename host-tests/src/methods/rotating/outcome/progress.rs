@@ -2,7 +2,6 @@
 
 use orientation::alignment::rotating::average::Average;
 use orientation::alignment::rotating::turn;
-use orientation::units::Radians;
 
 use super::DISTURBED;
 use super::fold::nearest;
@@ -40,10 +39,7 @@ fn milestone(replay: &Replay, rows: &[RotatingRow]) -> Option<(Milestone, usize)
     let session = again_until(replay, rows)?;
     let conclusion = session.conclusion()?;
     let (fit, found) = (conclusion.fit.as_ref()?, conclusion.verdict.as_ref().ok()?);
-    let [azimuth_deg, sigma_deg, limit_deg] =
-        [found.angle, found.sigma, fit.limit].map(Radians::degrees);
-    let (time_s, remark) = (rows.last()?.time_s, None);
-    let found = Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark };
+    let found = Milestone::new(rows.last()?.time_s, [found.angle, found.sigma, fit.limit]);
     Some((found, conclusion.pairs.len()))
 }
 

@@ -5,7 +5,6 @@ use orientation::alignment::stepwise::conclusion::Conclusion;
 use orientation::alignment::stepwise::fit::{Fit, Prediction};
 use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
-use orientation::units::Radians;
 
 use crate::methods::stepwise::subtracts_sway;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
@@ -209,10 +208,7 @@ fn milestones(session: &Session) -> Vec<Milestone> {
 fn milestone(session: &Session, dwells: &[Dwell]) -> Option<Milestone> {
     let conclusion = Conclusion::of(&session.setting, dwells, session.procedure.criterion);
     let (fit, found) = (conclusion.fit.as_ref()?, conclusion.verdict.as_ref().ok()?);
-    let [azimuth_deg, sigma_deg, limit_deg] =
-        [found.angle, found.sigma, fit.limit].map(Radians::degrees);
-    let (time_s, remark) = (dwells.last()?.end().0, None);
-    Some(Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark })
+    Some(Milestone::new(dwells.last()?.end().0, [found.angle, found.sigma, fit.limit]))
 }
 
 /// When the stage stood and when it turned.

@@ -89,10 +89,7 @@ pub(super) fn convergence(
     let turned = found.azimuth.angle.0 - last.start.angle.0;
     let milestone = |(end, known): &(Seconds, Found)| {
         let carried = Radians(wrapped(known.start.angle.0 + turned));
-        let [azimuth_deg, sigma_deg, limit_deg] =
-            [carried, known.azimuth.sigma, known.limit].map(Radians::degrees);
-        let (time_s, remark) = (replay.zero_s + end.0, None);
-        Milestone { time_s, azimuth_deg, sigma_deg, limit_deg, remark }
+        Milestone::new(replay.zero_s + end.0, [carried, known.azimuth.sigma, known.limit])
     };
     let mut all: Vec<Milestone> = known.iter().map(milestone).collect();
     if let Some(last) = all.last_mut() {
