@@ -140,17 +140,12 @@ impl RunDetails {
         let lines = last_kept.iter().map(|last| Part::from(in_words(kept, last, later)));
         let board = board.map(|board| Part::from(board).detail());
         let is_lost = last_kept.is_some_and(|last| last.report.azimuth.is_none());
-        let takes_from_it = [(is_lost, LOST), (!is_lost && never_rested(kept), NEVER_RESTED)];
         Self {
             keys: keys
                 .with_found("alignments", of_alignments(&later.found))
                 .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
             facts: found_anew(&later.found).into_iter().collect(),
-            degradations: takes_from_it
-                .into_iter()
-                .filter(|(is_so, _)| *is_so)
-                .map(|(_, words)| words.to_owned())
-                .collect(),
+            degradations: is_lost.then(|| LOST.to_owned()).into_iter().collect(),
             parts: lines
                 .chain(alignments(&later.found).map(Part::from))
                 .chain(figures::all(kept).into_iter().map(Part::from))
@@ -185,13 +180,6 @@ fn faults(health: &Health) -> Option<String> {
 
 /// What takes from an azimuth that was kept.
 const LOST: &str = "the azimuth is not known any more at the end of what was kept";
-const NEVER_RESTED: &str = "what was kept may be off by more than its σ says: the base was never at rest, by which the \
-                            biases of its gyros are learnt";
-
-/// Whether there was no rest until an azimuth was known, nor at any time afterwards.
-fn never_rested(kept: &Kept) -> bool {
-    kept.last().is_some() && kept.points.iter().all(|point| !point.report.is_at_rest)
-}
 
 /// Of all devices together.
 fn sum(counts: &[u16]) -> u32 {

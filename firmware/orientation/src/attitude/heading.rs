@@ -2,7 +2,8 @@
 //!
 //! The azimuth is `A(t) = A₀ + ∫(ω_down + Ω_v) dt`, in any attitude and with the gyros' biases
 //! subtracted (Burov, section 2, storage of azimuth). Its variance is the sum of those of A₀, of
-//! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
+//! noise and biases since then (from the filter of the gyrovertical, or all that is stated of a bias
+//! which neither a rest nor an alignment has shown), of the gyro's scale error
 //! over the net turn, of a ramp of its bias, of rotation during gaps, and of the level's error, which
 //! turns the azimuth of a sloping axis.
 

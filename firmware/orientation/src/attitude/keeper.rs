@@ -118,6 +118,12 @@ impl Keeper {
         }
     }
 
+    /// Takes that the base has stood while an alignment ran, which found north: where it swayed and never rested, it is by this
+    /// that the biases of its gyros are learnt. To be called before the azimuth is handed over.
+    pub fn learn_from_sway(&mut self) {
+        self.vertical.learn_from_sway();
+    }
+
     /// Marks the present course as that of a time, to which an azimuth belongs that is being computed. The count of the turn's
     /// error is restarted, so that nothing that is learnt later corrects the turn before, unless it is still needed from the
     /// start on.

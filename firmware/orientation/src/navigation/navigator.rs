@@ -312,8 +312,12 @@ impl<'k> Navigator<'k> {
         let Some((at, azimuth)) = self.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
             let reason = Refusal::MovedDuringAlignment;
-            outlet(Output::Progress(Progress::Refused(reason)));
-        } else if let Some(carried) = self.keeper.carried(at, azimuth) {
+            return outlet(Output::Progress(Progress::Refused(reason)));
+        }
+        if !self.policy.knows_stops {
+            self.keeper.learn_from_sway();
+        }
+        if let Some(carried) = self.keeper.carried(at, azimuth) {
             self.align(carried, outlet);
         } else if self.is_behind(at) {
             outlet(Output::Progress(Progress::TooLate));

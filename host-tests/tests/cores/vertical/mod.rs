@@ -7,6 +7,7 @@ mod gaps;
 mod honesty;
 mod rest;
 mod slope;
+mod swaying;
 mod unseen;
 mod wheels;
 mod world;

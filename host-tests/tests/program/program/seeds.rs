@@ -131,3 +131,16 @@ fn a_flash_that_cannot_be_written_is_no_ok() {
     let output = meridian(&[&turning[..], &["--rate", "50", "--flash", &path, "--json"]].concat());
     assert_eq!((code(&output), &object(&output)["status"]), (1, &"failed".into()));
 }
+
+#[test]
+fn what_a_base_that_sways_from_power_on_keeps_is_within_its_sigma() {
+    for seed in ["3", "4", "6", "10"] {
+        for sway in ["0.05", "0.5"] {
+            let output = meridian(&["run", "stage", "--sway", sway, "--seed", seed, "--json"]);
+            let kept = &object(&output)["kept"];
+            let [sigmas, sigma] = ["greatest_sigmas", "sigma_deg"].map(|key| kept[key].as_f64());
+            assert!(sigmas.is_some_and(|sigmas| sigmas < 3.0), "{sway}° {seed}: {sigmas:?} σ");
+            assert!(sigma.is_some_and(|sigma| sigma < 6.0), "{sway}° {seed}: ± {sigma:?}°");
+        }
+    }
+}

@@ -210,16 +210,21 @@ impl Vertical {
             return;
         }
         let is_calm = beside < CALM_FORCE && dot(&rate, &rate) < CALM_RATE * CALM_RATE;
-        let [about_north, about_east] = tilt(&turned(&self.matrix, &force));
-        self.attitude.correct(&[about_north, about_east, 0.0]);
-        self.matrix = self.attitude.rough_matrix();
         let is_first = self.trust == Trust::Starting;
-        self.filter.relevel(if is_first && is_calm { START_TILT } else { MOVING_TILT });
+        self.level_by(&force, if is_first && is_calm { START_TILT } else { MOVING_TILT });
         if !is_calm {
             self.filter.motion.expect_motion();
         }
         self.is_lost = false;
         self.trust = Trust::Level;
+    }
+
+    /// Levels the body by this force on its axes, which shows the tilt with this 1σ, rad.
+    pub(super) fn level_by(&mut self, force: &Vector, sigma: f32) {
+        let [about_north, about_east] = tilt(&turned(&self.matrix, force));
+        self.attitude.correct(&[about_north, about_east, 0.0]);
+        self.matrix = self.attitude.rough_matrix();
+        self.filter.relevel(sigma);
     }
 
     /// Determines the reliability of the level.
@@ -254,6 +259,7 @@ impl Vertical {
             walk: window.walk().unwrap_or(self.expected.walk),
             acceleration: force.and_then(|force| self.acceleration(&force)),
         };
+        self.poise.push(&window);
         let was_rest = self.is_at_rest();
         match self.rest.push(means, &self.known()) {
             Found::Rest => self.stand(&window, was_rest),
@@ -279,7 +285,7 @@ impl Vertical {
     }
 
     /// Variance of the Earth rate that a bias may contain, (rad/s)².
-    fn hidden(&self) -> f32 {
+    pub(super) fn hidden(&self) -> f32 {
         if self.knows_north { 0.0 } else { self.unknown }
     }
 

@@ -17,6 +17,7 @@ mod floor;
 mod gap;
 mod judge;
 mod motion;
+mod poise;
 mod rest;
 mod stretch;
 mod sums;
@@ -25,6 +26,7 @@ use self::course::Course;
 use self::filter::{BIAS, Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
 use self::motion::GRAVITY;
+use self::poise::Poise;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
@@ -110,6 +112,8 @@ pub(super) struct Vertical {
     rest: ZeroVelocityDetector,
     /// Part of the present rest that was not used yet.
     rested: Rested,
+    /// Mean rates of a base that never rests.
+    poise: Poise,
     /// Values of the previous sample.
     before: Before,
     /// Motion since the heading was handed over.
@@ -277,10 +281,10 @@ impl Vertical {
         self.before.time.unwrap_or_default()
     }
 
-    /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
-    /// during gaps.
+    /// Variance of the rotation about the vertical since its error counts, rad²: noise and biases, and
+    /// rotation during gaps.
     pub(crate) fn turn_variance(&self) -> f32 {
-        self.filter.variance(TURN)
+        self.filter.variance(TURN) + self.unlearnt_variance()
     }
 
     /// Mean rates about the body's axes at rest, including the Earth rate; `None` in motion.
@@ -300,7 +304,7 @@ impl Vertical {
         self.axes[2] = [0.0; 3];
         self.filter.reset(BIAS + 2, sigma * sigma);
         self.filter.reset_axis(2, self.expected.scale[2]);
-        self.rested = Rested::default();
+        (self.rested, self.poise) = (Rested::default(), Poise::default());
         self.break_off();
         self.rest.exchange(2, self.expected.walk[2]);
     }

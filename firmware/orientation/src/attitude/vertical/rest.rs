@@ -236,6 +236,11 @@ impl ZeroVelocityDetector {
             })
     }
 
+    /// Mean force of the latest window, m/s².
+    pub(crate) fn latest_force(&self) -> Option<Vector> {
+        self.before.and_then(|means| means.force)
+    }
+
     /// Restarts the rotation beyond the biases: they were updated, or a motion ended.
     pub(crate) fn count_anew(&mut self) {
         (self.turned, self.seconds) = ([0.0; 3], 0.0);
