@@ -22,11 +22,11 @@ pub mod packed;
 pub mod planning;
 pub mod recording;
 mod reference;
+pub mod refused;
 pub mod report;
 mod setting;
 pub mod simulate;
 pub mod spectrum;
-pub mod unwritten;
 pub mod virtual_time;
 pub mod work;
 

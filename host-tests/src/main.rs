@@ -14,7 +14,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use host::interrupt;
 use host::new_file;
 use host::output::manner::{self, Manner};
-use host::output::say;
+use host::output::{printable, say};
 use host::report::Verbosity;
 
 use crate::command::allan::AllanOptions;
@@ -26,7 +26,7 @@ use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
 use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
-use crate::command::{Answer, Failure, OUTPUT, Output, examples, mistyped, print};
+use crate::command::{Answer, Failure, OUTPUT, Output, examples, mistyped, print, taken};
 
 /// Finds true north, with its standard deviation, from precise gyros on a stage, in two frames, on a turntable or in a
 /// vehicle; and the roll of a spinning body.
@@ -186,20 +186,19 @@ fn misuse(error: &clap::Error) -> ExitCode {
     if error.use_stderr() {
         return misused(&mistyped::message(error, &program()));
     }
-    // Nothing is to be done where even the help cannot be printed.
-    let _ = error.print();
-    ExitCode::SUCCESS
+    match taken(error.print()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            say_why(&reason, false);
+            ExitCode::from(1)
+        }
+    }
 }
 
 /// Says what is wrong with the options.
 fn misused(wrong: &str) -> ExitCode {
-    say(&one_line(&format!("error: {wrong}")));
+    say(&printable(&format!("error: {wrong}")));
     ExitCode::from(2)
-}
-
-/// The text without what would break its line: a name may hold anything.
-fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 /// Says why there is no result, as JSON too where that was asked for.
@@ -219,7 +218,7 @@ fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCod
 /// Says why there is no result, unless that stands in the output already and a person sees both.
 fn say_why(reason: &str, is_told: bool) {
     if !(is_told && manner::is_one_terminal()) {
-        say(&one_line(&format!("meridian: {reason}")));
+        say(&printable(&format!("meridian: {reason}")));
     }
 }
 
@@ -233,7 +232,7 @@ fn end(reason: &str, manner: Manner) {
 /// Says what there is to be said beside the result.
 fn warn(warnings: &[String], manner: Manner) {
     for warning in warnings.iter().filter(|_| manner.warns()) {
-        say(&one_line(&format!("warning: {warning}")));
+        say(&printable(&format!("warning: {warning}")));
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::unwritten;
+use crate::refused;
 
 /// The files beside their places, which go with the program.
 static BESIDE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -26,7 +26,7 @@ impl NewFile {
     /// # Errors
     /// Nothing can be written there; the words name it and say why.
     pub fn open(what: &'static str, path: &Path) -> Result<Self, String> {
-        let beside = beside(path).map_err(|error| unwritten::message(what, path, &error))?;
+        let beside = beside(path).map_err(|error| refused::unwritten(what, path, &error))?;
         if let (Some([_, beside]), Ok(mut all)) = (&beside, BESIDE.lock()) {
             all.push(beside.clone());
         }
@@ -42,7 +42,7 @@ impl NewFile {
     /// Why the file was not written, in words.
     #[must_use]
     pub fn unwritten(&self, error: &io::Error) -> String {
-        unwritten::message(self.what, &self.named, error)
+        refused::unwritten(self.what, &self.named, error)
     }
 
     /// Puts the file, which is whole, into its place.

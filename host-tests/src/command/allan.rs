@@ -9,6 +9,7 @@ use host::interrupt;
 use host::new_file::NewFile;
 use host::output::allan::Shown;
 use host::output::manner::Manner;
+use host::output::printable;
 use host::output::progress::Progress;
 use host::planning::suggestion;
 use host::recording::{self, RestRows, Warning};
@@ -38,7 +39,7 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let source = Source::of(&options.file);
     files::check(source.path(), &[page]).map_err(Failure::misuse)?;
     let page = files::opened("the report", options.report.as_ref())?;
-    let name = source.name();
+    let (name, shown) = (source.name(), source.shown());
     let mut warnings = Vec::new();
     let progress = Progress::new(manner, "reading");
     interrupt::end_input();
@@ -48,7 +49,7 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     rest.and_then(|rest| analyse(&name, &rest, page, manner))
         .map_err(|reason| {
             let failure = Failure { warnings: warnings.clone(), ..reason.into() };
-            failure.without_page(options.report.as_ref())
+            failure.without_page(options.report.as_ref(), &shown)
         })
         .map(|answer| answer.with_warnings(warnings))
 }
@@ -94,5 +95,5 @@ fn analyse(
 /// Why there is no noise, with what is to be known of the record.
 fn refusal(name: &str, rest: &Rest, reason: &FitError) -> String {
     let reasons = [vec![reason.to_string()], rest.notes()].concat().join("; ");
-    format!("{name}: column {}: {reasons}", rest.column)
+    printable(&format!("{name}: column {}: {reasons}", rest.column))
 }

@@ -15,8 +15,8 @@ pub mod shell;
 mod source;
 pub mod stated;
 
-use std::io::{IsTerminal as _, Write};
-use std::path::PathBuf;
+use std::io::{self, IsTerminal as _, Write};
+use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use host::angle::Quantity;
@@ -24,6 +24,7 @@ use host::new_file::NewFile;
 use host::outcome::{self, Finished, Outcome};
 use host::output::manner::Manner;
 use host::recording::{Body, Truth};
+use host::refused;
 use host::report::{Look, Report, Verbosity};
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
@@ -81,10 +82,9 @@ impl Failure {
         Self { reason, warnings: Vec::new(), is_misuse: true }
     }
 
-    /// The failure, which leaves nothing that a page could show, where one was asked for.
-    fn without_page(mut self, report: Option<&PathBuf>) -> Self {
-        let reason = &self.reason;
-        let no_page = report.map(|_| format!("--report: there is no page: {reason}"));
+    /// The failure, which leaves nothing of this recording that a page could show, where one was asked for.
+    fn without_page(mut self, report: Option<&PathBuf>, recording: &str) -> Self {
+        let no_page = report.map(|_| format!("{recording}: there is no page for --report"));
         self.warnings.extend(no_page);
         self
     }
@@ -203,7 +203,7 @@ fn as_text(report: &Report, verbosity: Verbosity) -> String {
 fn is_coloured() -> bool {
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let is_plain = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
-    std::io::stdout().is_terminal() && !is_set("NO_COLOR") && !is_plain
+    io::stdout().is_terminal() && !is_set("NO_COLOR") && !is_plain
 }
 
 /// A finished analysis, ready to be shown.
@@ -302,8 +302,15 @@ pub fn print(output: &str) -> Result<(), String> {
     if output.is_empty() {
         return Ok(());
     }
-    match writeln!(std::io::stdout(), "{output}") {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+    taken(writeln!(io::stdout(), "{output}"))
+}
+
+/// Whether standard output took all that was written to it; one that is closed by what reads it wants no more.
+pub fn taken(written: io::Result<()>) -> Result<(), String> {
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(refused::unwritten("the result", Path::new("standard output"), &error))
+        }
         _ => Ok(()),
     }
 }

@@ -5,8 +5,10 @@ use std::io::{self, BufRead, BufReader, Cursor, Read, stdin};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
+use host::output::printable;
 use host::output::progress::Progress;
 use host::recording::inputs;
+use host::refused;
 
 /// The name of standard input on the command line.
 const INPUT: &str = "-";
@@ -53,7 +55,12 @@ impl Source {
         Ok(all)
     }
 
-    /// What texts and objects call it.
+    /// What texts call it: its name, which may hold anything, as a terminal can show it.
+    pub fn shown(&self) -> String {
+        printable(&self.name())
+    }
+
+    /// What objects call it.
     pub fn name(&self) -> String {
         match self {
             Self::Input => "standard input".to_owned(),
@@ -97,7 +104,7 @@ impl Source {
 
 /// The recordings of a folder, but not of those in it.
 fn in_folder(folder: &Path) -> Result<Vec<Source>, String> {
-    let failed = |error: io::Error| format!("{}: {error}", folder.display());
+    let failed = |error: io::Error| refused::named(&folder.display().to_string(), &error);
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         paths.push(entry.map_err(failed)?.path());

@@ -28,6 +28,7 @@ use self::collect::Collected;
 use self::jobs::{JOBS, Job};
 use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
+use crate::refused;
 use crate::work::Follower;
 
 /// Longest time for an image to run: a hundred times what is usual, and never for ever.
@@ -108,7 +109,7 @@ pub fn emulate(
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+    fs::read(path).map_err(|error| refused::named(&path.display().to_string(), &error))
 }
 
 /// Runs the image `emulator`.

@@ -7,6 +7,8 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::refused;
+
 /// The emulator.
 pub const PROGRAM: &str = "qemu-system-arm";
 
@@ -27,7 +29,7 @@ pub fn require() -> Result<(), String> {
     let quiet = command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null());
     match quiet.stderr(Stdio::null()).status() {
         Ok(status) if status.success() => Ok(()),
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(format!("{PROGRAM}: {error}")),
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(refused::named(PROGRAM, &error)),
         _ => Err(format!(
             "{PROGRAM} is not installed: install the package qemu-system-arm (Debian, Ubuntu) or qemu"
         )),
@@ -60,7 +62,7 @@ pub fn watch(
     mut take: impl FnMut(&[u8]) -> Result<(), String>,
 ) -> Result<ExitStatus, String> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let failed = |error| format!("{name}: {error}");
+    let failed = |error| refused::named(&name, &error);
     let end = Instant::now() + limit;
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(failed)?;
     let mut running = Running(child);

@@ -11,7 +11,7 @@ use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use simulated::flash::{BYTES, Flash};
 
-use crate::unwritten;
+use crate::refused;
 
 /// The flash in a file; an erased one where there is no such file yet.
 ///
@@ -20,9 +20,13 @@ use crate::unwritten;
 pub fn load(path: &Path) -> Result<Flash, String> {
     match File::open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(Flash::default()),
-        Err(error) => Err(format!("{}: {error}", path.display())),
+        Err(error) => Err(refused::named(&path.display().to_string(), &error)),
         Ok(file) => read(file).map(Flash::holding).map_err(|error| {
-            format!("{}: no flash of a board, or damaged ({error})", path.display())
+            format!(
+                "{}: no flash of a board, or damaged ({})",
+                path.display(),
+                refused::cause(&error)
+            )
         }),
     }
 }
@@ -55,5 +59,5 @@ pub fn save(path: &Path, flash: &Flash) -> Result<(), String> {
         file.finish()?.sync_all()?;
         fs::rename(&beside, path)
     };
-    write().map_err(|error| unwritten::message("the flash", path, &error))
+    write().map_err(|error| refused::unwritten("the flash", path, &error))
 }

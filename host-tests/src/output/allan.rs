@@ -6,7 +6,7 @@ use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde_json::{Value, json};
 
-use super::degrees_per_hour;
+use super::{degrees_per_hour, printable};
 use crate::allan::analysis::{Analysis, Confident};
 use crate::allan::rest::Rest;
 use crate::outcome::SCHEMA;
@@ -95,7 +95,7 @@ impl Shown<'_> {
         let analysis = self.analysis.as_ref();
         let parts = analysis.into_iter().flat_map(page::parts);
         let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
-        let title = format!("{found} {} in {}", self.rest.column, self.name);
+        let title = printable(&format!("{found} {} in {}", self.rest.column, self.name));
         Report::new(title, parts).headed(self.summary())
     }
 

@@ -20,6 +20,18 @@ pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
+/// A text in one line for a terminal: what would break the line, hide a part of it or steer the terminal, as names of files
+/// may, stands there escaped.
+#[must_use]
+pub fn printable(text: &str) -> String {
+    let is_hidden = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}');
+    let escaped = |c: char| match is_hidden(c) {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(escaped).collect()
+}
+
 /// A time of the instrument's clock, s from power-on.
 #[must_use]
 pub fn seconds(at: Instant) -> f64 {

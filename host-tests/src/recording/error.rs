@@ -5,7 +5,8 @@ use std::io::ErrorKind;
 use thiserror::Error;
 
 use super::problem::Problem;
-use super::quote::{printable, shortened};
+use super::quote::shortened;
+use crate::output::printable;
 
 /// Why a recording was not read. Its text is one line, whatever the file holds:
 /// `walk.csv: line 812, column g_rad_s: "abc" is not a number; …`.

@@ -5,11 +5,12 @@
 
 use super::checksum::Checksum;
 use super::error::Fault;
-use super::number::{number, pair};
+use super::number::{angle, number, pair};
 use super::problem::Problem;
 use super::range::Range;
 use super::resemblance::resembled;
 use super::warning::{self, About, Warning};
+use crate::angle::Quantity;
 
 /// What the header says about the site and the instrument. A key that is absent is `None`: a noise
 /// coefficient is then estimated, an uncertainty taken as zero.
@@ -85,7 +86,9 @@ pub(super) const STOPS: &str = "stops_s";
 /// The key of their displacements.
 pub(super) const DISPLACEMENTS: &str = "displacements_north_east_m";
 /// Keys whose value is not one number.
-const WORDS: [&str; 6] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS, SESSION];
+const WORDS: [&str; 7] = ["kind", LATITUDE, PAIR, "sensor", STOPS, DISPLACEMENTS, SESSION];
+/// The key of the latitude, which may stand in degrees, minutes and seconds.
+const LATITUDE: &str = "latitude_deg";
 pub(super) const SESSION: &str = "session";
 const PAIR: &str = "g_sensitivity_deg_h_g";
 /// Keys of the truth that are looked at.
@@ -94,13 +97,13 @@ const TRUTHS: [&str; 2] = ["truth_azimuth_deg", "truth_start_azimuth_deg"];
 /// Larger than any gyro that could find north, small enough that squares stay finite.
 const LARGEST: f64 = 1e6;
 const SIGNED: Range = Range::symmetric(LARGEST, " °/h/g");
-const AZIMUTH: Range = Range::symmetric(360.0, "°");
+const AZIMUTHS: Range = Range::symmetric(360.0, "°");
+const LATITUDES: Range = Range::symmetric(90.0, "°");
 
 /// A key whose value is one number: its name, its range, and where it goes.
 type NumberKey = (&'static str, Range, fn(&mut Header) -> &mut Option<f64>);
 
-static NUMBERS: [NumberKey; 11] = [
-    ("latitude_deg", Range::symmetric(90.0, "°"), |h| &mut h.latitude_deg),
+static NUMBERS: [NumberKey; 10] = [
     ("rate_hz", Range::above_zero(1e6, " Hz"), |h| &mut h.rate_hz),
     ("gyro_N_deg_sqrt_h", Range::from_zero(LARGEST, " °/√h"), |h| &mut h.gyro_n_deg_sqrt_h),
     ("gyro_B_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_b_deg_h),
@@ -229,6 +232,8 @@ impl Collector {
         for (name, range, slot) in &NUMBERS {
             *slot(&mut header) = self.parse(name, |text| number(text, range))?;
         }
+        header.latitude_deg =
+            self.parse(LATITUDE, |text| angle(text, Quantity::Latitude, &LATITUDES))?;
         header.g_sensitivity_deg_h_g =
             self.parse(PAIR, |text| pair(text, &SIGNED, Problem::NotAPair))?;
         header.sensor = self.parse("sensor", sensor)?;
@@ -289,7 +294,7 @@ fn sensor(text: &str) -> Result<Sensor, Problem> {
 
 /// The true azimuth; a truth may be `nan`, which says that it is not known.
 fn azimuth(text: &str) -> Result<Option<f64>, Problem> {
-    match number(text, &AZIMUTH) {
+    match angle(text, Quantity::Azimuth, &AZIMUTHS) {
         Ok(value) => Ok(Some(value)),
         Err(Problem::Nan(_)) => Ok(None),
         Err(problem) => Err(problem),

@@ -54,6 +54,7 @@ pub use spacing::{Gap, MOST_GAPS, Spacing, Unsteady};
 pub use stops::displacements;
 pub use warning::{About, Warning};
 
+use crate::output::printable;
 use begun::Begun;
 use error::Fault;
 use lines::Lines;
@@ -88,7 +89,7 @@ impl Recording {
 /// Warnings in words, a line each, of what was read from this file.
 #[must_use]
 pub fn warning_lines(warnings: &[Warning], file: &Path) -> Vec<String> {
-    let file = quote::printable(&file.display().to_string());
+    let file = printable(&file.display().to_string());
     warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
 }
 

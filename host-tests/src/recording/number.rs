@@ -2,6 +2,7 @@
 
 use super::problem::Problem;
 use super::range::Range;
+use crate::angle::{self, Quantity};
 
 /// Reads a number inside the range; what is none is looked at once more for what is wrong.
 pub(super) fn number(text: &str, range: &'static Range) -> Result<f64, Problem> {
@@ -20,6 +21,18 @@ fn explained(text: &str, range: &'static Range) -> Result<f64, Problem> {
         Ok(_) => Err(Problem::OutOfRange(text.to_owned(), range)),
         Err(_) if text.is_empty() => Err(Problem::EmptyField),
         Err(_) => Err(Problem::NotANumber(text.to_owned())),
+    }
+}
+
+/// Reads an angle inside the range, in degrees, or in degrees, minutes and seconds, as the command line takes it.
+pub(super) fn angle(text: &str, of: Quantity, range: &'static Range) -> Result<f64, Problem> {
+    match number(text, range) {
+        Err(Problem::NotANumber(text)) => match angle::degrees(&text, of) {
+            Ok(degrees) if range.contains(degrees) => Ok(degrees),
+            Ok(_) => Err(Problem::OutOfRange(text, range)),
+            Err(why) => Err(Problem::NotAnAngle(text, why)),
+        },
+        read => read,
     }
 }
 

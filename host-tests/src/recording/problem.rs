@@ -6,8 +6,11 @@ use thiserror::Error;
 
 use super::KINDS;
 use super::inputs::VERSION;
-use super::quote::{printable, quoted, shortened};
+use super::quote::{quoted, shortened};
 use super::range::{Range, Short};
+use crate::angle::AngleError;
+use crate::output::printable;
+use crate::refused;
 
 /// What is wrong with a recording. Times are in seconds, displacements in metres.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -87,6 +90,9 @@ pub enum Problem {
     /// The text is not a number.
     #[error("{} is not a number", quoted(.0))]
     NotANumber(String),
+    /// The text is not an angle, and why.
+    #[error("{}: {}", quoted(.0), .1)]
+    NotAnAngle(String, AngleError),
     /// The text is `nan` where only a `truth_` column may hold it.
     #[error("{} is allowed only in truth_ columns", quoted(.0))]
     Nan(String),
@@ -210,7 +216,7 @@ fn system(kind: io::ErrorKind, text: &str) -> String {
         E::UnexpectedEof | E::InvalidData | E::InvalidInput => {
             format!("the compressed data are damaged or cut short ({text}); copy the file again")
         }
-        _ => format!("cannot be read: {text}"),
+        _ => format!("cannot be read: {}", refused::words(kind, &text)),
     }
 }
 

@@ -1,13 +1,9 @@
 //! Text of a file in a message: in one line, and no longer than the message bears.
 
+use crate::output::printable;
+
 /// Longest excerpt of a recording that a message quotes, in characters.
 const EXCERPT: usize = 40;
-
-/// Replaces what would break the message's line or hide part of it.
-pub(super) fn printable(text: &str) -> String {
-    let hides = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}');
-    text.chars().map(|c| if hides(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
 
 /// The text in one line and no longer than a message bears.
 pub(super) fn shortened(text: &str) -> String {

@@ -14,7 +14,7 @@ mod text;
 
 use std::path::Path;
 
-use crate::unwritten;
+use crate::refused;
 
 pub use self::columns::Columns;
 pub use self::convergence::{Milestone, convergence};
@@ -175,6 +175,6 @@ impl Report {
     /// The file and what the system says.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         std::fs::write(path, page::document(self))
-            .map_err(|error| unwritten::message("the report", path, &error))
+            .map_err(|error| refused::unwritten("the report", path, &error))
     }
 }

@@ -17,6 +17,7 @@ mod numbers;
 mod program;
 mod realigned;
 mod records;
+mod refused;
 mod report;
 mod rotating_run;
 mod stops_run;

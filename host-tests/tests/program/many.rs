@@ -7,7 +7,9 @@ use std::process::{Output, Stdio};
 use serde_json::Value;
 
 use crate::support::files::{Scratch, stored, unpacked};
-use crate::support::program::{assert_misuse, code, command, meridian, object, reason, text};
+use crate::support::program::{
+    assert_misuse, code, command, meridian, object, reason, text, words,
+};
 
 /// Recordings of all kinds, with results and without.
 const NAMES: [&str; 6] = [
@@ -142,19 +144,60 @@ fn recordings_of_one_name_are_told_apart_by_their_folders() {
     }
 }
 
+/// How often words stand in all that a command printed.
+fn told(output: &Output, what: &str) -> usize {
+    let printed = [&output.stdout, &output.stderr].map(|bytes| words(&text(bytes))).join(" ");
+    printed.matches(what).count()
+}
+
 #[test]
-fn a_recording_that_has_no_page_is_named_with_the_reason() {
+fn a_recording_that_has_no_page_is_named_and_the_reason_is_told_once() {
     let scratch = Scratch::new("no-page");
     let (empty, good) = (scratch.with("empty.csv", ""), stored("stepwise-circle"));
     let (pages, page) = (scratch.path("pages"), scratch.path("page.html"));
-    let why = format!("warning: --report: there is no page: {empty}: the file is empty");
     let many = meridian(&["replay", &empty, &good, "--report", &pages]);
     let [one, noise] = ["replay", "allan"].map(|of| meridian(&[of, &empty, "--report", &page]));
+    let warning = format!("warning: {empty}: there is no page for --report");
     for output in [&many, &one, &noise] {
-        assert!(text(&output.stderr).contains(&why), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains(&warning), "{}", text(&output.stderr));
+        assert_eq!(told(output, "the file is empty"), 1, "{}", text(&output.stderr));
     }
     assert_eq!(fs::read_dir(&pages).expect("it is there").count(), 1);
     assert!(!Path::new(&page).exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_name_that_would_steer_the_terminal_is_shown_escaped_and_stands_in_objects_as_it_is() {
+    let scratch = Scratch::new("steering");
+    let name = "red\u{1b}[31m\u{7}\nline.csv.gz";
+    let (good, bad) = (scratch.path(name), scratch.with("bad\u{1b}[0m.csv", "no recording"));
+    fs::copy(stored("stepwise-circle"), &good).expect("it is ours");
+    let (folder, report) = (scratch.folder().display().to_string(), scratch.path("page.html"));
+    let pages = scratch.path("pages");
+    let commands: [&[&str]; 9] = [
+        &["replay", &good],
+        &["replay", &good, "--report", &report],
+        &["replay", &bad],
+        &["allan", &bad, "--report", &report],
+        &["allan", &good, "--column", "g_rad_s"],
+        &["replay", &folder],
+        &["replay", &folder, "-q"],
+        &["replay", &folder, "--report", &pages],
+        &["log", &bad, &good],
+    ];
+    for command in commands {
+        let output = meridian(command);
+        for printed in [&output.stdout, &output.stderr].map(|bytes| text(bytes)) {
+            let is_hidden = |c: char| c.is_control() && c != '\n';
+            assert!(!printed.contains(is_hidden), "{command:?}: {printed:?}");
+            assert!(!printed.lines().any(|line| line.starts_with("line.csv")), "{command:?}");
+        }
+        let escaped =
+            if command.contains(&&*bad) { "bad\\u{1b}[0m" } else { "red\\u{1b}[31m\\u{7}\\nline" };
+        assert!(told(&output, escaped) > 0, "{command:?}: {}", text(&output.stdout));
+    }
+    assert_eq!(object(&meridian(&["replay", &good, "--json"]))["file"], good.as_str());
 }
 
 #[test]

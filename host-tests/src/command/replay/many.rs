@@ -10,9 +10,9 @@ use host::new_file::NewFile;
 use host::outcome::{Outcome, SCHEMA};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
-use host::output::{azimuth as in_circle, signed};
+use host::output::{azimuth as in_circle, printable, signed};
+use host::refused;
 use host::report::{Columns, Lines, Look, Report, Verbosity};
-use host::unwritten;
 use host::work::side_by_side;
 use serde_json::{Value, json};
 
@@ -53,7 +53,7 @@ impl Folders {
             let Some(folder) = folder else { continue };
             check(option, folder, sources).map_err(Failure::misuse)?;
             fs::create_dir_all(folder)
-                .map_err(|error| unwritten::message(what, &folder.join("."), &error))?;
+                .map_err(|error| refused::unwritten(what, &folder.join("."), &error))?;
         }
         Ok(Self([pages, attitudes].map(Option::<&PathBuf>::cloned)))
     }
@@ -131,8 +131,8 @@ pub fn replay(
 /// What the table calls recordings: the name of the file where no other file has it, else its path.
 fn shown(sources: &[Source]) -> Vec<String> {
     let name = |source: &Source| match source.path().and_then(Path::file_name) {
-        Some(name) => name.to_string_lossy().into_owned(),
-        None => source.name(),
+        Some(name) => printable(&name.to_string_lossy()),
+        None => source.shown(),
     };
     let mut times = BTreeMap::new();
     for source in sources {
@@ -140,7 +140,7 @@ fn shown(sources: &[Source]) -> Vec<String> {
     }
     let is_alone = |name: &String| times.get(name) == Some(&1);
     let shown =
-        |source: &Source| Some(name(source)).filter(is_alone).unwrap_or_else(|| source.name());
+        |source: &Source| Some(name(source)).filter(is_alone).unwrap_or_else(|| source.shown());
     sources.iter().map(shown).collect()
 }
 
@@ -170,8 +170,8 @@ fn row(one: &One<'_>, source: &Source, folders: &Folders) -> Row {
         Ok((row, answer))
     });
     match replayed {
-        Ok((row, answer)) => row.answered(&source.name(), answer),
-        Err(failure) => Row::failed(&source.name(), failure.without_page(folders.pages())),
+        Ok((row, answer)) => row.answered(&source.shown(), answer),
+        Err(failure) => Row::failed(source, failure.without_page(folders.pages(), &source.shown())),
     }
 }
 
@@ -203,11 +203,15 @@ impl Row {
     }
 
     /// The row of a recording that could not be replayed.
-    fn failed(file: &str, Failure { reason, warnings, .. }: Failure) -> Self {
+    fn failed(source: &Source, Failure { reason, warnings, .. }: Failure) -> Self {
         let nothing = Self::of(&Outcome::default());
-        let object = Output::Object(json!({ "file": file }));
+        let object = Output::Object(json!({ "file": source.name() }));
         let answer = Answer { output: object, refusal: Some(reason), is_told: false, warnings };
-        Self { found: "failed".to_owned(), seconds: None, ..nothing.answered(file, answer) }
+        Self {
+            found: "failed".to_owned(),
+            seconds: None,
+            ..nothing.answered(&source.shown(), answer)
+        }
     }
 }
 

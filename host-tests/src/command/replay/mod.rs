@@ -132,6 +132,7 @@ fn run_one(one: &One<'_>, source: &Source, manner: Manner) -> Result<Answer, Fai
     interrupt::end_input();
     let done = One { progress: Some(&progress), ..*one }.replay(source);
     progress.finish();
-    let done = done.map_err(|failure| failure.without_page(options.report.as_ref()))?;
+    let done =
+        done.map_err(|failure| failure.without_page(options.report.as_ref(), &source.shown()))?;
     Ok(done.answer([page, attitude], manner)?)
 }

@@ -33,7 +33,7 @@ pub struct One<'o> {
 
 /// What came of a recording.
 pub struct Done {
-    /// What texts and objects call the recording.
+    /// What texts call the recording.
     pub name: String,
     /// What was found.
     pub outcome: Outcome,
@@ -50,7 +50,7 @@ impl One<'_> {
     /// # Errors
     /// It cannot be read, or the options do not suit it.
     pub fn replay(&self, source: &Source) -> Result<Done, Failure> {
-        let name = source.name();
+        let name = source.shown();
         let unread = |error| recording::unread(&name, &error).message();
         let (reader, is_inputs) = source.open(self.progress).map_err(unread)?;
         if is_inputs {
@@ -58,7 +58,7 @@ impl One<'_> {
             let (header, mut lines) =
                 Reader::new(&name, reader).map_err(|error| error.to_string())?;
             let replayed = replay_lines(&header.given, &mut lines);
-            return Ok(again(name, replayed.map_err(|error| error.to_string())?));
+            return Ok(again(source, replayed.map_err(|error| error.to_string())?));
         }
         let recording = recording::read_from(&name, reader).map_err(|error| error.message())?;
         let method = self.options.method.unwrap_or_else(|| methods::usual(&recording));
@@ -66,17 +66,18 @@ impl One<'_> {
         check(self.stated, method).map_err(Failure::misuse)?;
         let warnings = recording.warning_lines(Path::new(&name));
         let failed = |reason: String| Failure { warnings: warnings.clone(), ..reason.into() };
-        let done = self.solve(name, method, recording).map_err(failed)?;
+        let done = self.solve(source, method, recording).map_err(failed)?;
         Ok(Done { warnings, ..done })
     }
 
     /// Replays what was read.
     fn solve(
         &self,
-        name: String,
+        source: &Source,
         method: &Method,
         recording: recording::Recording,
     ) -> Result<Done, String> {
+        let name = source.shown();
         let (header, body, truth) = recording.into_parts();
         let asked = self.options.asked();
         self.progress.iter().for_each(|progress| progress.begin("computing"));
@@ -96,7 +97,7 @@ impl One<'_> {
             Some(cause) => explained(&reason, outcome.remedy, &cause),
             None => reason,
         });
-        let outcome = Outcome { source: Some(Named::File(name.clone())), reason, ..outcome };
+        let outcome = Outcome { source: Some(Named::File(source.name())), reason, ..outcome };
         let outcome = match interruption {
             Some(why) => outcome.interrupted(why),
             None => outcome,
@@ -106,12 +107,12 @@ impl One<'_> {
 }
 
 /// What came of the inputs of a run.
-fn again(name: String, replayed: Replayed) -> Done {
+fn again(source: &Source, replayed: Replayed) -> Done {
     let Replayed { finished, body, done } = replayed;
     let details = RunDetails::of_inputs(&done);
     let Ended { truth, warning, .. } = done;
-    let outcome = finished.outcome(&truth).of_run(Named::File(name.clone()), details);
-    Done { name, outcome, warnings: Vec::from_iter(warning), finished, truth, body }
+    let outcome = finished.outcome(&truth).of_run(Named::File(source.name()), details);
+    Done { name: source.shown(), outcome, warnings: Vec::from_iter(warning), finished, truth, body }
 }
 
 impl Done {

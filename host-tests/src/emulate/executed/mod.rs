@@ -18,6 +18,7 @@ use execution::report::Report;
 use firmware::platform::Platform;
 use rayon::prelude::*;
 
+use crate::refused;
 use crate::work::Follower;
 
 /// Greatest distance of an azimuth from the truth, in its own σ.
@@ -169,7 +170,7 @@ fn report(
     command.current_dir(root()).arg(image).args(options.arguments(carrier)).arg("--while-stdin");
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     command.stderr(if shows_log { Stdio::inherit() } else { Stdio::piped() });
-    let failed = |error: io::Error| format!("{}: {error}", program.display());
+    let failed = |error: io::Error| refused::named(&program.display().to_string(), &error);
     let mut child = command.spawn().map_err(failed)?;
     let held_open = child.stdin.take();
     let output = child.wait_with_output().map_err(failed)?;

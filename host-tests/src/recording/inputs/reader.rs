@@ -12,11 +12,11 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::{Header, Line, VERSION};
+use crate::output::printable;
 use crate::recording::checksum::Checksum;
 use crate::recording::error::Fault;
 use crate::recording::lines::{self, Lines};
 use crate::recording::problem::Problem;
-use crate::recording::quote::printable;
 use crate::recording::{Place, ReadError};
 
 /// Latest time that is believed, µs: 35 years, which leaves room for what is reckoned with times.

@@ -195,6 +195,27 @@ fn numbers_at_the_ends_of_their_ranges_are_read() {
 }
 
 #[test]
+fn a_latitude_is_read_as_the_command_line_takes_it() {
+    for text in ["47.585", "47°35.1′", "47°35′06″", "47d35m6s", "47:35:06", "47:35:06N", "+47.585"]
+    {
+        let latitude = read(changed(STAGE, "52.0", text)).header.latitude_deg;
+        assert!(
+            latitude.is_some_and(|found| (found - 47.585).abs() < 1e-12),
+            "{text}: {latitude:?}"
+        );
+    }
+    assert_eq!(read(changed(STAGE, "52.0", "33°30′S")).header.latitude_deg, Some(-33.5));
+}
+
+#[test]
+fn a_true_azimuth_is_read_as_the_command_line_takes_it() {
+    for text in ["213.5", "213°30′", "213:30:00"] {
+        let truth = read(format!("# truth_azimuth_deg: {text}\n{STAGE}")).truth;
+        assert_eq!(truth.azimuth_deg, Some(213.5), "{text}");
+    }
+}
+
+#[test]
 fn without_a_rate_in_the_header_the_times_say_it() {
     let text = changed(STAGE, "# rate_hz: 50\n", "");
     assert_eq!(stage_rows(read(&text)).len(), 4);
