@@ -8,7 +8,7 @@ pub mod allan;
 pub mod angle;
 mod assumptions;
 pub mod campaign;
-mod cause;
+pub mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;

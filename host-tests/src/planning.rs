@@ -11,6 +11,8 @@ use orientation::units::{DEGREES_PER_RADIAN, RadiansPerSecond, Seconds};
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::output::significant;
+
 /// Shortest dwell that is planned, s.
 pub const SHORTEST: f64 = 1.0;
 /// Longest time that is planned for a wanted σ.
@@ -274,7 +276,8 @@ pub fn suggestion(noise: GyroNoise) -> Option<(Planned, String)> {
     let Planned { burov, optimum, .. } = &planned;
     let burov = burov.map(|burov| {
         let OfBurov { positions, rate_error_deg_h: error, .. } = burov;
-        format!("; Burov's autocompensation: {positions} positions, rate error {error:.3e} °/h")
+        let error = significant(error, 4);
+        format!("; Burov's autocompensation: {positions} positions, rate error {error} °/h")
     });
     let words = format!(
         "in {SUGGESTED_SECONDS} s with {SUGGESTED_ROTATION} s a rotation: {} positions of {:.2} s \

@@ -7,6 +7,7 @@ use orientation::units::DEGREE;
 use super::NO_NOISE;
 use crate::methods::asked::Question;
 use crate::methods::stepwise;
+use crate::output::significant;
 use crate::recording::{Body, Header, Short};
 
 /// Factor by which a noise is not the one stated.
@@ -56,8 +57,9 @@ pub fn noise(of: &Question) -> Option<String> {
     let is_other = shown > OTHER_NOISE * stated || stated > OTHER_NOISE * shown;
     is_other.then(|| {
         format!(
-            "key gyro_N_deg_sqrt_h says {} °/√h, but the dwells show {shown:.2e} °/√h: correct it, or leave it out",
-            Short(stated)
+            "key gyro_N_deg_sqrt_h says {} °/√h, but the dwells show {} °/√h: correct it, or leave it out",
+            Short(stated),
+            significant(shown, 3)
         )
     })
 }

@@ -12,9 +12,6 @@ mod units;
 mod vehicle;
 mod warming;
 
-pub use units::of_forces as of_level;
-pub use vehicle::of_vehicle;
-
 use orientation::alignment::refusal::Refusal;
 use orientation::alignment::rotating::Refusal as Rotating;
 use orientation::alignment::stepwise::Refusal as Stepwise;
@@ -25,17 +22,38 @@ use crate::methods::asked::Question;
 use crate::methods::{is_answered, rotating, stepwise};
 use crate::recording::{Body, Header, Sensor, Short};
 
+/// What a refusal is likely to come from, with its remedy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// What the columns and keys themselves show: it is told before the refusal that came of it.
+    Shown(String),
+    /// What would explain the refusal, and is told behind it.
+    Possible(String),
+}
+
+impl Cause {
+    /// A refusal's reason with this cause, and without the usual remedy with which the reason ends.
+    #[must_use]
+    pub fn explaining(&self, reason: &str, remedy: &str) -> String {
+        let reason = reason.strip_suffix(remedy).unwrap_or(reason);
+        match self {
+            Self::Shown(cause) => format!("{cause}; as it stands: {reason}"),
+            Self::Possible(cause) => format!("{reason}; {cause}"),
+        }
+    }
+}
+
 /// Times the stated noise power that no residuals are by chance or drift.
 const NO_NOISE: f64 = 100.0;
 /// Fewest dwells that a trial may be made with where they were too few.
 const FEW: usize = 5;
 
 /// The likely cause of a refusal of a recording whose stage stops, with its remedy.
-pub fn of_stopping(of: &Question, session: &Session, refusal: &Refusal) -> Option<String> {
+pub fn of_stopping(of: &Question, session: &Session, refusal: &Refusal) -> Option<Cause> {
     let Question { header, body, asked } = *of;
     let proven = stuck::of_stage(header, body).or_else(|| keys::impossible(body));
     if proven.is_some() {
-        return proven;
+        return proven.map(Cause::Shown);
     }
     let passes = |body: &Body| {
         let replay = stepwise::replay(header, body, asked, |_| {});
@@ -43,31 +61,46 @@ pub fn of_stopping(of: &Question, session: &Session, refusal: &Refusal) -> Optio
     };
     let force = units::force_unit(body);
     if is_short(refusal) && session.dwells().len() < FEW {
-        return units::of_forces(body);
+        return units::of_forces(body).map(Cause::Shown);
     }
     let meant = units::tried(body, force, true, &passes);
     let warming = || {
         let is_possible = meant.as_ref().is_none_or(units::Trial::is_reversed);
         is_possible.then(|| warming::of(session, refusal, meant.is_some())).flatten()
     };
+    let shown = || {
+        let meant = meant.as_ref().map(|trial| trial.describe(body));
+        meant
+            .or_else(|| units::of_forces(body))
+            .or_else(|| units::of_sigma(of))
+            .or_else(|| keys::noise(of))
+            .or_else(|| slip::of(session, refusal))
+    };
+    let possible = || keys::missing(of, refusal).or_else(|| too_much(body, refusal));
     warming()
-        .or_else(|| meant.as_ref().map(|trial| trial.describe(body)))
-        .or_else(|| units::of_forces(body))
-        .or_else(|| units::of_sigma(of))
-        .or_else(|| keys::noise(of))
-        .or_else(|| slip::of(session, refusal))
-        .or_else(|| keys::missing(of, refusal))
-        .or_else(|| too_much(body, refusal))
+        .map(Cause::Possible)
+        .or_else(|| shown().map(Cause::Shown))
+        .or_else(|| possible().map(Cause::Possible))
+}
+
+/// The cause of a level that was not found.
+pub fn of_level(body: &Body) -> Option<Cause> {
+    units::of_forces(body).map(Cause::Shown)
+}
+
+/// The cause of a refusal of a vehicle.
+pub fn of_vehicle(of: &Question, refusal: &Refusal) -> Option<Cause> {
+    vehicle::of_vehicle(of, refusal).map(Cause::Shown)
 }
 
 /// The cause of a refusal on a platform that turns all the time.
-pub fn of_turning(of: &Question, refusal: &Refusal) -> Option<String> {
+pub fn of_turning(of: &Question, refusal: &Refusal) -> Option<Cause> {
     let Question { header, body, asked } = *of;
     let Body::Rotating(rows) = body else { return None };
     let proven = stuck::of_platform(rows).or_else(|| units::of_platform_rate(rows));
     let is_noisy = matches!(refusal, Refusal::BudgetNotMet { .. });
     if proven.is_some() || is_short(refusal) && !is_noisy {
-        return proven;
+        return proven.map(Cause::Shown);
     }
     let passes = |header: &Header, body: &Body| {
         rotating::replay(header, body, asked).is_ok_and(|replay| is_answered(&replay.session))
@@ -83,6 +116,7 @@ pub fn of_turning(of: &Question, refusal: &Refusal) -> Option<String> {
     units::tried(body, None, gain_is_known, &|body| passes(header, body))
         .map(|trial| trial.describe(body))
         .or_else(noise)
+        .map(Cause::Shown)
 }
 
 /// Whether there was too little to judge from, so that almost any other reading of it would pass.

@@ -239,11 +239,6 @@ impl Shown<'_> {
     }
 }
 
-/// What was found, without the usual remedy with which the reason ends, and what it is likely to come from.
-fn explained(reason: &str, remedy: &str, cause: &str) -> String {
-    format!("{}; {cause}", reason.strip_suffix(remedy).unwrap_or(reason))
-}
-
 /// The halves of the circle in which an azimuth may lie.
 static HALVES: [(Half, [&str; 2]); 2] =
     [(Half::East, ["east", "0° to 180°"]), (Half::West, ["west", "180° to 360°"])];

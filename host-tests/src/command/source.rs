@@ -3,8 +3,12 @@
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read, stdin};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::Duration;
 
 use flate2::read::MultiGzDecoder;
+use host::interrupt;
 use host::output::printable;
 use host::output::progress::Progress;
 use host::recording::inputs;
@@ -87,7 +91,7 @@ impl Source {
     /// The system's.
     pub fn open<'p>(&self, progress: Option<&'p Progress>) -> io::Result<Opened<'p>> {
         let Self::File(path) = self else {
-            let mut reader = unpacked(stdin())?;
+            let mut reader = unpacked(Awaited::input())?;
             let is_inputs = reader.fill_buf()?.first() == Some(&b'{');
             return Ok((Box::new(reader), is_inputs));
         };
@@ -131,6 +135,65 @@ fn unpacked(mut reader: impl Read + 'static) -> io::Result<BufReader<Box<dyn Rea
     let is_gzip = magic == GZIP_MAGIC;
     let input = Cursor::new(magic).chain(reader);
     Ok(BufReader::new(if is_gzip { Box::new(MultiGzDecoder::new(input)) } else { Box::new(input) }))
+}
+
+/// Bytes that are read of standard input at once.
+const CHUNK: usize = 64 << 10;
+/// Chunks that wait to be taken.
+const WAITING: usize = 4;
+/// Time after which it is looked whether an end is asked for, where nothing comes.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Standard input, read by a thread of its own: it ends where an end is asked for, although whatever feeds it goes on.
+struct Awaited {
+    chunks: Receiver<io::Result<Vec<u8>>>,
+    chunk: Cursor<Vec<u8>>,
+}
+
+impl Awaited {
+    /// Begins to read standard input.
+    fn input() -> Self {
+        let (sender, chunks) = sync_channel(WAITING);
+        thread::spawn(move || hand_over(&sender));
+        Self { chunks, chunk: Cursor::default() }
+    }
+
+    /// The next chunk; none at the end, and where an end is asked for.
+    fn next(&self) -> io::Result<Option<Vec<u8>>> {
+        loop {
+            match self.chunks.recv_timeout(PATIENCE) {
+                Ok(chunk) => return chunk.map(Some),
+                Err(RecvTimeoutError::Disconnected) => return Ok(None),
+                Err(RecvTimeoutError::Timeout) if interrupt::ends_input() => return Ok(None),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+}
+
+impl Read for Awaited {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.chunk.fill_buf()?.is_empty() {
+            self.chunk = Cursor::new(self.next()?.unwrap_or_default());
+        }
+        self.chunk.read(buffer)
+    }
+}
+
+/// Hands standard input over chunk by chunk, until it ends or no more of it is wanted.
+fn hand_over(to: &SyncSender<io::Result<Vec<u8>>>) {
+    let mut input = stdin().lock();
+    let mut chunk = vec![0; CHUNK];
+    loop {
+        let read = match input.read(&mut chunk) {
+            Ok(0) => return,
+            read => read.map(|length| chunk[..length].to_vec()),
+        };
+        let is_last = read.is_err();
+        if to.send(read).is_err() || is_last {
+            return;
+        }
+    }
 }
 
 /// A file whose reading is shown.

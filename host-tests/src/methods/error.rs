@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::stepwise::late::Late;
 use super::stops::way::Slip;
+use crate::output::counted;
 use crate::recording::{Kind, Short};
 
 /// Why a recording that could be read cannot be replayed.
@@ -42,7 +43,7 @@ pub enum ReplayError {
     #[error("kind `{0}` has no spinning body: no method spin")]
     NoSpin(Kind),
     /// Fewer samples than a rate has.
-    #[error("column t_s: {0} sample(s) have no rate: record for longer")]
+    #[error("column t_s: {} too few for a rate: record for longer", counted(*.0, "sample"))]
     TooFewSamples(usize),
     /// A recording of kind `static` with one gyro.
     #[error(

@@ -18,14 +18,15 @@ use orientation::alignment::stepwise;
 use orientation::units::Radians;
 use serde::{Serialize, Serializer};
 
-pub(crate) use self::summary::of_site;
+pub(crate) use self::summary::of_site_and_time;
 pub use self::summary::report;
 
 use self::keys::Keys;
 use self::run::RunDetails;
+use crate::cause::Cause;
 use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
-use crate::output::{azimuth_error, signed};
+use crate::output::{azimuth_error, in_number, signed};
 use crate::recording::{Body, Truth};
 use crate::report::Part as ReportPart;
 
@@ -58,7 +59,7 @@ pub trait Finished {
 
     /// What a refusal of a recording is likely to come from, with its remedy; `None` where nothing points
     /// to a cause.
-    fn cause(&self, _of: &Question) -> Option<String> {
+    fn cause(&self, _of: &Question) -> Option<Cause> {
         None
     }
 }
@@ -151,6 +152,9 @@ pub struct FitDetails {
     /// What the part of the noise holds beside the gyro's.
     #[serde(skip)]
     pub more_noise: Option<&'static str>,
+    /// Factor on noise and drift of the budget, because what was fitted scatters more than both; none where it does not.
+    #[serde(skip)]
+    pub excess: Option<f64>,
     /// The greatest part beside noise, where it makes up more than half of the variance.
     pub dominant: Option<String>,
     /// Dwells, whole turns or stops that took part.
@@ -309,7 +313,7 @@ fn in_words(refusal: &Refusal) -> String {
         Refusal::Stepwise(stepwise::Refusal::SignUnknown) => {
             format!("{refusal}: --half east, or --half west")
         }
-        _ => refusal.to_string(),
+        _ => in_number(&refusal.to_string()),
     }
 }
 

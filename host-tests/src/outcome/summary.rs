@@ -6,7 +6,9 @@ use orientation::units::Radians;
 
 use super::{Excluded, FAILED, Finished, FitDetails, Outcome};
 use crate::methods;
-use crate::output::{azimuth as in_circle, degrees, fixed, noise_in_words, positive_zero, signed};
+use crate::output::{
+    azimuth as in_circle, counted, degrees, fixed, noise_in_words, positive_zero, signed,
+};
 use crate::recording::GIVEN;
 use crate::report::{
     Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
@@ -120,11 +122,17 @@ fn circumstances(outcome: &Outcome) -> Lines {
 }
 
 /// Place and gyro of a site.
-pub(crate) fn of_site(site: &Site) -> Lines {
+fn of_site(site: &Site) -> Lines {
     let noise = noise_in_words(site.noise.model(), site.noise.is_white_known());
     Lines::default()
         .with("place", format!("latitude {}°", fixed(degrees(site.latitude.rad()), 4)))
         .with("gyro", noise)
+}
+
+/// Place and gyro of a site, and the time that took part: of so many steps of this name, where there are any.
+pub(crate) fn of_site_and_time(site: &Site, seconds: f64, (count, step): (usize, &str)) -> Lines {
+    let time = || format!("{} s in {}", fixed(seconds, 1), counted(count, step));
+    of_site(site).with_found("time", (count > 0).then(time))
 }
 
 /// The true azimuth, and what one that was found with its 1σ is off, °.
@@ -179,13 +187,21 @@ fn shares(fit: &FitDetails, sigma_deg: Option<f64>) -> Option<Shares> {
         value: format!("{part_deg:.4}"),
         percent: 100.0 * (part_deg / sigma_deg) * (part_deg / sigma_deg),
     };
+    let excess = fit.excess.unwrap_or(1.0);
     let of_source = |(source, part): (Part, Radians)| {
+        let of_noise = matches!(source, Part::Noise | Part::Drift);
+        let part_deg = part.degrees() / if of_noise { excess } else { 1.0 };
         let name = match fit.more_noise.filter(|_| source == Part::Noise) {
             Some(more) => format!("{source}, {more}"),
             None => source.to_string(),
         };
-        share(name, part.degrees())
+        share(name, part_deg)
     };
+    let noise_deg = budget.noise.degrees().hypot(budget.drift.degrees());
+    let misfit = fit.excess.map(|excess| {
+        let part_deg = noise_deg * (1.0 - 1.0 / (excess * excess)).sqrt();
+        share("scatter beyond noise and drift".to_owned(), part_deg)
+    });
     let lost_deg = (sigma_deg * sigma_deg - all_deg * all_deg).sqrt();
     let lost = (sigma_deg > (1.0 + BESIDE) * all_deg)
         .then(|| share("criterion, beside maximum likelihood".to_owned(), lost_deg));
@@ -194,7 +210,7 @@ fn shares(fit: &FitDetails, sigma_deg: Option<f64>) -> Option<Shares> {
     Some(Shares {
         title: format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default()),
         head: ["source", "part, °", "share of the variance, %"].map(str::to_owned),
-        rows: details.shown().map(of_source).chain(lost).collect(),
+        rows: details.shown().map(of_source).chain(misfit).chain(lost).collect(),
         sum: ["root sum of squares".to_owned(), format!("{sigma_deg:.4}")],
     })
 }

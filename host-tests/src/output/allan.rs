@@ -6,7 +6,7 @@ use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde_json::{Value, json};
 
-use super::{degrees_per_hour, printable};
+use super::{degrees_per_hour, places_of, printable, to_sigma};
 use crate::allan::analysis::{Analysis, Confident};
 use crate::allan::rest::Rest;
 use crate::outcome::SCHEMA;
@@ -77,12 +77,11 @@ impl Coefficient {
         let unit = self.unit;
         match self.estimate {
             Estimate::Found { value, sigma } => {
-                // Two digits of σ.
-                let decimals = (1.0 - sigma.log10().floor()).clamp(0.0, 12.0) as usize;
-                format!("{value:.decimals$} ± {sigma:.decimals$} {unit}")
+                let [value, sigma] = to_sigma(value, sigma);
+                format!("{value} ± {sigma} {unit}")
             }
             Estimate::NotObservable { at_most } => {
-                let decimals = (1.0 - at_most.log10().floor()).clamp(0.0, 12.0) as usize;
+                let decimals = places_of(at_most);
                 format!("not observable in this record (at most {at_most:.decimals$} {unit})")
             }
         }
@@ -122,8 +121,8 @@ impl Shown<'_> {
         all.extend(record.lines);
         Summary {
             grade: match (analysis.is_ok(), self.rest.interruption()) {
-                (false, _) => Grade::Refused,
-                (true, Some(_)) => Grade::Degraded,
+                (_, Some(_)) => Grade::Interrupted,
+                (false, None) => Grade::Refused,
                 (true, None) => Grade::Found,
             },
             reasons: analysis.err().map(ToString::to_string).into_iter().collect(),

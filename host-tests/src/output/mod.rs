@@ -70,6 +70,19 @@ pub fn significant(value: f64, digits: i32) -> String {
     fixed(value, places.max(0) as usize)
 }
 
+/// A value and its 1σ with as many decimal places as show two digits of that.
+#[must_use]
+pub fn to_sigma(value: f64, sigma: f64) -> [String; 2] {
+    let places = places_of(sigma);
+    [value, sigma].map(|number| fixed(number, places))
+}
+
+/// Decimal places that show two digits of a number.
+#[must_use]
+pub fn places_of(number: f64) -> usize {
+    (1.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize
+}
+
 /// So many of what has this name, in words; the plural is regular.
 #[must_use]
 pub fn counted(count: usize, name: &str) -> String {
@@ -79,6 +92,19 @@ pub fn counted(count: usize, name: &str) -> String {
         _ => "s",
     };
     format!("{count} {name}{ending}")
+}
+
+/// A text in which each word that leaves open whether it is one or several, as in `1 turn(s)`, says which by the number
+/// before it.
+#[must_use]
+pub fn in_number(text: &str) -> String {
+    let mut parts = text.split("(s)");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |before, rest| {
+        let count = before.split(' ').rev().find_map(|word| word.parse::<f64>().ok());
+        let ending = if count == Some(1.0) { "" } else { "s" };
+        format!("{before}{ending}{rest}")
+    })
 }
 
 /// The text of a number, with another sign where it is that of a negative zero.

@@ -21,8 +21,8 @@ const REDRAWN: Duration = Duration::from_millis(500);
 const POSITIONS: &str = "positions";
 /// What the bar shows in the place of the time that is left, before anything is done.
 const ESTIMATING: &str = "estimating time left, ";
-/// What the bar shows; the rest of a line is cut.
-const TEMPLATE: &str = "{bar:20} {percent:>3} % {left}{wide_msg}";
+/// What the bar shows: of 80 columns half are left to the words, and the rest of a line is cut.
+const TEMPLATE: &str = "{bar:10} {percent:>3} % {left}{wide_msg}";
 
 /// The progress of one task; shared by the threads that work at it.
 pub struct Progress {

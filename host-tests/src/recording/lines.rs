@@ -90,7 +90,12 @@ impl<'r> Lines<'r> {
     /// The next line that is not blank, or `None` at the end, or where the program is interrupted.
     pub fn next(&mut self) -> Result<Option<Line<'_>>, Fault> {
         while !interrupt::ends_input() {
-            if !self.fill()? {
+            let filled = self.fill();
+            // What an interruption has left of a line, or of a compressed stream, is none.
+            if !self.bytes().ends_with(b"\n") && interrupt::ends_input() {
+                break;
+            }
+            if !filled? {
                 return Ok(None);
             }
             if !self.content().is_empty() {

@@ -30,7 +30,7 @@ pub enum Grade {
     Degraded,
     /// No result.
     Refused,
-    /// No result, because it was not carried to its end.
+    /// Not carried to its end: no result, or that of the part that was done.
     Interrupted,
 }
 

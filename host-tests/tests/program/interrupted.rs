@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::support::files::{Scratch, unpacked};
+use crate::support::files::{Scratch, stored, unpacked};
 use crate::support::program::{code, command, meridian, object, reason, text};
 
 /// What a program that was interrupted ended with: exit code, standard output, and what came to standard error after
@@ -228,6 +228,45 @@ fn a_noise_analysis_that_is_interrupted_is_that_of_the_rows_that_were_read() {
     let (code, printed, said) = interrupted_between([&first, &rest], &["allan", "-"]);
     assert_eq!(code, Some(1), "{said}");
     assert!(printed.contains("interrupted at ") && printed.contains("°/√h"), "{printed}");
+}
+
+/// What a program ended with that was interrupted while its standard input, which began like this, stayed open.
+fn interrupted_while_it_waits(first: &[u8], arguments: &[&str]) -> Ended {
+    let mut child = started(arguments);
+    let mut input = child.stdin.take().expect("it is piped");
+    input.write_all(first).expect("it reads");
+    sleep(Duration::from_millis(500));
+    interrupt(&child);
+    let output = child.wait_with_output().expect("it ends although its input does not");
+    drop(input);
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn an_interruption_ends_what_waits_for_standard_input_that_stays_open() {
+    let scratch = Scratch::new("open-input");
+    let (page, hour) = (scratch.path("page.html"), unpacked("static-gyro-1h"));
+    // The last line lacks its end, and the compressed stream its own.
+    let half = &hour[..hour.len() / 2];
+    let packed = std::fs::read(stored("static-gyro-1h")).expect("it is there");
+    for first in [half.as_bytes(), &packed[..packed.len() / 2]] {
+        let ended = interrupted_while_it_waits(first, &["allan", "-", "--json"]);
+        let object = failed(&ended);
+        assert!(object["samples"].as_u64().is_some_and(|samples| samples > 1000), "{object}");
+        assert!(object["n_deg_sqrt_h"].is_number(), "{object}");
+    }
+    let (code, printed, _) =
+        interrupted_while_it_waits(half.as_bytes(), &["allan", "-", "--report", &page]);
+    assert_eq!(code, Some(1));
+    assert!(printed.contains("interrupted at ") && printed.contains("°/√h"), "{printed}");
+    assert!(scratch.read("page.html").contains(">interrupted<"));
+    let circle = unpacked("stepwise-circle");
+    let first = &circle.as_bytes()[..circle.len() * 7 / 10];
+    let object = failed(&interrupted_while_it_waits(first, &["replay", "-", "--json"]));
+    assert!(object["reason"].to_string().contains("gives 1σ of 0."), "{object}");
+    let (code, printed, said) = interrupted_while_it_waits(b"", &["allan", "-"]);
+    assert_eq!((code, printed.as_str()), (Some(1), ""));
+    assert_reason(&said, "interrupted");
 }
 
 #[test]

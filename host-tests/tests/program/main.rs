@@ -13,6 +13,7 @@ mod help;
 mod interrupted;
 mod log;
 mod many;
+mod measured_again;
 mod numbers;
 mod program;
 mod realigned;

@@ -1,6 +1,6 @@
 //! Numbers and tables as they are printed: nothing is empty, and nothing is less than zero by nothing.
 
-use host::output::{azimuth, counted, fixed, signed, significant};
+use host::output::{azimuth, counted, fixed, in_number, signed, significant};
 use host::report::{Columns, Lines, Part, Report, Table};
 use proptest::prelude::*;
 use serde_json::Value;
@@ -157,13 +157,50 @@ fn a_truth_that_rounds_to_a_whole_circle_is_north() {
     assert!(told.contains("truth              0.0000°"), "{told}");
 }
 
+/// Panics where a text has a number with an exponent.
+#[track_caller]
+fn assert_no_exponent(told: &str) {
+    let is_exponent = |of: &[char]| {
+        of[0].is_ascii_digit() && of[1] == 'e' && (of[2] == '-' || of[2].is_ascii_digit())
+    };
+    assert!(!told.chars().collect::<Vec<_>>().windows(3).any(is_exponent), "{told}");
+}
+
 #[test]
-fn a_plan_has_no_exponents_and_counts_one_pass() {
+fn results_have_no_exponents() {
+    let recordings = ["static-gyro-1h", "spin-100rps", "spin-80rps-noisy", "drive-fog-1dph"];
+    let [rest, spin, noisy, drive] = recordings.map(stored);
+    let commands: [&[&str]; 7] = [
+        &["allan", &rest],
+        &["replay", &spin],
+        &["replay", &noisy, "-v"],
+        &["replay", &drive],
+        &["run", "spin"],
+        &["run", "spin", "--fault", "forward-gyro-identity"],
+        &["plan", "--arw", "0.001", "--latitude", "48", "--seconds", "600"],
+    ];
+    for command in commands {
+        assert_no_exponent(&text(&meridian(command).stdout));
+    }
+}
+
+#[test]
+fn a_plan_counts_one_pass() {
     let output = meridian(&["plan", "--arw", "0.001", "--latitude", "48", "--seconds", "600"]);
-    let told = text(&output.stdout);
-    let is_exponent = |pair: &[char]| pair[0].is_ascii_digit() && pair[1] == 'e';
-    assert!(!told.chars().collect::<Vec<_>>().windows(2).any(is_exponent), "{told}");
-    assert!(told.contains("1 pass\n"), "{told}");
+    assert!(text(&output.stdout).contains("1 pass\n"), "{}", text(&output.stdout));
+}
+
+#[test]
+fn what_the_core_leaves_open_between_one_and_several_is_decided_by_the_number() {
+    for (open, decided) in [
+        ("1 undisturbed position(s): three", "1 undisturbed position: three"),
+        ("0 whole even turn(s) clockwise", "0 whole even turns clockwise"),
+        ("2 dwell(s) at the end", "2 dwells at the end"),
+        ("1 turn(s), then 12 turn(s)", "1 turn, then 12 turns"),
+        ("nothing of the kind", "nothing of the kind"),
+    ] {
+        assert_eq!(in_number(open), decided);
+    }
 }
 
 #[test]

@@ -123,6 +123,24 @@ fn a_bar_tells_the_time_that_is_left_or_that_it_is_being_estimated() {
 }
 
 #[test]
+fn all_that_a_bar_tells_stands_in_eighty_columns() {
+    let recording = stored("stepwise-circle");
+    let program = env!("CARGO_BIN_EXE_meridian");
+    let line = format!("stty cols 80; '{program}' replay {recording}");
+    let mut script = Command::new("script");
+    let script =
+        script.args(["-qec", &line, "/dev/null"]).env("TERM", "xterm").stdin(Stdio::null());
+    let shown = plain(&text(&script.output().expect("there is script, of util-linux").stdout));
+    let frames = frames(&shown);
+    let telling: Vec<_> = frames.iter().filter(|frame| frame.contains("σ so far")).collect();
+    assert!(!telling.is_empty(), "{shown}");
+    let is_whole = |frame: &&String| {
+        frame.rsplit_once("limit ").is_some_and(|(_, limit)| limit.trim().ends_with('°'))
+    };
+    assert!(telling.iter().all(is_whole), "{telling:?}");
+}
+
+#[test]
 fn a_bar_names_what_is_counted_only_together_with_how_many() {
     for command in working() {
         for frame in frames(&shown(&command).1) {

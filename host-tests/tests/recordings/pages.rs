@@ -66,6 +66,42 @@ fn the_fitted_curve_lies_within_the_error_bars_of_the_dwells_on_every_recording_
     }
 }
 
+/// The cells of the column with this heading in a page's table of this title.
+fn column(page: &str, title: &str, heading: &str) -> Vec<String> {
+    let (_, behind) = page.split_once(&format!("{title}</")).expect("the table is there");
+    let (_, table) = behind.split_once("<table").expect("the table begins");
+    let (table, _) = table.split_once("</table>").expect("the table ends");
+    let cells = |row: &str, end: &str| -> Vec<String> {
+        let parts = row.split(end).filter_map(|part| part.rsplit_once('>'));
+        parts.map(|(_, text)| text.to_owned()).collect()
+    };
+    let mut rows = table.split("</tr>");
+    let head = cells(rows.next().expect("a heading"), "</th>");
+    let place = head.iter().position(|name| name == heading);
+    let place = place.unwrap_or_else(|| panic!("no column {heading} in {head:?}"));
+    rows.filter_map(|row| cells(row, "</td>").into_iter().nth(place)).collect()
+}
+
+#[test]
+fn the_table_of_the_dwells_has_what_the_figure_shows_of_them() {
+    for name in ["stepwise-tilted-drift", "stepwise-circle", "positions-four-fog"] {
+        let (_, page) = page(&["replay", &stored(name)]);
+        let [left, sigmas] =
+            ["unexplained, °/h", "1σ, °/h"].map(|heading| column(&page, "Dwells", heading));
+        let drawn = series(&figure(&page, "What the fit leaves"), "measured less");
+        let told = left.iter().zip(&sigmas).filter(|(left, _)| *left != "-");
+        assert_eq!(told.clone().count(), drawn.len(), "{name}");
+        for ((left, sigma), point) in told.zip(&drawn) {
+            let [left, sigma] = [left, sigma].map(|cell| cell.parse::<f64>().expect("a number"));
+            assert!((left - point[1]).abs() < 1e-5, "{name}: {left}, {point:?}");
+            assert!(
+                (sigma - 0.5 * (point[3] - point[2])).abs() < 1e-5,
+                "{name}: {sigma}, {point:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_fold_of_a_turning_platform_lies_within_the_error_bars_of_its_sectors() {
     for name in named("rotating") {

@@ -19,7 +19,7 @@ use orientation::alignment::stepwise::session::Session;
 use super::{ReplayOptions, beside_inputs, check};
 use crate::command::source::Source;
 use crate::command::stated::Stated;
-use crate::command::{Answer, Failure, Shown, explained};
+use crate::command::{Answer, Failure, Shown};
 
 /// What is asked of a recording.
 pub struct One<'o> {
@@ -94,7 +94,7 @@ impl One<'_> {
         let question = Question { header: &header, body: &body, asked: &asked };
         let cause = is_caused.then(|| finished.cause(&question)).flatten();
         let reason = outcome.reason.map(|reason| match cause {
-            Some(cause) => explained(&reason, outcome.remedy, &cause),
+            Some(cause) => cause.explaining(&reason, outcome.remedy),
             None => reason,
         });
         let outcome = Outcome { source: Some(Named::File(source.name())), reason, ..outcome };

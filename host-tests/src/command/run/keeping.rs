@@ -17,6 +17,15 @@ const STANDING: f32 = 10.0;
 /// When an azimuth from outside comes, s from power-on.
 const HANDED: f64 = 20.0;
 
+/// Power-on, self-tests and level, s.
+const BEGIN: f64 = 10.0;
+
+/// How long a run takes by its own time whose alignment takes so long, s: one that is given its azimuth from outside does
+/// not wait for any.
+pub fn lasting(hold: &Hold, alignment_s: f64) -> f64 {
+    hold.handover.map_or(BEGIN + alignment_s, |(_, at_s)| at_s) + hold.seconds
+}
+
 /// What is asked of keeping.
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {

@@ -17,7 +17,7 @@ use orientation::signal::Sample;
 use simulated::mount::FramesScenario;
 use simulated::scenario::{Aim, Scenario};
 
-use super::keeping::KeepingOptions;
+use super::keeping::{KeepingOptions, lasting};
 use super::options::{CHANCE, COURSE, Common, Inclination, Place, number, seconds};
 use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
@@ -206,7 +206,7 @@ impl Simulated for StageOptions {
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let seconds = scenario.alignment_seconds() + scenario.hold.seconds;
+        let seconds = lasting(&scenario.hold, scenario.alignment_seconds());
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default())
@@ -235,7 +235,7 @@ impl Simulated for FramesOptions {
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let seconds = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        let seconds = lasting(&scenario.base.hold, scenario.alignment_seconds());
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let [forward, right, down] = run.truth;
             let is_vertical =

@@ -22,8 +22,6 @@ const PARTS: u64 = 200;
 pub(super) const FLIGHT: &str = "flight";
 /// What is followed before the first step.
 const START: &str = "start";
-/// Power-on, self-tests and level, s.
-const BEGIN_SECONDS: f64 = 10.0;
 
 /// Shows the log and the progress while a board works, and has its inputs written.
 pub(super) struct Terminal<'t> {
@@ -35,8 +33,10 @@ pub(super) struct Terminal<'t> {
     stage: Cell<Stage>,
     /// Planned stops of a vehicle.
     stops: Cell<usize>,
-    /// Time from power-on to the end, as expected, ms.
-    expected: u64,
+    /// Time from power-on to the end, as expected, with the dwells that are measured again, ms.
+    expected: Cell<u64>,
+    /// Time of the latest dwell's end, ms.
+    dwelled: Cell<u64>,
     /// Time of what is shown, ms.
     latest: Cell<u64>,
 }
@@ -77,14 +77,15 @@ impl<'t> Terminal<'t> {
     }
 
     fn new((manner, steps, seconds): Watched, inputs: &'t Inputs) -> Self {
-        let (begin_s, stage, words) = match steps {
-            FLIGHT => (0.0, Stage::Flying, FLIGHT),
-            _ => (BEGIN_SECONDS, Stage::Preparing, START),
+        let (stage, words) = match steps {
+            FLIGHT => (Stage::Flying, FLIGHT),
+            _ => (Stage::Preparing, START),
         };
-        let expected = ((begin_s + seconds) * 1e3) as u64;
-        let (stage, stops, latest) = (Cell::new(stage), Cell::new(0), Cell::new(0));
+        let expected = Cell::new((seconds * 1e3) as u64);
+        let (stage, stops) = (Cell::new(stage), Cell::new(0));
+        let [dwelled, latest] = [Cell::new(0), Cell::new(0)];
         let shown = Progress::new(manner, words);
-        Self { inputs, manner, shown, steps, stage, stops, expected, latest }
+        Self { inputs, manner, shown, steps, stage, stops, expected, dwelled, latest }
     }
 
     /// Notes how many of the planned dwells, turns or stops are done; alignments anew are part of the keeping.
@@ -93,7 +94,13 @@ impl<'t> Terminal<'t> {
             return;
         }
         let (done, planned) = match *progress {
-            alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => (done, of),
+            alignment::Progress::Stepwise(stepwise::Progress::Dwelled(done, of, _)) => {
+                self.dwelled.set(Instant::now().as_millis());
+                (done, of)
+            }
+            alignment::Progress::Stepwise(stepwise::Progress::Repeated(..)) => {
+                return self.lengthen();
+            }
             alignment::Progress::Rotating(rotating::Progress::Turned(done, of)) => {
                 (done as usize, of as usize)
             }
@@ -104,17 +111,32 @@ impl<'t> Terminal<'t> {
             alignment::Progress::Stops(stops::Progress::Stopped(stop, _)) => {
                 (stop, self.stops.get())
             }
-            alignment::Progress::Concluded(_) => return self.stage.set(Stage::Keeping),
+            alignment::Progress::Concluded(_) | alignment::Progress::Refused(_) => {
+                return self.stage.set(Stage::Keeping);
+            }
             _ => return,
         };
         self.stage.set(Stage::Aligning(done, planned));
         self.show();
     }
 
+    /// A dwell is measured again: all that comes is later by the time that it took.
+    fn lengthen(&self) {
+        let now = Instant::now().as_millis();
+        self.expected.set(self.expected.get() + now - self.dwelled.replace(now));
+    }
+
+    /// An azimuth is kept from now on, be it handed over from outside or found.
+    fn keep(&self) {
+        if !matches!(self.stage.get(), Stage::Flying) {
+            self.stage.set(Stage::Keeping);
+        }
+    }
+
     /// Shows how far the board is, where it has got further by a small part of the whole.
     fn pass(&self) {
         let now = Instant::now().as_millis();
-        if now >= self.latest.get() + self.expected / PARTS {
+        if now >= self.latest.get() + self.expected.get() / PARTS {
             self.latest.set(now);
             self.show();
         }
@@ -122,15 +144,16 @@ impl<'t> Terminal<'t> {
 
     /// Shows how far the board is.
     fn show(&self) {
-        let now = Instant::now().as_millis().min(self.expected - 1);
-        let time = format!("{} of {} s", now / 1000, self.expected / 1000);
+        let expected = self.expected.get();
+        let now = Instant::now().as_millis().min(expected - 1);
+        let time = format!("{} of {} s", now / 1000, expected / 1000);
         let words = match self.stage.get() {
             Stage::Preparing => format!("{START}, {time}"),
             Stage::Aligning(done, planned) => format!("{} {done}/{planned}, {time}", self.steps),
             Stage::Keeping => format!("keeping, {time}"),
             Stage::Flying => format!("{}, {time}", self.steps),
         };
-        self.shown.reached((now, self.expected), &words);
+        self.shown.reached((now, expected), &words);
     }
 }
 
@@ -150,8 +173,10 @@ impl Observer for Terminal<'_> {
             let at_s = seconds(at);
             self.shown.log(&format!("{at_s:>11.6} {event}"));
         }
-        if let Event::Alignment(progress) = event {
-            self.follow(progress);
+        match event {
+            Event::Alignment(progress) => self.follow(progress),
+            Event::Navigation(navigation::Progress::HandedOver(..)) => self.keep(),
+            _ => {}
         }
     }
 }

@@ -16,7 +16,7 @@ use simulated::flash::Flash;
 use simulated::scenario::Scenario;
 use simulated::turntable::TurntableScenario;
 
-use super::keeping::KeepingOptions;
+use super::keeping::{KeepingOptions, lasting};
 use super::options::{COURSE, Common, Inclination, KEEPING, Place, SENSOR};
 use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::faults::FaultChoice;
@@ -177,7 +177,7 @@ impl Simulated for TurntableOptions {
         let mut store = self.store()?;
         let (mut recorder, inputs) =
             self.common.wanted(record.as_ref(), given_by(&scenario, &mut store))?;
-        let expected_s = scenario.alignment_seconds() + scenario.base.hold.seconds;
+        let expected_s = lasting(&scenario.base.hold, scenario.alignment_seconds());
         let watched = (*manner, "turns", expected_s);
         // Figures show them.
         recorder.is_idle = false;

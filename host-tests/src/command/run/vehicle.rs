@@ -12,7 +12,7 @@ use simulated::hold::STOP_SECONDS;
 use simulated::scenario::Scenario;
 use simulated::vehicle::{self, VehicleScenario};
 
-use super::keeping::KeepingOptions;
+use super::keeping::{KeepingOptions, lasting};
 use super::options::{COURSE, Common, Place, seconds};
 use super::{Begun, Ran, Shown, Simulated, Terminal};
 use crate::command::stated::Stated;
@@ -57,10 +57,10 @@ impl VehicleOptions {
     }
 }
 
-/// How long a run takes by its own time, s.
-fn lasting(scenario: &VehicleScenario) -> f64 {
-    let VehicleScenario { base, stops, stop_s, drive_s, .. } = scenario;
-    *stops as f64 * (stop_s + drive_s) - drive_s + base.hold.seconds
+/// How long an alignment from stop to stop takes, s.
+fn alignment_seconds(scenario: &VehicleScenario) -> f64 {
+    let VehicleScenario { stops, stop_s, drive_s, .. } = scenario;
+    *stops as f64 * (stop_s + drive_s) - drive_s
 }
 
 impl Simulated for VehicleOptions {
@@ -85,7 +85,8 @@ impl Simulated for VehicleOptions {
         let (mut wanted, inputs) = self.common.wanted(record.as_ref(), scenario.given())?;
         // Figures show them.
         wanted.is_idle = self.common.report.is_none() && wanted.is_idle;
-        let watched = (*manner, "stops", lasting(&scenario));
+        let expected_s = lasting(&scenario.base.hold, alignment_seconds(&scenario));
+        let watched = (*manner, "stops", expected_s);
         let (run, wall) = Terminal::watching(watched, &inputs, |watch| {
             let recorder = (&mut seen, (&mut wanted, inputs.as_ref()));
             Trial::of(&scenario).fault(*fault).record(recorder).watch(watch).run()

@@ -21,6 +21,7 @@ use self::track::Track;
 use crate::assumptions::or_assumed;
 use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
+use crate::output::significant;
 use crate::recording::period::Steps;
 use crate::recording::{Body, GIVEN, Given, Header, SpinRow};
 
@@ -171,7 +172,8 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
             let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
             let walk = limit::gyro_walk(&rates, period_s);
             let field = walk / DEGREE_PER_SQRT_HOUR;
-            assumed.push(format!("gyro noise N {field:.2e} °/√h as the recording shows it"));
+            let field = significant(field, 3);
+            assumed.push(format!("gyro noise N {field} °/√h as the recording shows it"));
             walk
         },
         |n| n * DEGREE_PER_SQRT_HOUR,

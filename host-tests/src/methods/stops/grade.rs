@@ -6,6 +6,7 @@
 
 use orientation::units::DEGREE_PER_HOUR;
 
+use crate::output::significant;
 use crate::recording::{Header, Short};
 
 /// Bias of gyros of which nothing is stated, °/h: a worse one hardly finds north.
@@ -27,7 +28,8 @@ pub fn filled(header: &Header, assumed: &mut Vec<String>) -> Header {
     let mut or = |value: Option<f64>, usual: f64, words: &str, unit: &str| {
         value.or_else(|| {
             assumed.push(format!(
-                "{words} unknown, {usual:.1e}{unit} (1σ) as usual beside gyros of {} °/h",
+                "{words} unknown, {}{unit} (1σ) as usual beside gyros of {} °/h",
+                significant(usual, 2),
                 Short(bias)
             ));
             Some(usual)

@@ -34,6 +34,7 @@ use crate::median::{extremes, median};
 use crate::methods::asked::{Asked, Question};
 use crate::methods::error::ReplayError;
 use crate::methods::is_answered;
+use crate::output::significant;
 use crate::recording::period::{Steps, period_s};
 use crate::recording::{Body, GIVEN, Given, Header, ImuRow, Kind};
 
@@ -357,8 +358,8 @@ fn setting(
     site.noise.model_mut().angle_random_walk =
         RadiansPerRootSecond(walk(&site, white.as_ref(), assumed)?);
     let force_noise = white.unwrap_or_default().force;
-    assumed
-        .push(format!("accelerometer noise {force_noise:.2e} m/s²/√Hz as the recording shows it"));
+    let shown = significant(force_noise, 3);
+    assumed.push(format!("accelerometer noise {shown} m/s²/√Hz as the recording shows it"));
     let kappa = grade::g_sensitivity(header);
     let bias = header.gyro_bias_deg_h.map(|bias| (bias * DEGREE_PER_HOUR).hypot(kappa));
     let bias_sigma = bias.map(RadiansPerSecond);
@@ -378,17 +379,17 @@ fn walk(site: &Site, white: Option<&White>, assumed: &mut Vec<String>) -> Result
             Err(ReplayError::NoiseUnknown)
         };
     };
-    let walk = shown / DEGREE_PER_SQRT_HOUR;
+    let walk = significant(shown / DEGREE_PER_SQRT_HOUR, 3);
     if !site.noise.is_white_known() {
-        assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
+        assumed.push(format!("gyro noise N {walk} °/√h as the recording shows it"));
         return Ok((shown * (1.0 + relative_sigma)).max(LEAST_WALK));
     }
     if shown * (1.0 - MORE_SIGMAS * relative_sigma) <= MORE * stated.0 {
         return Ok(stated.0);
     }
-    let stated = stated.0 / DEGREE_PER_SQRT_HOUR;
+    let stated = significant(stated.0 / DEGREE_PER_SQRT_HOUR, 3);
     assumed.push(format!(
-        "gyro noise N {walk:.2e} °/√h as the recording shows it, which is more than the stated {stated:.2e}"
+        "gyro noise N {walk} °/√h as the recording shows it, which is more than the stated {stated}"
     ));
     Ok(shown)
 }

@@ -3,7 +3,7 @@
 use orientation::attitude::Trust;
 use orientation::math::quaternion::angles;
 
-use crate::cause;
+use crate::cause::{self, Cause};
 use crate::methods::asked::Question;
 use crate::methods::vertical::errors::{Errors, Off};
 use crate::methods::vertical::{Moment, Replay, name};
@@ -69,7 +69,7 @@ impl Finished for Replay {
         Some(&self.moments)
     }
 
-    fn cause(&self, of: &Question) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<Cause> {
         self.refusal.as_ref().and_then(|_| cause::of_level(of.body))
     }
 }

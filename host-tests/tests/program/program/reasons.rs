@@ -38,7 +38,43 @@ fn the_text_for_people_names_the_likely_cause_too() {
     let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
     let reported = text(&output.stdout);
-    assert!(reported.contains("; column stage_rad: in degrees"), "{reported}");
+    assert!(reported.contains("column stage_rad: in degrees"), "{reported}");
+}
+
+#[test]
+fn what_the_columns_show_stands_before_the_refusal_that_came_of_it() {
+    let scratch = Scratch::new("leading");
+    let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
+    let output = meridian(&["replay", &path]);
+    let why = reason(&output);
+    assert!(why.contains("x.csv: column stage_rad: in degrees"), "{why}");
+    assert!(why.contains("; as it stands: "), "{why}");
+    // What no noise can be is not called the gyro's.
+    let told = text(&output.stdout);
+    if told.contains("Error budget") {
+        assert!(!told.contains("gyro noise  ") || told.contains("scatter beyond"), "{told}");
+    }
+}
+
+#[test]
+fn scatter_that_is_no_noise_has_a_row_of_its_own_in_the_budget() {
+    let scratch = Scratch::new("scatter");
+    let rows = [
+        "0,-2.7900e-05",
+        "45,-4.3220e-05",
+        "90,-3.1672e-05",
+        "135,-5.5589e-07",
+        "180,3.2230e-05",
+        "225,4.6949e-05",
+        "270,3.5562e-05",
+        "315,4.6146e-06",
+    ];
+    let rows = rows.map(|row| format!("{row},3.9e-07,60\n")).concat();
+    let header = "# kind: dwells\n# latitude_deg: 52\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n";
+    let path = scratch.with("degrees.csv", format!("{header}{rows}"));
+    let told = text(&meridian(&["replay", &path]).stdout);
+    assert!(told.contains("scatter beyond noise and drift  12.98"), "{told}");
+    assert!(!told.contains("gyro noise           12"), "{told}");
 }
 
 #[test]

@@ -14,14 +14,14 @@ use orientation::alignment::rotating::turn::{Stretch, Turn};
 use orientation::units::Radians;
 use serde::Serialize;
 
-use crate::cause;
+use crate::cause::{self, Cause};
 use crate::methods::asked::Question;
 use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site_and_time};
 use crate::output::{
-    azimuth as in_circle, azimuth_error, counted, degrees, degrees_per_hour, fixed, signed,
+    azimuth as in_circle, azimuth_error, counted, degrees, degrees_per_hour, signed,
 };
 use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{Columns, Lines, Part};
@@ -245,7 +245,6 @@ impl Finished for Replay {
         let parts = [self.lines(conclusion).into()].into_iter().chain(stages);
         let parts = parts.chain([table_of_stretches(conclusion)]).map(Part::detail).collect();
         let seconds = averages(conclusion).map(|average| average.seconds).sum();
-        let time = format!("{} s in {}", fixed(seconds, 1), counted(turns as usize, "turn"));
         Outcome {
             limit_deg: self.limits_deg(conclusion).map(|[limit, _]| limit),
             pitch_deg: attitude.map(|[pitch, _]| pitch),
@@ -259,7 +258,12 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
             }),
             assumed: self.assumed.clone(),
-            circumstances: of_site(&self.session.setting.site).with("time", time).lines,
+            circumstances: of_site_and_time(
+                &self.session.setting.site,
+                seconds,
+                (turns as usize, "turn"),
+            )
+            .lines,
             ..Outcome::new("rotating", self.details(conclusion), parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
@@ -274,7 +278,7 @@ impl Finished for Replay {
         }
     }
 
-    fn cause(&self, of: &Question) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<Cause> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
         cause::of_turning(of, refusal)
     }

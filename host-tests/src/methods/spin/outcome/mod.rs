@@ -11,7 +11,7 @@ use crate::methods::spin::track::Track;
 use crate::methods::spin::{Replay, name};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome};
-use crate::output::{degrees, signed};
+use crate::output::{degrees, signed, to_sigma};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part, Table};
 
@@ -154,7 +154,12 @@ fn facts(replay: &Replay, outcome: &Outcome) -> Lines {
     });
     let whole = (end.roll_rad / TURN).floor();
     let turns = format!("{whole} since the beginning: {:.6} rad in all", end.roll_rad);
-    let scale = |[scale, sigma]: [f64; 2]| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
+    let scale = |found: [f64; 2]| {
+        let [scale, sigma] = found.map(|relative| 1e6 * relative);
+        let sign = if scale < 0.0 { "" } else { "+" };
+        let [scale, sigma] = to_sigma(scale, sigma);
+        format!("{sign}{scale} ± {sigma} ppm (1σ)")
+    };
     Lines::default()
         .with_found("turns", outcome.sigma_deg.map(|_| turns))
         .with_found("truth", truth)

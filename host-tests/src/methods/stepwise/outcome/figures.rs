@@ -6,6 +6,7 @@ use orientation::alignment::stepwise::fit::{Fit, Prediction};
 use orientation::alignment::stepwise::session::Session;
 use orientation::signal::dwell::Dwell;
 
+use super::{predicted, unexplained_deg_h};
 use crate::methods::stepwise::subtracts_sway;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{
@@ -37,11 +38,10 @@ impl Shown<'_> {
         }
     }
 
-    /// What the fit leaves of the rate, with its 1σ, °/h.
-    fn residual(&self) -> Option<Point> {
-        let Prediction { rate, sigma } = self.prediction?;
-        let left = degrees_per_hour(self.dwell.rate.0 - rate.0);
-        Some(Point::within(self.stage_deg(), left, degrees_per_hour(sigma.0)))
+    /// What the whole model does not explain of the rate, with its 1σ, °/h.
+    fn unexplained(&self) -> Option<Point> {
+        let [rate, sigma] = unexplained_deg_h(self.dwell, &self.prediction?);
+        Some(Point::within(self.stage_deg(), rate, sigma))
     }
 }
 
@@ -64,8 +64,8 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     if !left_out.is_empty() {
         series.push(Series::new("left out", Style::Hollow, left_out));
     }
-    let residuals = kept().filter_map(Shown::residual);
-    let left = [Series::new("measured less the whole model", Style::Points, residuals)];
+    let unexplained = kept().filter_map(Shown::unexplained);
+    let left = [Series::new("measured less the whole model", Style::Points, unexplained)];
     let angle = || axis(&dwells);
     let also = if subtracts_sway(session) {
         ", which follows the noise of the sway from dwell to dwell"
@@ -77,22 +77,16 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     let title = format!("Mean rate of each dwell, and the fit{also}");
     [
         Figure::new(title, angle(), ["rate", "°/h"], series),
-        Figure::new("What the fit leaves", angle(), ["residual", "°/h"], left).shaped(Shape::Low),
+        Figure::new("What the fit leaves", angle(), ["unexplained", "°/h"], left)
+            .shaped(Shape::Low),
     ]
 }
 
 /// The dwells with what the fit says of each.
 fn shown<'a>(session: &'a Session, conclusion: &Conclusion) -> Vec<Shown<'a>> {
-    let mut predictions = Vec::new();
-    conclusion
-        .predictions(&session.setting, session.dwells(), |prediction| predictions.push(prediction));
-    let (mut predictions, zero_deg) = (predictions.into_iter(), zero_deg(session));
-    let both = session.dwells().iter().zip(&conclusion.disturbances);
-    let shown = both.map(|(dwell, why)| {
-        let prediction = if why.is_none() { predictions.next() } else { None };
-        Shown { dwell, prediction, zero_deg }
-    });
-    shown.collect()
+    let zero_deg = zero_deg(session);
+    let both = session.dwells().iter().zip(predicted(session, conclusion));
+    both.map(|(dwell, prediction)| Shown { dwell, prediction, zero_deg }).collect()
 }
 
 /// Angles between neighbours of a curve at most, °.
@@ -211,6 +205,12 @@ fn milestone(session: &Session, dwells: &[Dwell]) -> Option<Milestone> {
     Some(Milestone::new(dwells.last()?.end().0, [found.angle, found.sigma, fit.limit]))
 }
 
+/// Why a dwell was measured again, in words behind those of what it came to; nothing where it was not.
+fn again(session: &Session, index: usize) -> String {
+    let of_it = session.repetitions.iter().filter(|repetition| repetition.position == index);
+    of_it.map(|repetition| format!(", measured again: {}", repetition.why)).collect()
+}
+
 /// When the stage stood and when it turned.
 pub(super) fn timeline(session: &Session, conclusion: &Conclusion) -> Timeline {
     let both = session.dwells().iter().zip(&conclusion.disturbances).enumerate();
@@ -219,7 +219,7 @@ pub(super) fn timeline(session: &Session, conclusion: &Conclusion) -> Timeline {
         let rate = degrees_per_hour(dwell.rate.0);
         let words = format!("dwell {number} at {angle:.2}°: {rate:.4} °/h");
         let (kind, words) = match why {
-            None => (Kind::Used, words),
+            None => (Kind::Used, format!("{words}{}", again(session, index))),
             Some(why) => (Kind::LeftOut, format!("{words}, left out: {why}")),
         };
         Stretch { from_s: dwell.start().0.max(0.0), to_s: dwell.end().0, kind, words }

@@ -4,20 +4,20 @@ mod figures;
 mod sway;
 
 use orientation::alignment::stepwise::conclusion::Conclusion;
-use orientation::alignment::stepwise::fit::Fit;
-use orientation::alignment::stepwise::session::Session;
+use orientation::alignment::stepwise::fit::{Fit, Prediction};
+use orientation::alignment::stepwise::quality::Disturbance;
+use orientation::alignment::stepwise::session::{Repetition, Session};
 use orientation::signal::dwell::Dwell;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
-use crate::cause;
+use crate::cause::{self, Cause};
 use crate::methods::asked::Question;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site};
-use crate::output::{
-    azimuth as in_circle, columns, counted, degrees, degrees_per_hour, fixed, signed,
-};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site_and_time};
+use crate::output::{azimuth as in_circle, columns, counted, degrees, degrees_per_hour, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part};
 
@@ -38,6 +38,11 @@ pub struct DwellDetails {
     pub sigma_deg_h: f64,
     /// Measured less fitted, drift included, °/h; null where the dwell took no part.
     pub residual_deg_h: Option<f64>,
+    /// Measured less what the whole model and the drift of the dwells before explain, °/h; null where the dwell took no
+    /// part.
+    pub unexplained_deg_h: Option<f64>,
+    /// 1σ of that, °/h: white noise, and drift that no dwell before shows; null where the dwell took no part.
+    pub unexplained_sigma_deg_h: Option<f64>,
     /// What its predecessors do not explain of it, over its standard deviation, leverage allowed for; null
     /// where the dwell took no part.
     pub studentised: Option<f64>,
@@ -49,8 +54,10 @@ impl DwellDetails {
     /// The dwells of a session.
     fn all(session: &Session, conclusion: &Conclusion) -> Vec<Self> {
         let found = conclusion.disturbances.iter().zip(&conclusion.residuals);
-        let each = session.dwells().iter().zip(found).map(|(dwell, (why, residual))| {
+        let dwells = session.dwells().iter().zip(predicted(session, conclusion));
+        let each = dwells.zip(found).map(|((dwell, prediction), (why, residual))| {
             let kept = why.is_none().then_some(residual);
+            let unexplained = prediction.map(|prediction| unexplained_deg_h(dwell, &prediction));
             Self {
                 stage_deg: degrees(dwell.stage.rad()),
                 from_s: dwell.start().0.max(0.0),
@@ -58,12 +65,29 @@ impl DwellDetails {
                 rate_deg_h: degrees_per_hour(dwell.rate.0),
                 sigma_deg_h: degrees_per_hour(white_sigma(dwell, conclusion.angle_random_walk.0)),
                 residual_deg_h: kept.map(|residual| degrees_per_hour(residual.rate.0)),
+                unexplained_deg_h: unexplained.map(|[rate, _]| rate),
+                unexplained_sigma_deg_h: unexplained.map(|[_, sigma]| sigma),
                 studentised: kept.map(|residual| residual.studentised),
                 excluded: why.map(|why| why.to_string()),
             }
         });
         each.collect()
     }
+}
+
+/// What the fit says of each dwell; none of one that was left out.
+fn predicted(session: &Session, conclusion: &Conclusion) -> Vec<Option<Prediction>> {
+    let mut predictions = Vec::new();
+    conclusion
+        .predictions(&session.setting, session.dwells(), |prediction| predictions.push(prediction));
+    let mut predictions = predictions.into_iter();
+    let of = |why: &Option<Disturbance>| if why.is_none() { predictions.next() } else { None };
+    conclusion.disturbances.iter().map(of).collect()
+}
+
+/// What the whole model does not explain of a dwell's mean rate, and 1σ of that, °/h.
+fn unexplained_deg_h(dwell: &Dwell, prediction: &Prediction) -> [f64; 2] {
+    [dwell.rate.0 - prediction.rate.0, prediction.sigma.0].map(degrees_per_hour)
 }
 
 /// 1σ of a dwell's mean rate from white noise, rad/s, for a random walk in rad/√s: as stated, or N²/T times what the
@@ -110,8 +134,8 @@ impl Replay {
     /// Place, gyro, and the time that took part.
     fn circumstances(&self, kept: &[&Dwell]) -> Vec<[String; 2]> {
         let seconds: f64 = kept.iter().map(|dwell| dwell.seconds.0).sum();
-        let time = format!("{} s in {}", fixed(seconds, 1), counted(kept.len(), "dwell"));
-        let mut lines = of_site(&self.session.setting.site).with("time", time).lines;
+        let site = &self.session.setting.site;
+        let mut lines = of_site_and_time(site, seconds, (kept.len(), "dwell")).lines;
         if self.has_stated_dwells() {
             for [_, words] in lines.iter_mut().filter(|[label, _]| label == "gyro") {
                 OF_DWELLS.clone_into(words);
@@ -131,6 +155,7 @@ impl Replay {
             .with("degrees_of_freedom", fit.map(|fit| fit.degrees))
             .with_found("autocompensation", self.autocompensation(conclusion))
             .with("dwells", dwells)
+            .with_found("measured_again", repeated(&self.session))
     }
 
     /// How the fit was made.
@@ -153,6 +178,31 @@ impl Replay {
     }
 }
 
+/// Each dwell that was discarded and measured again; nothing where none was.
+fn repeated(session: &Session) -> Option<Vec<Keys>> {
+    let keys = |repetition: &Repetition| {
+        Keys::default()
+            .with("dwell", repetition.position + 1)
+            .with("reason", repetition.why.to_string())
+    };
+    let all: Vec<Keys> = session.repetitions.iter().map(keys).collect();
+    (!all.is_empty()).then_some(all)
+}
+
+/// How many dwells were measured again and which, label and value; nothing where none was.
+fn measured_again(session: &Session) -> Option<[String; 2]> {
+    let mut times = BTreeMap::new();
+    session.repetitions.iter().for_each(|again| *times.entry(again.position + 1).or_insert(0) += 1);
+    let dwells = times.iter().map(|(dwell, times)| match times {
+        1 => dwell.to_string(),
+        _ => format!("{dwell} ({})", counted(*times, "time")),
+    });
+    let which = dwells.collect::<Vec<_>>().join(", ");
+    let least = if session.repetitions.is_full() { "at least " } else { "" };
+    let words = || format!("{least}{}: {which}", counted(times.len(), "dwell"));
+    (!times.is_empty()).then(|| ["measured again".to_owned(), words()])
+}
+
 /// What stands for N of the gyro where none weighs the dwells.
 const OF_DWELLS: &str = "the stated 1σ of each dwell";
 
@@ -164,8 +214,8 @@ fn table(dwells: &[DwellDetails]) -> Part {
         .fixed("from, s", 2, |dwell| dwell.from_s)
         .fixed("for, s", 2, |dwell| dwell.seconds)
         .fixed("rate, °/h", 5, |dwell| dwell.rate_deg_h)
-        .fixed("1σ, °/h", 5, |dwell| dwell.sigma_deg_h)
-        .found("residual, °/h", 5, |dwell| dwell.residual_deg_h)
+        .found("unexplained, °/h", 5, |dwell| dwell.unexplained_deg_h)
+        .found("1σ, °/h", 5, |dwell| dwell.unexplained_sigma_deg_h)
         .found("studentised", 2, |dwell| dwell.studentised)
         .column("left out", |dwell| dwell.excluded.as_deref().unwrap_or_default())
         .into()
@@ -204,12 +254,16 @@ impl Finished for Replay {
                 earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
                 model: fit.map(columns).unwrap_or_default(),
                 excluded: self.excluded(conclusion),
+                excess: fit.map(|fit| fit.excess).filter(|excess| *excess > 1.0),
                 more_noise: sway.as_ref().map(|_| "and the coarse IMU's"),
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
             circumstances: self.circumstances(&kept),
-            facts: sway.iter().map(SwayNoise::in_words).collect(),
+            facts: measured_again(&self.session)
+                .into_iter()
+                .chain(sway.iter().map(SwayNoise::in_words))
+                .collect(),
             ..Outcome::new(self.method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
@@ -227,7 +281,7 @@ impl Finished for Replay {
         all
     }
 
-    fn cause(&self, of: &Question) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<Cause> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
         cause::of_stopping(of, &self.session, refusal)
     }

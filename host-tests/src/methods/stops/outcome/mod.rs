@@ -10,14 +10,14 @@ use orientation::alignment::stops::stop;
 use orientation::units::{Radians, wrapped};
 use serde::Serialize;
 
-use crate::cause;
+use crate::cause::{self, Cause};
 use crate::methods::asked::Question;
 use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
-use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_biases, of_site_and_time};
 use crate::output::{
-    azimuth as in_circle, azimuth_error, counted, degrees, fixed, in_degrees_per_hour,
-    positive_zero, signed,
+    azimuth as in_circle, azimuth_error, counted, degrees, in_degrees_per_hour, positive_zero,
+    signed,
 };
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part};
@@ -180,7 +180,6 @@ impl Finished for Replay {
         let lines = [lines].into_iter().chain(found.map(of_plain)).map(Part::from);
         let parts = lines.chain([table(&self.stops())]).map(Part::detail).collect();
         let seconds = stops.iter().map(|stop| stop.seconds().0).sum();
-        let time = format!("{} s in {}", fixed(seconds, 1), counted(stops.len(), "stop"));
         Outcome {
             limit_deg: found.filter(|_| is_noise_known).map(|found| found.limit.degrees()),
             pitch_deg: found.map(|found| found.level[0].degrees()),
@@ -194,7 +193,12 @@ impl Finished for Replay {
                 ..FitDetails::of(found.map(|found| &found.budget), stops.len())
             }),
             assumed: self.assumed.clone(),
-            circumstances: of_site(&self.session.setting.site).with("time", time).lines,
+            circumstances: of_site_and_time(
+                &self.session.setting.site,
+                seconds,
+                (stops.len(), "stop"),
+            )
+            .lines,
             ..Outcome::new(self.method, details, parts)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
@@ -216,7 +220,7 @@ impl Finished for Replay {
         page
     }
 
-    fn cause(&self, of: &Question) -> Option<String> {
+    fn cause(&self, of: &Question) -> Option<Cause> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
         cause::of_vehicle(of, refusal)
     }
