@@ -157,6 +157,7 @@ impl<'w> Harness<'w> {
         Run {
             replay,
             is_cut_short,
+            earlier: Vec::new(),
             truth,
             events: self.events.into_inner(),
             reports: self.reports.into_inner(),

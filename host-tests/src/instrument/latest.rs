@@ -3,18 +3,21 @@
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
 use orientation::alignment::{Input, Listener, Method, Request, Verdict};
 
-use crate::methods::is_answered;
+use crate::methods::{Course, is_answered};
+use crate::report::Stretch;
 
 /// A session, and what it was when it found an azimuth before it was begun anew.
 pub(super) struct Latest<M> {
     session: M,
     before: Option<Box<M>>,
+    /// What alignments did before that one.
+    earlier: Vec<Stretch>,
 }
 
 impl<M> Latest<M> {
     /// A session that has found nothing yet.
     pub(super) fn of(session: M) -> Self {
-        Self { session, before: None }
+        Self { session, before: None, earlier: Vec::new() }
     }
 
     /// The session where it is over; else what it was when it found an azimuth, where it had. Of a run that breaks off
@@ -38,10 +41,23 @@ impl<M> Latest<M> {
     }
 }
 
-impl<S, M: Method<S> + Clone> Method<S> for Latest<M> {
+impl<M: Course> Latest<M> {
+    /// What alignments did that found an azimuth before the one that stands at the end.
+    pub(super) fn earlier<S>(&self) -> Vec<Stretch>
+    where
+        M: Method<S>,
+    {
+        let is_over = self.session.verdict().is_some();
+        let before = self.before.iter().filter(|_| is_over);
+        self.earlier.iter().cloned().chain(before.flat_map(|before| before.stretches())).collect()
+    }
+}
+
+impl<S, M: Method<S> + Course + Clone> Method<S> for Latest<M> {
     fn begin(&mut self, listener: Listener) -> Request {
         if is_answered(&self.session) {
-            self.before = Some(Box::new(self.session.clone()));
+            let before = self.before.replace(Box::new(self.session.clone()));
+            self.earlier.extend(before.iter().flat_map(|before| before.stretches()));
         }
         self.session.begin(listener)
     }

@@ -37,6 +37,7 @@ use self::kept::Kept;
 use crate::methods::stepwise::Replay;
 use crate::output::degrees;
 use crate::recording::Truth;
+use crate::report::Stretch;
 
 /// A finished run of one kind of session, with what was true of its carrier.
 #[derive(Clone, Debug)]
@@ -45,6 +46,8 @@ pub struct Run<R = Replay, T = ()> {
     pub replay: R,
     /// Whether the session was concluded before its own end, with what it had been given: the run was interrupted.
     pub is_cut_short: bool,
+    /// What earlier alignments did that found an azimuth, too.
+    pub earlier: Vec<Stretch>,
     /// What was true, where more is asked of it than an azimuth.
     pub truth: T,
     /// What the board reported, in order.

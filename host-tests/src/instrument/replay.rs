@@ -14,11 +14,12 @@ use super::kept::{Kept, Point, Realignments};
 use super::latest::Latest;
 use super::recorder::turning_rows;
 use crate::interrupt;
-use crate::methods::{rotating as turning, stepwise as standing, stops as stopping};
+use crate::methods::{Course, rotating as turning, stepwise as standing, stops as stopping};
 use crate::outcome::Finished;
 use crate::outcome::kept::finished;
 use crate::recording::inputs::{Carrier, End, Given, Line, Reader};
 use crate::recording::{Body, GIVEN, Problem, ReadError, Truth};
+use crate::report::Stretch;
 
 /// What came of the inputs of a run.
 pub struct Replayed {
@@ -45,11 +46,14 @@ pub struct Done {
     pub warning: Option<String>,
     /// Whether the alignment was concluded before its own end, because the inputs end there.
     pub is_cut_short: bool,
+    /// What earlier alignments did that found an azimuth, too.
+    pub earlier: Vec<Stretch>,
 }
 
 impl Done {
     /// The session, concluded with what it has been given where the inputs break off while no azimuth is known.
-    fn concluded<S, M: Method<S>>(&mut self, session: Latest<M>) -> M {
+    fn concluded<S, M: Method<S> + Course>(&mut self, session: Latest<M>) -> M {
+        self.earlier = session.earlier::<S>();
         let breaks_off = self.breaks_off && self.kept.with_azimuth().next().is_none();
         let (session, is_cut_short) = session.into_session(breaks_off);
         self.is_cut_short = is_cut_short;

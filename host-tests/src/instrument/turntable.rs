@@ -86,6 +86,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         channels,
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
+    let earlier = session.earlier::<Sample>();
     let session = harness.concluded::<Sample, _>(session);
-    Ok(harness.clear(ended, &board, session, rate))
+    Ok(TurntableRun { earlier, ..harness.clear(ended, &board, session, rate) })
 }

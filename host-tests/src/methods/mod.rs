@@ -19,6 +19,7 @@ use self::asked::Asked;
 use self::error::ReplayError;
 use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
+use crate::report::Stretch;
 
 /// What is called at each step of a replay: the session so far.
 pub type Watch<'a> = &'a dyn Fn(&Session);
@@ -113,6 +114,12 @@ pub fn named(name: &str) -> Option<&'static Method> {
 #[must_use]
 pub fn usual(Recording { header, body, .. }: &Recording) -> &'static Method {
     METHODS.iter().find(|method| (method.suits)(header, body)).unwrap_or(&METHODS[0])
+}
+
+/// An alignment whose course a timeline shows.
+pub(crate) trait Course {
+    /// What it did when, from power-on: dwells, turns, or stops and drives.
+    fn stretches(&self) -> Vec<Stretch>;
 }
 
 /// Whether an alignment found an azimuth.

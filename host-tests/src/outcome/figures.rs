@@ -127,6 +127,12 @@ pub(super) fn alignments(found: &[(units::Instant, Azimuth)]) -> Option<Lane> {
     (found.len() > 1).then(|| Lane::new("azimuth found", found.iter().enumerate().map(mark)))
 }
 
+/// What alignments did before the latest one that found an azimuth.
+pub(super) fn earlier(stretches: &[Stretch]) -> Vec<Lane> {
+    let lane = || Lane::new("alignments before", stretches.iter().cloned());
+    if stretches.is_empty() { Vec::new() } else { vec![lane()] }
+}
+
 /// How far the level could be relied on while something was kept.
 pub(super) fn lanes(kept: &Kept) -> Vec<Lane> {
     let same = |a: &Point, b: &Point| {

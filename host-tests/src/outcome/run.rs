@@ -110,7 +110,8 @@ impl RunDetails {
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
         let this = Self::with(keys, Some(board), &run.kept, &realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
-        let lanes = [this.lanes, figures::faults(&run.events)].concat();
+        let earlier = figures::earlier(&run.earlier);
+        let lanes = [earlier, this.lanes, figures::faults(&run.events)].concat();
         let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
         Self { degradations, lanes, cut_short, ..this }
     }
@@ -128,7 +129,8 @@ impl RunDetails {
         let this = Self::with(Keys::default(), None, &done.kept, &done.realignments);
         let why = || this.interruption.clone().unwrap_or_else(|| BROKEN_OFF.to_owned());
         let cut_short = done.is_cut_short.then(why);
-        Self { cut_short, ..this }
+        let lanes = [figures::earlier(&done.earlier), this.lanes].concat();
+        Self { cut_short, lanes, ..this }
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.

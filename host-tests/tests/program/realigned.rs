@@ -1,7 +1,7 @@
 //! A run that aligns itself anew tells what it found, beside what it kept, also where it ends while it aligns.
 
 use crate::support::files::Scratch;
-use crate::support::program::{code, meridian, object, reason, text};
+use crate::support::program::{code, meridian, object, page, reason, text};
 
 /// Runs that end while another alignment is under way, or before one begins.
 const RUNS: [&str; 4] = [
@@ -49,6 +49,33 @@ fn each_of_several_alignments_stands_in_the_output() {
         for value in [azimuth, sigma].map(|value| format!("{:.4}", value.expect("a number"))) {
             assert!(told.contains(&value), "{value} in {told}");
         }
+    }
+}
+
+/// The words of a page's timeline in the row of this name.
+fn told_in_row(page: &str, name: &str) -> Vec<String> {
+    let (_, row) = page.split_once(&format!("<span>{name}</span>")).expect("the row is there");
+    let (row, _) = row.split_once("</div>").expect("it ends");
+    let words = row.split("title=\"").skip(1).filter_map(|rest| rest.split_once('"'));
+    words.map(|(words, _)| words.to_owned()).collect()
+}
+
+#[test]
+fn the_timeline_has_what_the_alignments_before_the_latest_did() {
+    let scratch = Scratch::new("before");
+    let inputs = scratch.path("run.jsonl");
+    let runs = [
+        ("stage --rate 50 --dwell 2 --realign --hold 900", "dwell 25"),
+        ("turntable --rate 50 --turns 3 --realign --hold 1200", "turns"),
+        ("vehicle --rate 50 --stops 2 --stop-seconds 30 --realign --hold 1200", "stop 2"),
+    ];
+    for (run, words) in runs {
+        let run: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
+        let (_, ran) = page(&[&run[..], &["--record", &inputs]].concat());
+        let before = told_in_row(&ran, "alignments before");
+        assert!(before.iter().any(|told| told.contains(words)), "{run:?}: {before:?}");
+        let (_, replayed) = page(&["replay", &inputs]);
+        assert_eq!(told_in_row(&replayed, "alignments before"), before, "{run:?}");
     }
 }
 

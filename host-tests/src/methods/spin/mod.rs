@@ -25,6 +25,10 @@ use crate::output::significant;
 use crate::recording::period::Steps;
 use crate::recording::{Body, GIVEN, Given, Header, SpinRow};
 
+/// The least angle random walk that is told, °/√h: one below a millionth is that of no gyro, but of a simulation without
+/// noise.
+const LEAST_WALK: f64 = 1e-6;
+
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
 
@@ -172,8 +176,12 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
             let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
             let walk = limit::gyro_walk(&rates, period_s);
             let field = walk / DEGREE_PER_SQRT_HOUR;
-            let field = significant(field, 3);
-            assumed.push(format!("gyro noise N {field} °/√h as the recording shows it"));
+            let shown = if field < LEAST_WALK {
+                format!("below {LEAST_WALK}")
+            } else {
+                significant(field, 3)
+            };
+            assumed.push(format!("gyro noise N {shown} °/√h as the recording shows it"));
             walk
         },
         |n| n * DEGREE_PER_SQRT_HOUR,

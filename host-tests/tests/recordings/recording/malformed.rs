@@ -237,7 +237,8 @@ fn an_unknown_sensor_is_refused() {
 fn a_true_azimuth_that_is_no_angle_is_refused() {
     assert_eq!(
         with_key("# truth_azimuth_deg: west"),
-        "walk.csv: line 2, key truth_azimuth_deg: \"west\" is not a number"
+        "walk.csv: line 2, key truth_azimuth_deg: \"west\": not a number of degrees, as 47.58 or 47°35′20″, \
+         47d35m20s, 47:35:20"
     );
 }
 

@@ -9,12 +9,14 @@ use std::f64::consts::TAU;
 use orientation::alignment::rotating::average::Average;
 use orientation::alignment::rotating::conclusion::Conclusion;
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
+use orientation::alignment::rotating::session::Session;
 use orientation::alignment::rotating::solution::{Fit, Stages};
 use orientation::alignment::rotating::turn::{Stretch, Turn};
 use orientation::units::Radians;
 use serde::Serialize;
 
 use crate::cause::{self, Cause};
+use crate::methods::Course;
 use crate::methods::asked::Question;
 use crate::methods::rotating::Replay;
 use crate::methods::rotating::turns::freed;
@@ -24,7 +26,7 @@ use crate::output::{
     azimuth as in_circle, azimuth_error, counted, degrees, degrees_per_hour, signed,
 };
 use crate::recording::{Body, RotatingRow, Truth};
-use crate::report::{Columns, Lines, Part};
+use crate::report::{self, Columns, Lines, Part};
 
 /// A turn of the platform, with what the mean of its stretch leaves of it.
 #[derive(Clone, Debug, Serialize)]
@@ -229,6 +231,12 @@ fn compensated(turn: &Turn, misalignment: Option<&AxisMisalignment>) -> [f64; 2]
     let speed = f64::from(turn.speed);
     let quickening = [speed * turning[1], -speed * turning[0]];
     [0, 1].map(|part: usize| rate[part] - sine * turning[part] - quadrature * quickening[part])
+}
+
+impl Course for Session {
+    fn stretches(&self) -> Vec<report::Stretch> {
+        progress::even(self, 0.0)
+    }
 }
 
 impl Finished for Replay {

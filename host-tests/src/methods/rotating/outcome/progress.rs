@@ -1,6 +1,7 @@
 //! How the azimuth of a turning platform came to stand, and what was done when.
 
 use orientation::alignment::rotating::average::Average;
+use orientation::alignment::rotating::session::Session;
 use orientation::alignment::rotating::turn;
 
 use super::DISTURBED;
@@ -46,13 +47,7 @@ fn milestone(replay: &Replay, rows: &[RotatingRow]) -> Option<(Milestone, usize)
 /// When the platform turned evenly which way, and which turns at either end of that were left out.
 pub(super) fn timeline(replay: &Replay) -> Timeline {
     let conclusion = replay.session.conclusion();
-    let stretches = replay.session.turn_accumulator.stretches.iter();
-    let spans = stretches.flat_map(|stretch| {
-        let average = conclusion.and_then(|conclusion| nearest(conclusion, stretch));
-        of_turns(stretch, average, replay.zero_s)
-    });
-    let mut spans: Vec<Stretch> = spans.collect();
-    spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+    let spans = even(&replay.session, replay.zero_s);
     // The rate-modulated turns show the axis misalignment.
     let is_felt = conclusion.is_some_and(|all| !all.misalignments.is_empty());
     let first = spans.first().map(|first| Stretch {
@@ -61,8 +56,20 @@ pub(super) fn timeline(replay: &Replay) -> Timeline {
         kind: if is_felt { Kind::Used } else { Kind::Between },
         words: "before the first even turn: rate-modulated turns".to_owned(),
     });
-    let spans = first.into_iter().chain(spans);
-    Timeline::of(vec![Lane::new("platform", spans)])
+    Timeline::of(vec![Lane::new("platform", first.into_iter().chain(spans))])
+}
+
+/// The even turns of a session that began at a time, s.
+pub(super) fn even(session: &Session, zero_s: f64) -> Vec<Stretch> {
+    let conclusion = session.conclusion();
+    let stretches = session.turn_accumulator.stretches.iter();
+    let spans = stretches.flat_map(|stretch| {
+        let average = conclusion.and_then(|conclusion| nearest(conclusion, stretch));
+        of_turns(stretch, average, zero_s)
+    });
+    let mut spans: Vec<Stretch> = spans.collect();
+    spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+    spans
 }
 
 /// The turns of a stretch, from the recording's zero on: those from the first that took part to the last, and those that

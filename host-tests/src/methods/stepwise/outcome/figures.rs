@@ -213,6 +213,11 @@ fn again(session: &Session, index: usize) -> String {
 
 /// When the stage stood and when it turned.
 pub(super) fn timeline(session: &Session, conclusion: &Conclusion) -> Timeline {
+    Timeline::of(vec![Lane::new("dwells", stretches(session, conclusion))])
+}
+
+/// Every dwell when it was, and whether it took part.
+pub(super) fn stretches(session: &Session, conclusion: &Conclusion) -> Vec<Stretch> {
     let both = session.dwells().iter().zip(&conclusion.disturbances).enumerate();
     let dwells = both.map(|(index, (dwell, why))| {
         let (number, angle) = (index + 1, degrees(dwell.stage.rad()));
@@ -224,5 +229,5 @@ pub(super) fn timeline(session: &Session, conclusion: &Conclusion) -> Timeline {
         };
         Stretch { from_s: dwell.start().0.max(0.0), to_s: dwell.end().0, kind, words }
     });
-    Timeline::of(vec![Lane::new("dwells", dwells)])
+    dwells.collect()
 }

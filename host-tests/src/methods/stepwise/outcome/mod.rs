@@ -12,6 +12,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::cause::{self, Cause};
+use crate::methods::Course;
 use crate::methods::asked::Question;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
 use crate::methods::stepwise::{POSITIONS, Replay};
@@ -19,7 +20,7 @@ use crate::outcome::keys::Keys;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome, of_site_and_time};
 use crate::output::{azimuth as in_circle, columns, counted, degrees, degrees_per_hour, signed};
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Lines, Part};
+use crate::report::{Columns, Lines, Part, Stretch};
 
 use self::sway::SwayNoise;
 
@@ -224,6 +225,13 @@ fn table(dwells: &[DwellDetails]) -> Part {
 /// How the Earth rate entered a fit.
 fn earth_rate(fit: &Fit) -> &'static str {
     if fit.earth_rate_is_free() { "free" } else { "known" }
+}
+
+impl Course for Session {
+    fn stretches(&self) -> Vec<Stretch> {
+        let conclusion = self.conclusion();
+        conclusion.map_or_else(Vec::new, |conclusion| figures::stretches(self, conclusion))
+    }
 }
 
 impl Finished for Replay {

@@ -6,11 +6,13 @@ mod progress;
 use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::inclination::pitch_and_roll;
 use orientation::alignment::stops::residual::Residual;
+use orientation::alignment::stops::session::Session;
 use orientation::alignment::stops::stop;
 use orientation::units::{Radians, wrapped};
 use serde::Serialize;
 
 use crate::cause::{self, Cause};
+use crate::methods::Course;
 use crate::methods::asked::Question;
 use crate::methods::stops::{Replay, samples};
 use crate::outcome::keys::Keys;
@@ -20,7 +22,7 @@ use crate::output::{
     signed,
 };
 use crate::recording::{Body, Truth};
-use crate::report::{Columns, Figure, Lines, Part};
+use crate::report::{Columns, Figure, Lines, Part, Stretch};
 
 /// Azimuths of the least inclination U between the first stop and the last, as the method of Szymanowski 2003 finds
 /// them, °: at the end, to which what the gyros turned leads, and at the first stop.
@@ -165,6 +167,12 @@ impl Replay {
             .with_found("  truth", error.map(|error| format!("the error is {}°", signed(error, 4))))
             .with_found("gyro biases", biases.map(|biases| of_biases(biases, 4)));
         (keys, lines)
+    }
+}
+
+impl Course for Session {
+    fn stretches(&self) -> Vec<Stretch> {
+        progress::stretches(self, 0.0)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where a vehicle went, what the solution leaves of its stops, how the azimuth came to stand, and what was done when.
 
 use orientation::alignment::stops::conclusion::Found;
+use orientation::alignment::stops::session::Session;
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::units::{Radians, Seconds, wrapped};
 
@@ -114,8 +115,13 @@ fn known(replay: &Replay, rows: &[ImuRow], end: Seconds) -> Option<Found> {
 
 /// When the vehicle stood and when it drove.
 pub(super) fn timeline(replay: &Replay) -> Timeline {
-    let stops = replay.session.stops();
-    let at = |time: Seconds| replay.zero_s + time.0;
+    Timeline::of(vec![Lane::new("vehicle", stretches(&replay.session, replay.zero_s))])
+}
+
+/// The stops of a session that began at a time, s, and the drives between them.
+pub(super) fn stretches(session: &Session, zero_s: f64) -> Vec<Stretch> {
+    let stops = session.stops();
+    let at = |time: Seconds| zero_s + time.0;
     let stood = stops.iter().enumerate().map(|(index, stop)| Stretch {
         from_s: at(stop.from),
         to_s: at(stop.to),
@@ -130,5 +136,5 @@ pub(super) fn timeline(replay: &Replay) -> Timeline {
     });
     let mut spans: Vec<Stretch> = stood.chain(drove).collect();
     spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
-    Timeline::of(vec![Lane::new("vehicle", spans)])
+    spans
 }
