@@ -130,7 +130,7 @@ impl RunDetails {
         let why = || this.interruption.clone().unwrap_or_else(|| BROKEN_OFF.to_owned());
         let cut_short = done.is_cut_short.then(why);
         let lanes = [figures::earlier(&done.earlier), this.lanes].concat();
-        Self { cut_short, lanes, ..this }
+        Self { lanes, cut_short, ..this }
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.

@@ -79,14 +79,25 @@ fn a_run_that_is_given_its_azimuth_keeps_it_from_then_on_and_ends_when_it_says()
 }
 
 #[test]
-fn a_run_at_a_pole_is_refused_before_it_measures_and_tells_no_time_of_no_dwells() {
+fn a_run_at_a_pole_ends_with_its_refusal_and_tells_no_time_of_no_dwells() {
     for platform in ["stage", "two-frame", "turntable", "vehicle"] {
-        let output = meridian(&["run", platform, "--latitude", "89", "-v"]);
+        let run = ["run", platform, "--latitude", "89", "--hold", "14400", "-v"];
+        let output = meridian(&run);
         let (told, said) = (text(&output.stdout), text(&output.stderr));
         assert_eq!(code(&output), 1, "{platform}: {said}");
+        assert!(reason(&output).contains("latitude 89.00° is beyond ±85°"), "{platform}: {said}");
         let refused = said.lines().find(|line| line.contains("no azimuth: latitude 89.00°"));
         let at_s = refused.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
         assert_eq!(at_s, Some(0.0), "{platform}: {said}");
         assert!(!told.contains("0.0 s in 0 "), "{platform}: {told}");
+        let seconds =
+            object(&meridian(&[&run[..], &["--json"]].concat()))["simulated_seconds"].as_f64();
+        assert!(seconds.is_some_and(|seconds| seconds < 30.0), "{platform}: {seconds:?}");
     }
+}
+
+#[test]
+fn an_azimuth_that_is_given_at_a_pole_is_kept() {
+    let run = ["run", "--latitude", "89", "--handover", "213.7,0.1", "--hold", "60"];
+    assert!(text(&meridian(&run).stdout).contains("Kept for"));
 }

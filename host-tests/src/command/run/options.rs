@@ -11,6 +11,8 @@ use host::interrupt;
 use host::new_file::NewFile;
 use host::packed::Packed;
 use host::recording::inputs::{self, Given, Writer};
+use orientation::earth::Latitude;
+use simulated::hold::Hold;
 use simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, FaultChoice};
@@ -117,6 +119,14 @@ pub struct Place {
 }
 
 impl Place {
+    /// How a run goes on there: where the latitude has no north it ends with the refusal, for no azimuth is ever found that
+    /// could be kept, unless one is given from outside.
+    pub fn going_on(&self, hold: Hold) -> Hold {
+        let has_north = Latitude::from_degrees(self.latitude).is_none_or(Latitude::has_north);
+        let seconds = if has_north || hold.handover.is_some() { hold.seconds } else { 0.0 };
+        Hold { seconds, ..hold }
+    }
+
     /// A scenario there, everything else as usual.
     pub fn scenario(&self, seed: u64) -> Scenario {
         let usual = Scenario::usual(seed);

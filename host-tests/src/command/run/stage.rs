@@ -205,7 +205,8 @@ impl Simulated for StageOptions {
     }
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
-        let scenario = self.scenario();
+        let mut scenario = self.scenario();
+        scenario.hold = self.base.place.going_on(scenario.hold);
         let seconds = lasting(&scenario.hold, scenario.alignment_seconds());
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
@@ -234,7 +235,8 @@ impl Simulated for FramesOptions {
     }
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
-        let scenario = self.scenario();
+        let mut scenario = self.scenario();
+        scenario.base.hold = self.base.place.going_on(scenario.base.hold);
         let seconds = lasting(&scenario.base.hold, scenario.alignment_seconds());
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let [forward, right, down] = run.truth;

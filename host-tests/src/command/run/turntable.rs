@@ -171,7 +171,8 @@ impl Simulated for TurntableOptions {
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let Begun { fault, manner, record } = begun;
-        let scenario = self.scenario();
+        let mut scenario = self.scenario();
+        scenario.base.hold = self.place.going_on(scenario.base.hold);
         // It is written when the run is over; that it can be is to be known before.
         drop(files::opened("the flash", self.flash.as_ref())?);
         let mut store = self.store()?;

@@ -76,7 +76,8 @@ impl Simulated for VehicleOptions {
 
     fn run(&self, begun: &Begun) -> Result<Ran, String> {
         let Begun { fault, manner, record } = begun;
-        let scenario = self.scenario();
+        let mut scenario = self.scenario();
+        scenario.base.hold = self.place.going_on(scenario.base.hold);
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;

@@ -208,7 +208,8 @@ fn milestone(session: &Session, dwells: &[Dwell]) -> Option<Milestone> {
 /// Why a dwell was measured again, in words behind those of what it came to; nothing where it was not.
 fn again(session: &Session, index: usize) -> String {
     let of_it = session.repetitions.iter().filter(|repetition| repetition.position == index);
-    of_it.map(|repetition| format!(", measured again: {}", repetition.why)).collect()
+    let each = of_it.map(|repetition| format!(", measured again: {}", repetition.why));
+    each.collect::<Vec<_>>().concat()
 }
 
 /// When the stage stood and when it turned.
