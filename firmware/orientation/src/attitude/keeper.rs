@@ -68,8 +68,9 @@ impl Keeper {
             self.since = now;
         }
         let is_nowhere = |heading: &Heading| heading.sigma(&self.vertical) > NOWHERE.0;
-        // The test is made only after a loss of rotation: otherwise σ grows slowly.
-        if self.trust == Trust::RotationLost && self.heading.as_ref().is_some_and(is_nowhere) {
+        // The test is made only where σ grows fast: otherwise a new alignment or the end comes before.
+        let grows_fast = self.trust == Trust::RotationLost || self.vertical.has_unlearnt_bias();
+        if grows_fast && self.heading.as_ref().is_some_and(is_nowhere) {
             self.withdraw();
         }
     }

@@ -84,7 +84,7 @@ impl Vertical {
     pub(crate) fn learn_from_sway(&mut self) {
         self.poise.close();
         let mean = core::mem::take(&mut self.poise).before;
-        if self.course.stood > 0.0 || mean.seconds < LEAST {
+        if !self.has_unlearnt_bias() || mean.seconds < LEAST {
             return;
         }
         self.finish();
@@ -116,11 +116,16 @@ impl Vertical {
         noise + 2.0 * swayed * swayed + 2.0 * level * self.hidden()
     }
 
+    /// Whether neither a rest nor an alignment has shown the gyros' biases.
+    pub(crate) fn has_unlearnt_bias(&self) -> bool {
+        self.course.stood <= 0.0
+    }
+
     /// Variance of what the vertical gyro's bias turns the azimuth by since its error counts, rad², where no rest has shown
     /// it: only what is stated of it counts then, and the filter's estimate, whose σ is too small since its level errs
     /// with it, is an error as a whole.
     pub(super) fn unlearnt_variance(&self) -> f32 {
-        let turned = if self.course.stood > 0.0 { 0.0 } else { self.course.moved };
+        let turned = if self.has_unlearnt_bias() { self.course.moved } else { 0.0 };
         let [.., bias] = self.bias;
         (self.priors[2] + bias * bias) * turned * turned
     }
