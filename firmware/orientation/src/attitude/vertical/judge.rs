@@ -259,7 +259,7 @@ impl Vertical {
             walk: window.walk().unwrap_or(self.expected.walk),
             acceleration: force.and_then(|force| self.acceleration(&force)),
         };
-        self.poise.push(&window);
+        self.sway.push(&window);
         let was_rest = self.is_at_rest();
         match self.rest.push(means, &self.known()) {
             Found::Rest => self.stand(&window, was_rest),

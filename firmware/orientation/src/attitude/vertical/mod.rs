@@ -17,19 +17,19 @@ mod floor;
 mod gap;
 mod judge;
 mod motion;
-mod poise;
 mod rest;
 mod stretch;
 mod sums;
+mod sway;
 
 use self::course::Course;
 use self::filter::{BIAS, Expected, Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
 use self::motion::GRAVITY;
-use self::poise::Poise;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
+use self::sway::SwayAverage;
 use super::setting::Setting;
 use crate::math::quaternion::{Attitude, Matrix, Vector};
 use crate::math::rotation::{difference, dot, length, scaled, sum, transposed, turned};
@@ -113,7 +113,7 @@ pub(super) struct Vertical {
     /// Part of the present rest that was not used yet.
     rested: Rested,
     /// Mean rates of a base that never rests.
-    poise: Poise,
+    sway: SwayAverage,
     /// Values of the previous sample.
     before: Before,
     /// Motion since the heading was handed over.
@@ -304,7 +304,7 @@ impl Vertical {
         self.axes[2] = [0.0; 3];
         self.filter.reset(BIAS + 2, sigma * sigma);
         self.filter.reset_axis(2, self.expected.scale[2]);
-        (self.rested, self.poise) = (Rested::default(), Poise::default());
+        (self.rested, self.sway) = (Rested::default(), SwayAverage::default());
         self.break_off();
         self.rest.exchange(2, self.expected.walk[2]);
     }

@@ -49,14 +49,14 @@ impl Turned {
 
 /// Mean rates since the start, or since the base was last turned.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Poise {
+pub(super) struct SwayAverage {
     /// All parts that are over.
     before: Turned,
     /// The part in progress.
     part: Turned,
 }
 
-impl Poise {
+impl SwayAverage {
     /// Adds a window.
     pub(super) fn push(&mut self, window: &Window) {
         self.part.add(window.seconds, &window.turned);
@@ -82,8 +82,8 @@ impl Vertical {
     /// Learns biases and level of a base that has never rested, but stood as an alignment has shown. What the filter made of
     /// them is dropped, and the turn that its error of the vertical gyro's bias has made is taken back.
     pub(crate) fn learn_from_sway(&mut self) {
-        self.poise.close();
-        let mean = core::mem::take(&mut self.poise).before;
+        self.sway.close();
+        let mean = core::mem::take(&mut self.sway).before;
         if !self.has_unlearnt_bias() || mean.seconds < LEAST {
             return;
         }
