@@ -1,6 +1,7 @@
 //! Why the system refuses to read, to write or to start something: sentences for its kinds of errors, which have numbers
 //! alone.
 
+use std::fmt::Display;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
@@ -59,6 +60,6 @@ pub fn unwritten(what: &str, path: &Path, error: &io::Error) -> String {
 
 /// That something of this name, a file, a folder or a program, was refused, and why.
 #[must_use]
-pub fn named(name: &str, error: &io::Error) -> String {
+pub fn named(name: impl Display, error: &io::Error) -> String {
     format!("{name}: {}", cause(error))
 }

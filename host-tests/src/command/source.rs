@@ -108,7 +108,7 @@ impl Source {
 
 /// The recordings of a folder, but not of those in it.
 fn in_folder(folder: &Path) -> Result<Vec<Source>, String> {
-    let failed = |error: io::Error| refused::named(&folder.display().to_string(), &error);
+    let failed = |error: io::Error| refused::named(folder.display(), &error);
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         paths.push(entry.map_err(failed)?.path());

@@ -109,7 +109,7 @@ pub fn emulate(
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| refused::named(&path.display().to_string(), &error))
+    fs::read(path).map_err(|error| refused::named(path.display(), &error))
 }
 
 /// Runs the image `emulator`.

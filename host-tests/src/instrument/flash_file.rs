@@ -20,7 +20,7 @@ use crate::refused;
 pub fn load(path: &Path) -> Result<Flash, String> {
     match File::open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(Flash::default()),
-        Err(error) => Err(refused::named(&path.display().to_string(), &error)),
+        Err(error) => Err(refused::named(path.display(), &error)),
         Ok(file) => read(file).map(Flash::holding).map_err(|error| {
             format!(
                 "{}: no flash of a board, or damaged ({})",

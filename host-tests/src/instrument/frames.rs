@@ -77,8 +77,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
-    let earlier = session.earlier::<Sample>();
     let (session, is_cut_short) = harness.concluded::<Sample, _>(session);
     let replay = Replay { method: POSITIONS, session, assumed: given_with(scenario.base.half) };
-    Ok(FramesRun { earlier, ..harness.clear(ended, &board, (replay, is_cut_short), axis) })
+    Ok(harness.clear(ended, &board, (replay, is_cut_short), axis))
 }

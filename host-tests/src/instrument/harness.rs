@@ -24,7 +24,9 @@ use orientation::units;
 use super::kept::Kept;
 use super::latest::Latest;
 use super::{Run, RunError};
+use crate::methods::Course;
 use crate::output::seconds;
+use crate::report::Stretch;
 use crate::{interrupt, virtual_time};
 
 /// A harness on which a board is put: it keeps what the board reports and passes it on.
@@ -34,6 +36,7 @@ pub(super) struct Harness<'w> {
     base: RefCell<Vec<(Instant, BaseReading)>>,
     bytes: RefCell<Vec<u8>>,
     found: RefCell<Vec<(units::Instant, Azimuth)>>,
+    earlier: RefCell<Vec<Stretch>>,
     /// Whether the run was interrupted.
     is_interrupted: Cell<bool>,
     watch: &'w dyn Observer,
@@ -93,8 +96,8 @@ impl Write for Wire<'_> {
 impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
     pub(super) fn new(watch: &'w dyn Observer) -> Self {
-        let (events, reports, base, bytes, found, is_interrupted) = Default::default();
-        Self { events, reports, base, bytes, found, is_interrupted, watch }
+        let (events, reports, base, bytes, found, earlier, is_interrupted) = Default::default();
+        Self { events, reports, base, bytes, found, earlier, is_interrupted, watch }
     }
 
     /// The channels of the board's parts.
@@ -138,8 +141,9 @@ impl<'w> Harness<'w> {
     }
 
     /// The session of a run, and whether it was concluded before its own end: where the run was interrupted while no azimuth
-    /// was known.
-    pub(super) fn concluded<S, M: Method<S>>(&self, session: Latest<M>) -> (M, bool) {
+    /// was known. What earlier alignments did is kept beside it.
+    pub(super) fn concluded<S, M: Method<S> + Course>(&self, session: Latest<M>) -> (M, bool) {
+        self.earlier.replace(session.earlier::<S>());
         let is_known = self.reports.borrow().iter().any(|report| report.azimuth.is_some());
         session.into_session(self.is_interrupted.get() && !is_known)
     }
@@ -157,7 +161,7 @@ impl<'w> Harness<'w> {
         Run {
             replay,
             is_cut_short,
-            earlier: Vec::new(),
+            earlier: self.earlier.into_inner(),
             truth,
             events: self.events.into_inner(),
             reports: self.reports.into_inner(),

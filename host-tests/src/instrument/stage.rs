@@ -72,8 +72,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
         &channels,
     )?;
-    let earlier = session.earlier::<Sample>();
     let (session, is_cut_short) = harness.concluded::<Sample, _>(session);
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };
-    Ok(Run { earlier, ..harness.clear(ended, &board, (replay, is_cut_short), ()) })
+    Ok(harness.clear(ended, &board, (replay, is_cut_short), ()))
 }

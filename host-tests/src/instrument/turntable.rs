@@ -86,7 +86,6 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         channels,
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    let earlier = session.earlier::<Sample>();
     let session = harness.concluded::<Sample, _>(session);
-    Ok(TurntableRun { earlier, ..harness.clear(ended, &board, session, rate) })
+    Ok(harness.clear(ended, &board, session, rate))
 }

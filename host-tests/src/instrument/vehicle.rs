@@ -71,9 +71,8 @@ impl Carrier for VehicleScenario {
             &channels,
         )?;
         let truth = board.borrow().plant.truth();
-        let earlier = session.earlier::<InertialSample>();
         let session = harness.concluded::<InertialSample, _>(session);
-        let mut run = VehicleRun { earlier, ..harness.clear(ended, &board, session, truth) };
+        let mut run = harness.clear(ended, &board, session, truth);
         run.compare(day.configuration().motion());
         Ok(run)
     }

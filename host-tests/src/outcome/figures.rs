@@ -128,9 +128,9 @@ pub(super) fn alignments(found: &[(units::Instant, Azimuth)]) -> Option<Lane> {
 }
 
 /// What alignments did before the latest one that found an azimuth.
-pub(super) fn earlier(stretches: &[Stretch]) -> Vec<Lane> {
+pub(super) fn earlier(stretches: &[Stretch]) -> Option<Lane> {
     let lane = || Lane::new("alignments before", stretches.iter().cloned());
-    if stretches.is_empty() { Vec::new() } else { vec![lane()] }
+    (!stretches.is_empty()).then(lane)
 }
 
 /// How far the level could be relied on while something was kept.

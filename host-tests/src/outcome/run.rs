@@ -18,7 +18,7 @@ use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::instrument::replay::Done;
 use crate::interrupt;
 use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, seconds, signed};
-use crate::report::{Lane, Lines, Part, Table};
+use crate::report::{Lane, Lines, Part, Stretch, Table};
 
 /// What only a simulated run has.
 #[derive(Clone, Debug, Serialize)]
@@ -108,10 +108,9 @@ impl RunDetails {
         let keys = Keys::default().with("simulated_seconds", run.seconds).with("health", health);
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
-        let this = Self::with(keys, Some(board), &run.kept, &realignments(run));
+        let this = Self::with(keys, Some(board), (&run.kept, &run.earlier), &realignments(run));
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
-        let earlier = figures::earlier(&run.earlier);
-        let lanes = [earlier, this.lanes, figures::faults(&run.events)].concat();
+        let lanes = [this.lanes, figures::faults(&run.events)].concat();
         let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
         Self { degradations, lanes, cut_short, ..this }
     }
@@ -126,15 +125,20 @@ impl RunDetails {
     /// What the inputs of a run did: what was kept, and how later azimuths agreed with it.
     #[must_use]
     pub fn of_inputs(done: &Done) -> Self {
-        let this = Self::with(Keys::default(), None, &done.kept, &done.realignments);
+        let (keys, kept) = (Keys::default(), (&done.kept, &*done.earlier));
+        let this = Self::with(keys, None, kept, &done.realignments);
         let why = || this.interruption.clone().unwrap_or_else(|| BROKEN_OFF.to_owned());
         let cut_short = done.is_cut_short.then(why);
-        let lanes = [figures::earlier(&done.earlier), this.lanes].concat();
-        Self { lanes, cut_short, ..this }
+        Self { cut_short, ..this }
     }
 
     /// What was kept, with further keys, and lines behind those of what was kept.
-    fn with(keys: Keys, board: Option<Lines>, kept: &Kept, later: &Realignments) -> Self {
+    fn with(
+        keys: Keys,
+        board: Option<Lines>,
+        (kept, earlier): (&Kept, &[Stretch]),
+        later: &Realignments,
+    ) -> Self {
         let last = kept.last().copied();
         let was_known = kept.with_azimuth().next().is_some();
         // Before an azimuth is known there is nothing to keep.
@@ -153,8 +157,9 @@ impl RunDetails {
                 .chain(figures::all(kept).into_iter().map(Part::from))
                 .chain(board)
                 .collect(),
-            lanes: figures::alignments(&later.found)
+            lanes: figures::earlier(earlier)
                 .into_iter()
+                .chain(figures::alignments(&later.found))
                 .chain(figures::lanes(kept))
                 .collect(),
             kept: last,

@@ -64,8 +64,7 @@ pub fn azimuth(degrees: f64, places: usize) -> String {
 /// A number above zero with so many digits that count, and without an exponent.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
-    let places = digits - 1 - value.abs().max(1e-12).log10().floor() as i32;
-    fixed(value, places.max(0) as usize)
+    fixed(value, places(value.abs().max(1e-12), digits).max(0.0) as usize)
 }
 
 /// A value and its 1σ with as many decimal places as show two digits of that.
@@ -78,7 +77,12 @@ pub fn to_sigma(value: f64, sigma: f64) -> [String; 2] {
 /// Decimal places that show two digits of a number.
 #[must_use]
 pub fn places_of(number: f64) -> usize {
-    (1.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize
+    places(number.abs(), 2).clamp(0.0, 12.0) as usize
+}
+
+/// Decimal places that show so many digits of a number, negative where the last one stands before the point.
+fn places(number: f64, digits: i32) -> f64 {
+    f64::from(digits) - 1.0 - number.log10().floor()
 }
 
 /// So many of what has this name, in words; the plural is regular.

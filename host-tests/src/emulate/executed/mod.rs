@@ -170,7 +170,7 @@ fn report(
     command.current_dir(root()).arg(image).args(options.arguments(carrier)).arg("--while-stdin");
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     command.stderr(if shows_log { Stdio::inherit() } else { Stdio::piped() });
-    let failed = |error: io::Error| refused::named(&program.display().to_string(), &error);
+    let failed = |error: io::Error| refused::named(program.display(), &error);
     let mut child = command.spawn().map_err(failed)?;
     let held_open = child.stdin.take();
     let output = child.wait_with_output().map_err(failed)?;

@@ -11,7 +11,7 @@ use crate::methods::spin::track::Track;
 use crate::methods::spin::{Replay, name};
 use crate::outcome::keys::Keys;
 use crate::outcome::{Finished, Outcome};
-use crate::output::{degrees, signed, to_sigma};
+use crate::output::{degrees, fixed, places_of, signed};
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Lines, Part, Table};
 
@@ -156,9 +156,8 @@ fn facts(replay: &Replay, outcome: &Outcome) -> Lines {
     let turns = format!("{whole} since the beginning: {:.6} rad in all", end.roll_rad);
     let scale = |found: [f64; 2]| {
         let [scale, sigma] = found.map(|relative| 1e6 * relative);
-        let sign = if scale < 0.0 { "" } else { "+" };
-        let [scale, sigma] = to_sigma(scale, sigma);
-        format!("{sign}{scale} ± {sigma} ppm (1σ)")
+        let places = places_of(sigma);
+        format!("{} ± {} ppm (1σ)", signed(scale, places), fixed(sigma, places))
     };
     Lines::default()
         .with_found("turns", outcome.sigma_deg.map(|_| turns))
