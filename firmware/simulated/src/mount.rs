@@ -198,8 +198,7 @@ impl FramesScenario {
     /// What the keeper is given about place and gyros; none where the latitude is none.
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
-        let keeper = self.base.keeper()?;
-        Some(keep::Setting { force_bias_sigma: FORCE_BIAS_SIGMA, ..keeper })
+        self.base.keeper()
     }
 
     /// How long an alignment takes, s.

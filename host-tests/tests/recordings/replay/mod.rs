@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 
 use hal_mock::noise::Generator;
+use host::campaign::statistics::rms;
 use host::methods::asked::Asked;
 use host::methods::error::ReplayError;
 use host::methods::stepwise::{Replay, replay};
@@ -23,6 +24,7 @@ use orientation::alignment::stepwise::quality::Disturbance;
 use orientation::alignment::stepwise::setting::Half;
 use orientation::earth::Latitude;
 use orientation::units::Radians;
+use rayon::prelude::*;
 
 use crate::support::files::recording;
 use crate::support::program::words;
@@ -348,6 +350,52 @@ fn what_explains_the_dwells_beside_the_earth_rate_stands_in_the_model_and_costs_
         assert!(model.iter().any(|column| column.contains(name)), "{name}: {model:?}");
         let error = azimuth_error(azimuth.angle.degrees(), 213.7).to_radians();
         assert!(error.abs() < 4.0 * azimuth.sigma.0, "{name}: {error} ± {}", azimuth.sigma.0);
+    }
+}
+
+/// Stage angles, °, and the 1σ of a dwell, °/h, of signals at which noise is not small against the
+/// Earth rate: arcs from 45° to 120° and circles of few positions.
+const WEAK: [(&[f64], f64); 6] = [
+    (&[0.0, 15.0, 30.0, 45.0], 0.2),
+    (&[0.0, 15.0, 30.0, 45.0, 60.0], 0.5),
+    (&[0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0], 1.0),
+    (&[0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0], 1.3),
+    (&[0.0, 90.0, 180.0, 270.0], 1.2),
+    (&[0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0], 2.0),
+];
+
+/// Error over σ of averaged dwells whose gyro is stated by their σ alone; none where it is refused.
+fn of_weak_signal(angles_deg: &[f64], sigma_deg_h: f64, seed: u64) -> Option<f64> {
+    let mut generator = Generator::stream(seed, 9);
+    let azimuth_deg = 360.0 * generator.uniform();
+    let horizontal = 15.041_067 * 50_f64.to_radians().cos();
+    let mut text = String::from("# kind: dwells\n# latitude_deg: 50\n");
+    text += "stage_rad,rate_rad_s,sigma_rad_s,seconds\n";
+    for angle in angles_deg {
+        let stage = angle.to_radians();
+        let heading = azimuth_deg.to_radians() + stage;
+        let rate = horizontal * heading.cos() + 0.7 + sigma_deg_h * generator.gaussian();
+        let [rate, sigma] = [rate, sigma_deg_h].map(|rate| rate.to_radians() / 3600.0);
+        writeln!(text, "{stage:e},{rate:e},{sigma:e},60").expect("strings take all");
+    }
+    let replay = replayed_dwells(&text, &Asked::default()).expect("it replays");
+    let azimuth = replay.session.conclusion().expect("it has ended").verdict.ok()?;
+    Some(azimuth_error(azimuth.angle.degrees(), azimuth_deg) / azimuth.sigma.degrees())
+}
+
+#[test]
+fn a_signal_that_noise_all_but_hides_is_refused_or_within_its_sigma() {
+    for (angles_deg, sigma_deg_h) in WEAK {
+        let errors: Vec<f64> = (0..200)
+            .into_par_iter()
+            .filter_map(|seed| of_weak_signal(angles_deg, sigma_deg_h, seed))
+            .collect();
+        let greatest = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
+        let rms = rms(&errors);
+        println!("{angles_deg:?}: {} found, RMS {rms:.2}, greatest {greatest:.1} σ", errors.len());
+        assert!(errors.len() > 20, "{angles_deg:?}: {} found", errors.len());
+        assert!(greatest < 4.0, "{angles_deg:?}: {greatest} σ");
+        assert!((0.7..1.35).contains(&rms), "{angles_deg:?}: RMS {rms} σ");
     }
 }
 

@@ -53,7 +53,7 @@ impl Direction {
     /// Covariance of the components that the prior knowledge of ρ leaves, in units of `Ω_h`².
     pub(super) fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
-        let across = [-self.amplitude * sine, self.amplitude * cosine];
+        let across = across(self.amplitude, [cosine, sine]);
         let along = [cosine + vertical[0], sine + vertical[1]];
         [0, 1].map(|i| {
             [0, 1].map(|j| {
@@ -78,6 +78,12 @@ const SCAN: usize = 64;
 /// two opposite positions fit both alike, and noise moves an azimuth slightly across the axis
 /// between the halves.
 const OTHER_HALF: f64 = 25.0;
+
+/// Significance, in σ, at which the width of J(A) is measured: where the noise is not small against
+/// the Earth rate, J is no parabola, and its curvature says nothing of its width.
+const REACH: f64 = 5.0;
+/// Halvings of a scan's step in which the edge of that width is found: to 5″.
+const HALVINGS: usize = 12;
 
 /// Chi-square profile J(A) and its parts.
 struct Profile<'a> {
@@ -105,6 +111,12 @@ impl Components {
         let profile = Profile::new(self, amplitude)?;
         let (azimuth, margin) = profile.minimise()?;
         Some(profile.linearise(azimuth, margin))
+    }
+
+    /// Least 1σ of an azimuth, rad, with which [`REACH`] σ cover all azimuths that fit worse by no
+    /// more than [`REACH`] σ.
+    pub(super) fn covering(&self, azimuth: f64, amplitude: Amplitude) -> Option<f64> {
+        Some(Profile::new(self, amplitude)?.reach(azimuth) / REACH)
     }
 }
 
@@ -176,6 +188,23 @@ impl<'a> Profile<'a> {
         is_best.then_some((best.0, margin))
     }
 
+    /// Greatest distance from an azimuth, rad, in either direction, within which all fit worse by no
+    /// more than [`REACH`] σ.
+    fn reach(&self, azimuth: f64) -> f64 {
+        let worst = self.at(azimuth).0 + REACH * REACH;
+        let fits = |off: f64| self.at(azimuth + off).0 <= worst;
+        let step = core::f64::consts::TAU / SCAN as f64;
+        [step, -step].into_iter().fold(0.0, |farthest: f64, step| {
+            let whole = (1..=SCAN / 2).take_while(|k| fits(*k as f64 * step)).count() as f64;
+            let (mut inside, mut outside) = (whole * step, (whole + 1.0) * step);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (inside + outside);
+                if fits(middle) { inside = middle } else { outside = middle }
+            }
+            farthest.max(outside.abs())
+        })
+    }
+
     /// Refines a minimum by the parabola through three points, halving its width, never moving
     /// further than `step` at once.
     fn refine(&self, start: f64, step: f64) -> f64 {
@@ -195,8 +224,8 @@ impl<'a> Profile<'a> {
     /// Linearised covariance of (A, ρ) at the solution, from its inverted information.
     fn linearise(&self, azimuth: f64, margin: f64) -> Direction {
         let (sine, cosine) = libm::sincos(azimuth);
-        let (_, amplitude) = self.at(azimuth);
-        let across = [-amplitude * sine, amplitude * cosine];
+        let amplitude = self.at(azimuth).1;
+        let across = across(amplitude, [cosine, sine]);
         let across_weighted = product(&self.information, across);
         let along = self.along([cosine, sine]);
         let along_weighted = product(&self.information, along);
@@ -224,6 +253,12 @@ impl<'a> Profile<'a> {
             margin,
         }
     }
+}
+
+/// Change of the components, in units of `Ω_h`, with the azimuth, rad, for its unit vector. A signal
+/// that noise has made larger than the Earth's does not make σ smaller.
+fn across(amplitude: f64, [cosine, sine]: [f64; 2]) -> [f64; 2] {
+    [-sine, cosine].map(|part| amplitude.min(1.0) * part)
 }
 
 /// Unit vector of the scan's direction `k`, from the reference table (etalon).

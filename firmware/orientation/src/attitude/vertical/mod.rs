@@ -295,6 +295,8 @@ impl Vertical {
 
     /// Replaces the gyro of the down axis by another one, whose bias is unknown.
     pub(crate) fn exchange_down(&mut self, setting: &Setting) {
+        // What was turned since the latest attitude update has the former gyro's bias.
+        self.tick(self.time());
         self.finish();
         self.expected = Expected::of(setting);
         let [.., down] = &setting.gyros;

@@ -258,6 +258,7 @@ impl Problem<'_> {
         let noise = self.noise_components(&solution);
         fit.constrain(&mut solution, &components, &noise);
         fit.allow_for_excess();
+        fit.cover(components.covering(direction.azimuth, model.amplitude)?);
         Some((fit, solution.covariance))
     }
 

@@ -24,12 +24,13 @@ pub(super) type Covariance = [[f64; 2]; 2];
 
 impl Problem<'_> {
     /// Cramér–Rao bound for these columns when all stationary time counts fully, rad, and the bound
-    /// with the Earth rate free.
+    /// with the Earth rate free: of a signal that noise has made no smaller than the Earth's.
     #[inline(never)]
     pub(super) fn limits(&self, model: &Model, bent: &Bent) -> Option<[f64; 2]> {
         let regression = self.regression(self.setting.site.noise.model(), |_| 1.0, bent);
         let components = self.noise_components(&regression.solve(&model.columns())?);
-        let sigma = |direction: Direction| libm::sqrt(direction.variance);
+        let sigma =
+            |direction: Direction| libm::sqrt(direction.variance) * direction.amplitude.min(1.0);
         Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
     }
 
@@ -147,11 +148,8 @@ impl Problem<'_> {
                 level = level.max(apart + MISSED * libm::sqrt(trial.direction.variance));
             }
         }
-        let (least, sigma) = (level / WRONG, fit.sigma());
-        if least > sigma.0 {
-            let more = least * least - sigma.0 * sigma.0;
-            fit.budget.drift = Radians(libm::sqrt(fit.budget.drift.0 * fit.budget.drift.0 + more));
-        }
+        let more = fit.missing(level / WRONG);
+        fit.budget.drift = Radians(libm::sqrt(fit.budget.drift.0 * fit.budget.drift.0 + more));
     }
 
     /// Greatest error of the azimuth for a tilting base that the forces indicate but do not prove,
@@ -227,6 +225,18 @@ impl Fit {
     pub(super) fn allow_for_excess(&mut self) {
         self.excess = 1.0;
         self.allow_for(excess(self.chi_square, self.degrees));
+    }
+
+    /// Variance that σ lacks to be at least this, rad².
+    fn missing(&self, least: f64) -> f64 {
+        let sigma = self.sigma().0;
+        (least * least - sigma * sigma).max(0.0)
+    }
+
+    /// Raises σ to at least this, rad, by the noise of which it comes.
+    pub(super) fn cover(&mut self, least: f64) {
+        let noise = self.budget.noise.0;
+        self.budget.noise = Radians(libm::sqrt(noise * noise + self.missing(least)));
     }
 
     /// Whether an anomaly shows in the residuals, the Earth rate or the model.
