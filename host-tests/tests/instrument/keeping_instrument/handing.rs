@@ -76,6 +76,25 @@ fn what_turns_between_the_sessions_last_sample_and_the_handing_over_counts() {
     }
 }
 
+#[test]
+fn what_a_biased_gyro_has_turned_before_another_takes_its_place_is_free_of_its_bias() {
+    let coarse = Gyro { bias_sigma: RadiansPerSecond(0.1), ..Gyro::default() };
+    let latitude = Latitude::from_degrees(45.0).expect("a latitude");
+    // What the Earth turns a body at rest in a sample.
+    let earth = -latitude.vertical_rate().0 * 0.01;
+    for later in 0..4 {
+        let mut keeper = Keeper::new(&Setting::precise(latitude, Seconds(0.01), coarse));
+        let last = 6000 + later;
+        // At rest, with a bias of 3 °/s; then the other gyro, without any.
+        (1..=last).for_each(|index| keeper.push(&sample(index, earth + 0.03 * DEGREE)));
+        keeper.hand_over(azimuth(100.0, 0.01));
+        keeper.exchange_down(gyro());
+        (1..=500).for_each(|index| keeper.push(&sample(last + index, earth)));
+        let kept = keeper.report().azimuth.expect("it is kept").angle.degrees();
+        assert!((kept - 100.0).abs() < 2e-3, "{later} samples later: {kept}°");
+    }
+}
+
 /// An azimuth and its 1σ, °.
 pub fn azimuth(angle: f64, sigma: f64) -> Azimuth {
     Azimuth { angle: Radians::from_degrees(angle), sigma: Radians::from_degrees(sigma) }

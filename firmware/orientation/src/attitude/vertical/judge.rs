@@ -4,7 +4,7 @@ use super::filter::{BIAS, Correction, TURN};
 use super::motion::GRAVITY;
 use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
-use super::sums::{Rested, Window};
+use super::sums::Window;
 use super::{Trust, Vertical};
 use crate::math::quaternion::Vector;
 use crate::math::rotation::{difference, dot, length, scaled, sum, turned};
@@ -259,7 +259,9 @@ impl Vertical {
             walk: window.walk().unwrap_or(self.expected.walk),
             acceleration: force.and_then(|force| self.acceleration(&force)),
         };
-        self.sway.push(&window);
+        if self.has_unlearnt_bias() {
+            self.sway.push(&window);
+        }
         let was_rest = self.is_at_rest();
         match self.rest.push(means, &self.known()) {
             Found::Rest => self.stand(&window, was_rest),
@@ -383,10 +385,9 @@ impl Vertical {
     fn stand(&mut self, window: &Window, was_rest: bool) {
         self.filter.stand();
         self.course.stand(window.seconds);
-        self.rested.seconds += window.seconds;
-        self.rested.turned = sum(&self.rested.turned, &window.turned);
-        if self.rested.seconds >= self.rested.due {
-            self.rested.due = (2.0 * self.rested.seconds).min(LONGEST_REST);
+        self.rested.part.add(window.seconds, &window.turned);
+        if self.rested.part.seconds >= self.rested.due {
+            self.rested.due = (2.0 * self.rested.part.seconds).min(LONGEST_REST);
             self.findings.biases = self.rested_biases();
         }
         if let Some(force) = window.force() {
@@ -406,14 +407,14 @@ impl Vertical {
 
     /// Measurement of the biases by the part of the rest that was not used yet.
     fn rested_biases(&mut self) -> Option<[Vector; 2]> {
-        let Rested { seconds, turned, .. } = self.rested;
-        if seconds <= 0.0 {
+        let part = core::mem::take(&mut self.rested.part);
+        if part.seconds <= 0.0 {
             return None;
         }
-        (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
         self.rest.count_anew();
-        let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
-        Some([off, core::array::from_fn(|axis| self.rest_variance(axis, seconds))])
+        let off = difference(&part.rates(), &self.bias);
+        let variance = |axis| self.mean_variance(axis, part.seconds, SHAKING);
+        Some([off, core::array::from_fn(variance)])
     }
 
     /// Updates the filter at once with the biases of the rest.
@@ -426,10 +427,10 @@ impl Vertical {
         }
     }
 
-    /// Variance of a mean rate over `seconds` of a rest, (rad/s)².
-    pub(super) fn rest_variance(&self, axis: usize, seconds: f32) -> f32 {
-        let shaking = SHAKING / seconds;
-        self.expected.walk[axis] / seconds + 2.0 * shaking * shaking
+    /// Variance of a mean rate over `seconds` in which the body swings to and fro by an angle, 1σ, rad; (rad/s)².
+    pub(super) fn mean_variance(&self, axis: usize, seconds: f32, angle: f32) -> f32 {
+        let swung = angle / seconds;
+        self.expected.walk[axis] / seconds + 2.0 * swung * swung
     }
 
     /// Applies the corrections to attitude, biases and axes.

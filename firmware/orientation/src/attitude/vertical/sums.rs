@@ -76,16 +76,36 @@ impl Window {
     }
 }
 
+/// Rotation over a time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Turned {
+    /// Length, s.
+    pub(super) seconds: f32,
+    /// Rotation against the Earth about the body's axes, including the biases, rad.
+    pub(super) angles: Vector,
+}
+
+impl Turned {
+    /// Adds a time that follows.
+    pub(super) fn add(&mut self, seconds: f32, angles: &Vector) {
+        self.seconds += seconds;
+        self.angles = sum(&self.angles, angles);
+    }
+
+    /// Mean rates, rad/s.
+    pub(super) fn rates(&self) -> Vector {
+        scaled(&self.angles, 1.0 / self.seconds)
+    }
+}
+
 /// Part of a rest that has not updated the biases yet. The mean rate of each part counts, and each
 /// part is as long as all before, because shaking turns the body to and fro.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rested {
-    /// Length so far, s.
-    pub(super) seconds: f32,
+    /// Part so far.
+    pub(super) part: Turned,
     /// Intended length of this part, s.
     pub(super) due: f32,
-    /// Rotation so far, rad.
-    pub(super) turned: Vector,
 }
 
 /// Values of the previous sample.

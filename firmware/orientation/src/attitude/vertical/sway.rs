@@ -7,9 +7,9 @@
 
 use super::Vertical;
 use super::filter::{BIAS, TURN};
-use super::sums::Window;
-use crate::math::quaternion::{Matrix, Vector};
-use crate::math::rotation::{difference, dot, scaled, sum};
+use super::sums::{Turned, Window};
+use crate::math::quaternion::Matrix;
+use crate::math::rotation::{difference, dot};
 
 /// Angle by which a base sways that is aligned, 1σ, rad: half a degree.
 const SWAY: f32 = 1e-2;
@@ -18,27 +18,7 @@ const LEAST: f32 = 20.0;
 /// Significance, in σ, at which two mean rates are different ones.
 const BOUND: f32 = 3.0;
 
-/// Rotation over a time.
-#[derive(Clone, Copy, Debug, Default)]
-struct Turned {
-    /// Length, s.
-    seconds: f32,
-    /// Rotation against the Earth about the body's axes, with the biases, rad.
-    angles: Vector,
-}
-
 impl Turned {
-    /// Adds a time that follows.
-    fn add(&mut self, seconds: f32, angles: &Vector) {
-        self.seconds += seconds;
-        self.angles = sum(&self.angles, angles);
-    }
-
-    /// Mean rates, rad/s.
-    fn rates(&self) -> Vector {
-        scaled(&self.angles, 1.0 / self.seconds)
-    }
-
     /// Whether the mean rates of a shorter time are others than these.
     fn is_other(&self, than: &Self) -> bool {
         let least = self.seconds.min(than.seconds);
@@ -110,10 +90,9 @@ impl Vertical {
 
     /// Variance of a mean rate over `seconds` of sway as a bias, (rad/s)². The Earth rate that it may contain is level.
     fn sway_variance(&self, axis: usize, seconds: f32) -> f32 {
-        let swayed = SWAY / seconds;
-        let noise = self.expected.walk[axis] / seconds + self.expected.drift[axis] * seconds;
+        let drift = self.expected.drift[axis] * seconds;
         let level = 1.0 - self.matrix[2][axis] * self.matrix[2][axis];
-        noise + 2.0 * swayed * swayed + 2.0 * level * self.hidden()
+        self.mean_variance(axis, seconds, SWAY) + drift + 2.0 * level * self.hidden()
     }
 
     /// Whether neither a rest nor an alignment has shown the gyros' biases.
