@@ -2,9 +2,11 @@
 
 use super::{drive, frames, keep, reported, sigmas, vehicle, when};
 use firmware::event::Event;
+use host::campaign::statistics::rms;
 use host::instrument::Trial;
 use host::instrument::kept::KeptPlan;
 use orientation::navigation::Progress;
+use rayon::prelude::*;
 use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 
@@ -39,6 +41,22 @@ fn thirty_minutes_of_driving_on_two_frames_stay_within_three_sigma() {
     }
     assert_eq!(found.violations, [""; 0]);
     assert_eq!(found.health.unkept, 0);
+}
+
+#[test]
+fn no_biases_that_coarse_sensors_are_stated_to_have_make_two_frames_set_off_or_lose_north() {
+    let worst: Vec<f64> = (1..=16)
+        .into_par_iter()
+        .map(|seed| {
+            let found = keep(&frames(seed, Hold::of(60.0)), &KeptPlan::of(None));
+            let verdict = found.replay.session.conclusion().expect("it concludes").verdict;
+            assert!(verdict.is_ok(), "seed {seed}: {verdict:?}");
+            sigmas(&found.kept)[0]
+        })
+        .collect();
+    println!("greatest errors over σ: {worst:.1?}");
+    assert!(worst.iter().all(|sigmas| *sigmas < 4.0), "{worst:?}");
+    assert!(rms(&worst) < 1.7, "RMS of the greatest {} σ", rms(&worst));
 }
 
 #[test]
