@@ -7,6 +7,8 @@
 //! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
 //! is scanned before the best is refined.
 
+use core::f64::consts::PI;
+
 use super::setting::{Amplitude, Half};
 use crate::math::{Table, reference_table as table};
 use crate::units::Radians;
@@ -37,6 +39,9 @@ pub struct Direction {
     pub mixed_covariance: f64,
     /// Variance of the azimuth, rad².
     pub variance: f64,
+    /// Least standard deviation, 1σ, rad, of an azimuth where the noise is not small against the
+    /// Earth rate: its fivefold covers all azimuths about it that fit worse by no more than 5σ.
+    pub covering: f64,
     /// Gain of the azimuth with respect to the components, ∂A/∂β, rad.
     pub gain: [f64; 2],
     /// Chi-square at the second minimum less that at the best; infinite without a second minimum.
@@ -82,8 +87,8 @@ const OTHER_HALF: f64 = 25.0;
 /// Significance, in σ, at which the width of J(A) is measured: where the noise is not small against
 /// the Earth rate, J is no parabola, and its curvature says nothing of its width.
 const REACH: f64 = 5.0;
-/// Halvings of a scan's step in which the edge of that width is found: to 5″.
-const HALVINGS: usize = 12;
+/// Factor by which σ grows until it covers that width.
+const WIDER: f64 = 1.02;
 
 /// Chi-square profile J(A) and its parts.
 struct Profile<'a> {
@@ -111,12 +116,6 @@ impl Components {
         let profile = Profile::new(self, amplitude)?;
         let (azimuth, margin) = profile.minimise()?;
         Some(profile.linearise(azimuth, margin))
-    }
-
-    /// Least 1σ of an azimuth, rad, with which [`REACH`] σ cover all azimuths that fit worse by no
-    /// more than [`REACH`] σ.
-    pub(super) fn covering(&self, azimuth: f64, amplitude: Amplitude) -> Option<f64> {
-        Some(Profile::new(self, amplitude)?.reach(azimuth) / REACH)
     }
 }
 
@@ -188,21 +187,16 @@ impl<'a> Profile<'a> {
         is_best.then_some((best.0, margin))
     }
 
-    /// Greatest distance from an azimuth, rad, in either direction, within which all fit worse by no
-    /// more than [`REACH`] σ.
-    fn reach(&self, azimuth: f64) -> f64 {
+    /// Least 1σ of an azimuth, rad, that is no less than this one, and with which [`REACH`] σ cover
+    /// all azimuths about it that fit worse by no more than [`REACH`] σ.
+    fn covering(&self, azimuth: f64, mut sigma: f64) -> f64 {
         let worst = self.at(azimuth).0 + REACH * REACH;
-        let fits = |off: f64| self.at(azimuth + off).0 <= worst;
-        let step = core::f64::consts::TAU / SCAN as f64;
-        [step, -step].into_iter().fold(0.0, |farthest: f64, step| {
-            let whole = (1..=SCAN / 2).take_while(|k| fits(*k as f64 * step)).count() as f64;
-            let (mut inside, mut outside) = (whole * step, (whole + 1.0) * step);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (inside + outside);
-                if fits(middle) { inside = middle } else { outside = middle }
+        for side in [REACH, -REACH] {
+            while sigma < PI / REACH && self.at(azimuth + side * sigma).0 <= worst {
+                sigma *= WIDER;
             }
-            farthest.max(outside.abs())
-        })
+        }
+        sigma
     }
 
     /// Refines a minimum by the parabola through three points, halving its width, never moving
@@ -242,6 +236,7 @@ impl<'a> Profile<'a> {
         let amplitude_variance = freedom * (1.0 + coupling * mixed * variance);
         let mixed_covariance = -coupling * variance;
         let gain = [0, 1].map(|i| variance * (across_weighted[i] - coupling * along_weighted[i]));
+        let covering = self.covering(azimuth, libm::sqrt(variance));
         let azimuth = libm::atan2(sine, cosine);
         Direction {
             azimuth,
@@ -249,6 +244,7 @@ impl<'a> Profile<'a> {
             amplitude_variance,
             mixed_covariance,
             variance,
+            covering,
             gain,
             margin,
         }

@@ -258,7 +258,7 @@ impl Problem<'_> {
         let noise = self.noise_components(&solution);
         fit.constrain(&mut solution, &components, &noise);
         fit.allow_for_excess();
-        fit.cover(components.covering(direction.azimuth, model.amplitude)?);
+        fit.raise(direction.covering, |budget| &mut budget.noise);
         Some((fit, solution.covariance))
     }
 

@@ -148,8 +148,7 @@ impl Problem<'_> {
                 level = level.max(apart + MISSED * libm::sqrt(trial.direction.variance));
             }
         }
-        let more = fit.missing(level / WRONG);
-        fit.budget.drift = Radians(libm::sqrt(fit.budget.drift.0 * fit.budget.drift.0 + more));
+        fit.raise(level / WRONG, |budget| &mut budget.drift);
     }
 
     /// Greatest error of the azimuth for a tilting base that the forces indicate but do not prove,
@@ -227,16 +226,13 @@ impl Fit {
         self.allow_for(excess(self.chi_square, self.degrees));
     }
 
-    /// Variance that σ lacks to be at least this, rad².
-    fn missing(&self, least: f64) -> f64 {
+    /// Raises σ to at least this, rad, by this part of it.
+    #[inline(never)]
+    pub(super) fn raise(&mut self, least: f64, part: fn(&mut Budget) -> &mut Radians) {
         let sigma = self.sigma().0;
-        (least * least - sigma * sigma).max(0.0)
-    }
-
-    /// Raises σ to at least this, rad, by the noise of which it comes.
-    pub(super) fn cover(&mut self, least: f64) {
-        let noise = self.budget.noise.0;
-        self.budget.noise = Radians(libm::sqrt(noise * noise + self.missing(least)));
+        let lacking = (least * least - sigma * sigma).max(0.0);
+        let part = part(&mut self.budget);
+        part.0 = libm::sqrt(part.0 * part.0 + lacking);
     }
 
     /// Whether an anomaly shows in the residuals, the Earth rate or the model.
