@@ -102,6 +102,11 @@ impl<'a, C: InStep<V>, R: Together<C, V, N>, V: Quantity, const N: usize> Group<
         self.reader.room()
     }
 
+    /// End of a converter's conversion among those taken last.
+    pub(super) fn end(&self, index: usize) -> Edge {
+        self.reader.end(index)
+    }
+
     /// Takes the next conversion of every converter: the median of their ends, with the count of the first, and their
     /// values, where all were read; none after a fault.
     pub(super) async fn next(&mut self) -> Result<Option<(Edge, Option<[V; N]>)>, Refusal> {

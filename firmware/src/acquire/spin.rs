@@ -3,6 +3,9 @@
 //! All five are analogue sensors behind synchronised converters, so that forces and rates belong to
 //! one moment: a conversion is a mean, and belongs to its middle. From middle to middle a gyro has
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
+//!
+//! The forces show the roll, so a sample has their time. Converters are begun one after the other, and
+//! the accelerometers last: the median of all ends is earlier than theirs.
 
 use core::convert::Infallible;
 
@@ -29,6 +32,9 @@ const NAMES: [Device; CHANNELS] = [
     Device::RightAccelerometer,
 ];
 
+/// Places of the accelerometers among them.
+const ACCELEROMETERS: [usize; 2] = [GYROS, GYROS + 1];
+
 /// Conversions for which there is always room, where others wait until the queue has some.
 const SPARE: usize = 8;
 /// Time between two looks whether the queue has room.
@@ -40,8 +46,8 @@ pub struct SpinAcquisition<'a, C, R> {
     converters: Group<'a, C, &'a mut R, CHANNELS, Code>,
     /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
-    /// Time from the middle of a conversion to its end, µs, rounded to nearest.
-    half: u64,
+    /// Length of a conversion, µs, rounded up.
+    length: u64,
     /// Outlet of samples.
     outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
@@ -62,7 +68,7 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
         Self {
             converters: Group::new((converters, reader), NAMES, rate, period, &channels.shared),
             configuration,
-            half: libm::round(0.5e6 / rate) as u64,
+            length: libm::ceil(1e6 / rate) as u64,
             outlet: Outlet::new(period, period, channels),
             before: None,
             carried: [0; GYROS],
@@ -87,6 +93,14 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
         (!force.iter().any(|force| force.is_saturated())).then_some(force)
     }
 
+    /// Middle of the accelerometers' latest conversions, rounded to the nearest microsecond. The sum of
+    /// two ends is whole, so that a length that is rounded up costs nothing.
+    fn middle(&self) -> Instant {
+        let [up, right] =
+            ACCELEROMETERS.map(|index| self.outlet.time(self.converters.end(index)).0);
+        Instant((up + right + 1).saturating_sub(self.length) / 2)
+    }
+
     /// Takes the next sample; [`None`] where a reading was lost.
     ///
     /// # Errors
@@ -94,8 +108,8 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
         let Some((end, Some(codes))) = self.converters.next().await? else { return Ok(None) };
         self.outlet.judge(end);
-        let time = Instant(self.outlet.time(end).0.saturating_sub(self.half));
-        Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
+        let (time, force) = (self.middle(), self.force(&codes));
+        Ok(Some(SpinSample { time, turned: self.turned(&codes), force }))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The roll of a spinning body: recordings by all three methods, the Cramér–Rao bound against its closed
-//! form, what goes wrong with lift, spin and sensors, the instrument on simulated chips, and the commands.
+//! form, what goes wrong with lift, spin and sensors, the instrument on simulated chips, the times of its
+//! samples, and the commands.
 
 mod budget;
 mod commands;
@@ -7,3 +8,4 @@ mod faults;
 mod instrument;
 mod limit;
 mod recordings;
+mod times;
