@@ -40,8 +40,9 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                 Request::Continue
             }
             Request::Continue | Request::MayDrive => {
-                if aligner.state == State::Homing && shared.homed.signaled() {
-                    let first = give(&mut aligner, Input::Homed(shared.sway.get()), shared);
+                let is_homing = aligner.state == State::Homing && shared.homed.signaled();
+                if let Some(sway) = shared.observed_sway().filter(|_| is_homing) {
+                    let first = give(&mut aligner, Input::Homed(sway), shared);
                     if first != Request::Continue {
                         request = first;
                         continue;

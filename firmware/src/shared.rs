@@ -70,6 +70,18 @@ enum Alignments {
     Again,
 }
 
+/// Observation of the base's sway, of which an alignment is told before it takes samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Observation {
+    /// Nothing observes it.
+    #[default]
+    Without,
+    /// It was observed.
+    Made,
+    /// It is to be observed anew, for another alignment.
+    Wanted,
+}
+
 /// What the navigator has kept for the next start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Saving {
@@ -178,8 +190,10 @@ pub struct Shared<'a> {
     pub clocks: Timebase,
     /// The latest angles of the encoders; the one axis of a stage is the outer one.
     pub angles: Frames<LatestAngle>,
-    /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
+    /// Noise that the compensated sway leaves in the samples of an alignment, known before it takes any.
     pub sway: Common<SwayNoise>,
+    /// Whether that is known.
+    pub(crate) observation: Common<Observation>,
     /// Counters of faults.
     pub health: Common<Health>,
     /// The status that the link reports.
@@ -220,6 +234,7 @@ impl<'a> Shared<'a> {
             clocks: Timebase::nominal(Clock::Converter, Clock::Crystal),
             angles: Frames { outer: unread(), inner: unread() },
             sway: Common::new(SwayNoise::NONE),
+            observation: Common::default(),
             health: Common::default(),
             status: Common::new(Status::Starting),
             observer,
@@ -245,11 +260,14 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// Notes that the aligner obeys an order. An alignment that begins without its devices is ended for the reason for
-    /// which they were given up.
+    /// Notes that the aligner obeys an order. For an alignment that begins the base's sway is observed anew. One that
+    /// begins without its devices is ended for the reason for which they were given up.
     pub(crate) fn obey(&self, order: &Order) {
         if *order == Order::Restart && self.is_idle() {
             self.alignments.set(Alignments::Again);
+            if self.observation.get() == Observation::Made {
+                self.observation.set(Observation::Wanted);
+            }
             let reason = self.without_sensors.get().or(self.without_mechanism.get());
             if let Some(reason) = reason {
                 self.fail(reason);
@@ -277,7 +295,24 @@ impl<'a> Shared<'a> {
     /// that is given up is tried again after a pause.
     #[must_use]
     pub fn is_holding(&self) -> bool {
-        self.is_kept.get() && self.alignments.get() != Alignments::First
+        self.is_kept.get() && !self.is_first()
+    }
+
+    /// The noise that the compensated sway leaves in the samples of an alignment that is to begin; [`None`] while the base
+    /// is observed.
+    pub(crate) fn observed_sway(&self) -> Option<SwayNoise> {
+        (self.observation.get() != Observation::Wanted).then(|| self.sway.get())
+    }
+
+    /// States that noise.
+    pub(crate) fn observe_sway(&self, noise: SwayNoise) {
+        self.sway.set(noise);
+        self.observation.set(Observation::Made);
+    }
+
+    /// Whether the first alignment runs.
+    pub(crate) fn is_first(&self) -> bool {
+        self.alignments.get() == Alignments::First
     }
 
     /// Whether nothing more will happen.

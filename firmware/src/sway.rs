@@ -2,8 +2,10 @@
 //! instruments with a coarse inertial measurement unit on the base.
 //!
 //! The base unit is read once in every `divider` samples; between, its latest rate is held. Until
-//! the sway has been observed for long enough, no decision is taken and the session does not begin.
-//! The decision then holds for the whole session.
+//! the sway has been observed for long enough, no decision is taken and no alignment begins. The
+//! decision then holds for that alignment. For another one the estimator begins anew: what it took
+//! for biases while the vehicle drove is in the rate that it would subtract, which turns with the
+//! stage as the Earth rate does.
 //!
 //! Each reading also goes to the attitude keeper.
 //!
@@ -196,10 +198,18 @@ impl Compensation {
         lost.is_some_and(|lost| !shared.is_holding() || lost.elapsed() < RETRY)
     }
 
+    /// Begins to observe the sway anew where that is wanted.
+    fn begin_anew(&self, shared: &Shared<'_>) {
+        let mut sway = self.sway.borrow_mut();
+        if shared.observed_sway().is_none() && sway.decision != Decision::Watching {
+            sway.begin_anew();
+        }
+    }
+
     /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
     fn lose(&self, shared: &Shared<'_>) {
-        if !self.is_decided() {
-            shared.sway.set(SwayNoise::UNMEASURED);
+        if !self.is_decided() || shared.observed_sway().is_none() {
+            shared.observe_sway(SwayNoise::UNMEASURED);
         }
         self.lost.set(Some(Instant::now()));
     }
@@ -218,7 +228,7 @@ impl Compensation {
                 (noise, Event::BaseSways(angle, hertz, left))
             }
         };
-        shared.sway.set(noise);
+        shared.observe_sway(noise);
         shared.report(event);
     }
 }
@@ -292,6 +302,7 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
 
     /// Takes a reading, and starts the sensors again where they fail.
     async fn take(&mut self, known: &Compensation, shared: &Shared<'_>) {
+        known.begin_anew(shared);
         let was_decided = known.is_decided();
         if let Err(symptom) = self.read(known, shared).await {
             self.mend(symptom, known, shared).await;

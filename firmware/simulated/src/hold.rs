@@ -17,9 +17,9 @@ const STANDING_SECONDS: f32 = 50.0;
 pub const STOP_SECONDS: f64 = 60.0;
 /// How long a vehicle stands before it is aligned anew by a mechanism, s.
 pub(super) const STAND_SECONDS: f64 = 30.0;
-/// From the begin of a stop until another alignment begins, and from its end until the vehicle sets
-/// off, s.
-const BEFORE_ANOTHER_SECONDS: f64 = STAND_SECONDS + 20.0;
+/// From the begin of a stop until another alignment begins, for which the base's sway is observed for 22 s, and from its
+/// end until the vehicle sets off, s.
+const BEFORE_ANOTHER_SECONDS: f64 = STAND_SECONDS + 22.0 + 20.0;
 
 /// How a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]

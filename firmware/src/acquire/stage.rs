@@ -203,7 +203,7 @@ impl<G: Gyro, A: Accelerometer, P: Pointing> Acquisition<'_, G, A, P> {
             self.rates.until_next(base.answered()).await;
         }
         self.coarse.pass_on(base, shared);
-        if !base.is_none_or(Compensation::is_decided) {
+        if shared.is_first() && !base.is_none_or(Compensation::is_decided) {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }

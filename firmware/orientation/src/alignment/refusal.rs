@@ -75,7 +75,7 @@ pub enum Refusal {
     },
     /// The time allowed for the whole session ran out.
     TimeExhausted,
-    /// The vehicle drove on before the alignment was complete.
+    /// The base was in motion after a rest, before the alignment was complete.
     MovedDuringAlignment,
     /// The time stamps contradict the configured sample period.
     PeriodContradicted {
@@ -135,7 +135,7 @@ crate::words! { Refusal:
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
         Rounded::<3>(ratio), Rounded::<3>(sigma);
     Self::TimeExhausted => "the time allowed ran out";
-    Self::MovedDuringAlignment => "the vehicle drove on before it was aligned";
+    Self::MovedDuringAlignment => "it was in motion after a rest before it was aligned: the vehicle drove on, or it sways";
     Self::PeriodContradicted { stated, found } =>
         "samples come every {} ms, not every {} ms as stated: correct the sample rate or the times",
         Rounded::<4>(found.0), Rounded::<4>(stated.0);

@@ -53,6 +53,11 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
+    /// Whether an azimuth from outside takes the place of the alignment.
+    pub(super) fn is_handed_over(&self) -> bool {
+        self.handover.is_some()
+    }
+
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to. After a usual alignment,
     /// which lasts as long as is known, the vehicle soon sets off.
     pub fn hold(&self, is_plain: bool, is_usual: bool) -> Hold {

@@ -154,15 +154,18 @@ impl BaseOptions {
         Ok(Ran { written, ..shown(run, truth, wall) })
     }
 
-    /// That the base sways and nothing of it is subtracted, where that is so.
-    fn sway_left(&self, replay: &Replay) -> Option<String> {
-        let sway = self.sway.filter(|sway| *sway > 0.0)?;
+    /// That the base sways and nothing of it is subtracted, where that is so. Where a later alignment found north, the
+    /// vehicle has driven meanwhile, and sways no more.
+    fn sway_left<T>(&self, run: &Run<Replay, T>) -> Option<String> {
+        let sways =
+            |sway: &f64| *sway > 0.0 && run.earlier.is_empty() && !self.keeping.is_handed_over();
+        let sway = self.sway.filter(sways)?;
         let why = if self.no_base_imu {
             "no coarse IMU shows it"
         } else {
             "it is too small for the coarse IMU on the base"
         };
-        (!subtracts_sway(&replay.session))
+        (!subtracts_sway(&run.replay.session))
             .then(|| format!("the base sways by {sway}°, which is not subtracted: {why}"))
     }
 
@@ -211,7 +214,7 @@ impl Simulated for StageOptions {
         self.base.run((&scenario, seconds), begun, |run, truth, wall| {
             let details =
                 RunDetails::of(&run, scenario.sample_rate_hz, wall, OfPlatform::default())
-                    .noting(self.base.sway_left(&run.replay));
+                    .noting(self.base.sway_left(&run));
             ran("the simulated run", run, details, truth)
         })
     }
@@ -245,7 +248,7 @@ impl Simulated for FramesOptions {
             let off_deg = degrees(forward.hypot(right).atan2(down));
             let beside = OfPlatform::stored(is_vertical, off_deg);
             let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside)
-                .noting(self.base.sway_left(&run.replay));
+                .noting(self.base.sway_left(&run));
             ran("the simulated run on two frames", run, details, truth)
         })
     }

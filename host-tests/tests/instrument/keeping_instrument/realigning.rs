@@ -52,6 +52,26 @@ fn an_alignment_that_ends_in_motion_has_the_truth_of_its_last_sample_and_a_budge
     }
 }
 
+#[test]
+fn what_sensors_on_a_swaying_base_showed_on_the_way_is_not_in_the_alignment_after_it() {
+    let errors: Vec<f64> = (1..=6)
+        .into_par_iter()
+        .map(|seed| {
+            let hold = Hold { realigns: true, ..Hold::of(1500.0) };
+            let sways = Scenario { sway_deg: 0.2, has_base_imu: true, ..Scenario::usual(seed) };
+            let base = Scenario { sample_rate_hz: 100.0, hold, ..sways };
+            let run = Trial::of(&base).run().expect("the scenario is possible");
+            assert!(run.is_realigned(), "seed {seed}: {:?}", reported(&run));
+            let azimuth = run.conclusion().expect("it is over").verdict.expect("it is found");
+            let truth_deg = run.azimuth_deg(base.azimuth_deg);
+            azimuth_error(azimuth.angle.degrees(), truth_deg) / azimuth.sigma.degrees()
+        })
+        .collect();
+    println!("{errors:.1?}");
+    assert!(errors.iter().all(|error| error.abs() < 4.0), "{errors:?}");
+    assert!(rms(&errors) < 1.6, "{errors:?}");
+}
+
 campaigns! {
     azimuths_found_anew_are_as_good_as_sigma_says;
 }

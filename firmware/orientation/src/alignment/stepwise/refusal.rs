@@ -105,12 +105,12 @@ crate::words! { Refusal:
         reason.remedy();
     Self::OutOfReach { sigma, required, seconds } =>
         "σ of {}° is out of reach: {}° is the least that {} s can give",
-        Rounded::<3>(required.0), Rounded::<3>(sigma.0), Rounded::<0>(seconds.0);
+        Rounded::<4>(required.0), Rounded::<4>(sigma.0), Rounded::<0>(seconds.0);
     Self::NoiseUnknown(why) => "the gyro's noise cannot be learnt: {}", why;
     Self::NoSchedule { seconds } => "no schedule fits into {} s", Rounded::<0>(seconds.0);
     reason @ Self::TiltTooUncertain { sigma, required } =>
         "the tilt is known too badly: it alone costs {}° of {}°{}",
-        Rounded::<3>(sigma.0), Rounded::<3>(required.0),
+        Rounded::<4>(sigma.0), Rounded::<4>(required.0),
         reason.remedy();
     Self::TrendNotSeparable =>
         "the rate drifts, and these positions do not separate it from the Earth rate: turn a full circle";

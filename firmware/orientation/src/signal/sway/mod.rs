@@ -27,7 +27,7 @@
 //! acceleration.
 //!
 //! The sway is observed for some seconds before anything is subtracted. Compensation is then
-//! switched on for the whole session if the sway is large against this error, else never.
+//! switched on for the whole alignment if the sway is large against this error, else not at all.
 
 mod noise;
 
@@ -124,7 +124,7 @@ pub struct Size {
     pub rate: f32,
 }
 
-/// State of the decision on compensation for a session.
+/// State of the decision on compensation for an alignment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Decision {
     /// The sway is still being observed.
@@ -203,6 +203,12 @@ impl Sway {
     #[must_use]
     pub fn new(sensors: CoarseSensors) -> Self {
         Self { sensors, ..Self::default() }
+    }
+
+    /// Begins without an estimate again, for another alignment: a base that was driven meanwhile has shown rates that were
+    /// taken for biases, and it sways otherwise.
+    pub fn begin_anew(&mut self) {
+        *self = Self::new(self.sensors);
     }
 
     /// Takes a reading `seconds` after the previous one: rates about, and specific forces on, the
