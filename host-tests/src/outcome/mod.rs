@@ -182,17 +182,16 @@ pub struct Noted<'o> {
 #[derive(Clone, Copy, Debug)]
 pub struct BudgetDetails(Budget);
 
-impl BudgetDetails {
-    /// The parts; a displacement only where a vehicle drove.
-    fn shown(&self) -> impl Iterator<Item = (Part, Radians)> {
-        let parts = self.0.parts().into_iter();
-        parts.filter(|(source, part)| *source != Part::Displacement || part.0 > 0.0)
-    }
+/// These parts of a budget; a displacement only where a vehicle drove, and what scatters beyond noise and drift only where
+/// something does.
+fn shown<const N: usize>(parts: [(Part, Radians); N]) -> impl Iterator<Item = (Part, Radians)> {
+    let is_rare = |source| matches!(source, Part::Displacement | Part::Scatter);
+    parts.into_iter().filter(move |(source, part)| !is_rare(*source) || part.0 > 0.0)
 }
 
 impl Serialize for BudgetDetails {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.shown().map(|(source, part)| (source, part.degrees())))
+        serializer.collect_map(shown(self.0.parts()).map(|(source, part)| (source, part.degrees())))
     }
 }
 
@@ -211,10 +210,13 @@ pub struct Excluded {
 
 impl FitDetails {
     /// What an azimuth rests on, of the budget of its fit, where there is one.
-    pub fn of(budget: Option<&Budget>, positions: usize) -> Self {
+    /// `excess` is the factor on its noise and drift.
+    pub fn of(budget: Option<&Budget>, excess: f64, positions: usize) -> Self {
+        let dominant = budget.and_then(|budget| budget.dominant(excess));
         Self {
             budget: budget.copied().map(BudgetDetails),
-            dominant: budget.and_then(Budget::dominant).map(|source| source.to_string()),
+            dominant: dominant.map(|source| source.to_string()),
+            excess: Some(excess).filter(|excess| *excess > 1.0),
             positions,
             ..Self::default()
         }

@@ -4,7 +4,7 @@ use orientation::alignment::budget::Source as Part;
 use orientation::alignment::site::Site;
 use orientation::units::Radians;
 
-use super::{Excluded, FAILED, Finished, FitDetails, Outcome};
+use super::{Excluded, FAILED, Finished, FitDetails, Outcome, shown};
 use crate::methods;
 use crate::output::{
     azimuth as in_circle, counted, degrees, fixed, noise_in_words, positive_zero, signed,
@@ -180,37 +180,29 @@ const BESIDE: f64 = 1e-3;
 fn shares(fit: &FitDetails, sigma_deg: Option<f64>) -> Option<Shares> {
     let details = fit.budget.as_ref()?;
     let budget = &details.0;
-    let all_deg = budget.sigma().degrees();
+    let (all_deg, excess) = (budget.sigma().degrees(), fit.excess.unwrap_or(1.0));
     let sigma_deg = sigma_deg.unwrap_or(all_deg).max(all_deg);
     let share = |name: String, part_deg: f64| Share {
         name,
         value: format!("{part_deg:.4}"),
         percent: 100.0 * (part_deg / sigma_deg) * (part_deg / sigma_deg),
     };
-    let excess = fit.excess.unwrap_or(1.0);
     let of_source = |(source, part): (Part, Radians)| {
-        let of_noise = matches!(source, Part::Noise | Part::Drift);
-        let part_deg = part.degrees() / if of_noise { excess } else { 1.0 };
         let name = match fit.more_noise.filter(|_| source == Part::Noise) {
             Some(more) => format!("{source}, {more}"),
             None => source.to_string(),
         };
-        share(name, part_deg)
+        share(name, part.degrees())
     };
-    let noise_deg = budget.noise.degrees().hypot(budget.drift.degrees());
-    let misfit = fit.excess.map(|excess| {
-        let part_deg = noise_deg * (1.0 - 1.0 / (excess * excess)).sqrt();
-        share("scatter beyond noise and drift".to_owned(), part_deg)
-    });
     let lost_deg = (sigma_deg * sigma_deg - all_deg * all_deg).sqrt();
     let lost = (sigma_deg > (1.0 + BESIDE) * all_deg)
         .then(|| share("criterion, beside maximum likelihood".to_owned(), lost_deg));
     let dominant =
-        budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
+        budget.dominant(excess).map(|source| format!(": {source} dominates{}", remedy(source)));
     Some(Shares {
         title: format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default()),
         head: ["source", "part, °", "share of the variance, %"].map(str::to_owned),
-        rows: details.shown().map(of_source).chain(misfit).chain(lost).collect(),
+        rows: shown(budget.parts_of(excess)).map(of_source).chain(lost).collect(),
         sum: ["root sum of squares".to_owned(), format!("{sigma_deg:.4}")],
     })
 }

@@ -339,7 +339,7 @@ fn a_board_ends_when_its_accuracy_is_reached_or_says_that_it_cannot_be() {
     let output = meridian(&hopeless);
     assert_eq!(code(&output), 1);
     let reason = object(&output)["reason"].as_str().expect("a reason").to_owned();
-    assert!(reason.contains("0.010° is out of reach"), "{reason}");
+    assert!(reason.contains("0.0100° is out of reach"), "{reason}");
 }
 
 #[test]

@@ -27,6 +27,8 @@ pub enum Source {
     Temperature,
     /// Uncertainty of the distance and direction that a vehicle drove between stops.
     Displacement,
+    /// Scatter of what was fitted beyond noise and drift of the gyro, of both of which it is counted.
+    Scatter,
 }
 
 crate::words! { Source:
@@ -39,6 +41,7 @@ crate::words! { Source:
     Self::Scale => "gyro scale factor";
     Self::Temperature => "temperature slope";
     Self::Displacement => "displacement of the vehicle";
+    Self::Scatter => "scatter beyond noise and drift";
 }
 
 /// Contributions to the azimuth's standard deviation, 1σ, rad; their root sum of squares is σ.
@@ -92,17 +95,33 @@ impl Budget {
         Self { noise: Radians(0.0), ..*self }.sigma()
     }
 
-    /// Largest contribution and its source.
-    pub(crate) fn greatest(&self) -> (Source, Radians) {
-        let parts = self.parts();
-        parts.into_iter().fold(parts[0], |most, part| if part.1 > most.1 { part } else { most })
+    /// The parts with noise and drift as they are stated, and last what scatters beyond them, of which a fit has raised
+    /// both by this factor.
+    #[must_use]
+    pub fn parts_of(&self, excess: f64) -> [(Source, Radians); 10] {
+        let stated = |part: Radians| Radians(part.0 / excess);
+        let of_noise = self.noise.0 * self.noise.0 + self.drift.0 * self.drift.0;
+        let scatter = Radians(libm::sqrt(of_noise * (1.0 - 1.0 / (excess * excess)).max(0.0)));
+        let as_stated = Self { noise: stated(self.noise), drift: stated(self.drift), ..*self };
+        let mut parts = [(Source::Scatter, scatter); 10];
+        parts[..9].copy_from_slice(&as_stated.parts());
+        parts
+    }
+
+    /// Source of the largest of these parts.
+    pub(crate) fn greatest(&self, excess: f64) -> Source {
+        Self::greatest_of(&self.parts_of(excess)).0
+    }
+
+    fn greatest_of(parts: &[(Source, Radians); 10]) -> (Source, Radians) {
+        parts.iter().fold(parts[0], |most, part| if part.1 > most.1 { *part } else { most })
     }
 
     /// Source that makes up more than half of the variance; `None` where it is noise or there is no
     /// such source.
     #[must_use]
-    pub fn dominant(&self) -> Option<Source> {
-        let (source, part) = self.greatest();
+    pub fn dominant(&self, excess: f64) -> Option<Source> {
+        let (source, part) = Self::greatest_of(&self.parts_of(excess));
         let dominates = part.0 * part.0 > 0.5 * self.sigma().0 * self.sigma().0;
         (dominates && source != Source::Noise).then_some(source)
     }

@@ -165,7 +165,7 @@ fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
     let found = keep(&frames(2, hold), &KeptPlan::of(None));
     let lines = reported(&found);
     assert!(
-        lines.iter().any(|line| line == "no azimuth: the vehicle drove on before it was aligned")
+        lines.iter().any(|line| line == "no azimuth: it was in motion after a rest before it was aligned: the vehicle drove on, or it sways")
     );
     assert!(found.kept.last().is_some_and(|point| point.report.azimuth.is_some()));
     let [worst, _] = sigmas(&found.kept);

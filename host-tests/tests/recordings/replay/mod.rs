@@ -142,7 +142,7 @@ fn a_bumped_and_a_nudged_dwell_are_left_out_and_nothing_else() {
 fn an_unknown_g_sensitivity_dominates_and_is_said_to() {
     let replayed = replayed("stepwise-unknown-g");
     let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
-    assert_eq!(fit.budget.dominant(), Some(Source::GSensitivity));
+    assert_eq!(fit.budget.dominant(fit.excess), Some(Source::GSensitivity));
     let (finished, truth) = (&replayed.replay, Truth::default());
     let block = outcome::report("x", &finished.outcome(&truth), finished, Vec::new())
         .text(Look::plain(Verbosity::Usual));

@@ -125,7 +125,7 @@ impl Conclusion {
         let fit = self.fit.ok_or(alignment::Refusal::MisalignmentUnknown)?;
         self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
-        setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
+        setting.site.check_sigma(fit.sigma(), fit.budget.greatest(1.0))?;
         Ok(Azimuth { angle: fit.azimuth, sigma: fit.sigma() })
     }
 

@@ -256,7 +256,7 @@ impl Conclusion {
         self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
         refuse_if(fit.direction.margin < SECOND_MINIMUM, Refusal::AzimuthUnobservable)?;
-        setting.site.check_sigma(fit.sigma(), fit.budget.greatest().0)?;
+        setting.site.check_sigma(fit.sigma(), fit.budget.greatest(fit.excess))?;
         self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
@@ -371,7 +371,7 @@ impl Conclusion {
             }
             paper => criterion::azimuth(&problem, fit, paper)?,
         };
-        setting.site.check_sigma(azimuth.sigma, fit.budget.greatest().0)?;
+        setting.site.check_sigma(azimuth.sigma, fit.budget.greatest(fit.excess))?;
         Ok(azimuth)
     }
 }

@@ -245,7 +245,7 @@ fn judge(setting: &Setting, found: &Found, stop_detector: &StopDetector) -> Pass
     let is_off = (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE;
     refuse_if(is_off, alignment::Refusal::EarthRateMismatch { ratio, sigma })?;
     let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
-    let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
+    let source = if is_unknown { Source::Drift } else { found.budget.greatest(1.0) };
     let sigma = found.azimuth.sigma;
     let is_met = setting.site.check_sigma(sigma, source);
     is_met.map_err(|reason| stop_detector.cause(sigma.0).map_or(reason, Into::into))

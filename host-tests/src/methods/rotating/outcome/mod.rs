@@ -263,7 +263,7 @@ impl Finished for Replay {
                 earth_rate_ratio_sigma: flat.map(|fit| fit.ratio_sigma),
                 model: fit.map(|_| self.columns(conclusion)).unwrap_or_default(),
                 excluded: left_out.map(excluded).collect(),
-                ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
+                ..FitDetails::of(fit.map(|fit| &fit.budget), 1.0, turns as usize)
             }),
             assumed: self.assumed.clone(),
             circumstances: of_site_and_time(

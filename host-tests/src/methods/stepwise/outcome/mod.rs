@@ -262,9 +262,12 @@ impl Finished for Replay {
                 earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
                 model: fit.map(columns).unwrap_or_default(),
                 excluded: self.excluded(conclusion),
-                excess: fit.map(|fit| fit.excess).filter(|excess| *excess > 1.0),
                 more_noise: sway.as_ref().map(|_| "and the coarse IMU's"),
-                ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
+                ..FitDetails::of(
+                    fit.map(|fit| &fit.budget),
+                    fit.map_or(1.0, |fit| fit.excess),
+                    kept.len(),
+                )
             }),
             assumed: self.assumed.clone(),
             circumstances: self.circumstances(&kept),

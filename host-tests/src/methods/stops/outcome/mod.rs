@@ -198,7 +198,7 @@ impl Finished for Replay {
                 earth_rate_ratio_sigma: found.map(|found| found.plain.ratio_sigma),
                 model: found.map(|_| self.columns()).unwrap_or_default(),
                 excluded: self.excluded(found),
-                ..FitDetails::of(found.map(|found| &found.budget), stops.len())
+                ..FitDetails::of(found.map(|found| &found.budget), 1.0, stops.len())
             }),
             assumed: self.assumed.clone(),
             circumstances: of_site_and_time(

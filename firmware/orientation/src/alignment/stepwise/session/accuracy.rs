@@ -86,7 +86,7 @@ impl Session {
     fn try_to_conclude(&mut self, left: f64) -> bool {
         self.draw(None);
         let verdict = self.conclusion.as_ref().map(|conclusion| conclusion.verdict);
-        let noise = [Source::Noise, Source::Drift, Source::Temperature];
+        let noise = [Source::Noise, Source::Drift, Source::Temperature, Source::Scatter];
         match verdict {
             Some(Err(alignment::Refusal::BudgetNotMet { source, .. }))
                 if noise.contains(&source) && self.procedure.schedule.shortest().0 <= left =>
