@@ -43,6 +43,9 @@ impl Asked {
     }
 }
 
+/// Difference of latitudes that is told, °: what one states more exactly than another differs by less.
+const OTHER_LATITUDE_DEG: f64 = 0.1;
+
 /// A recording and what a user asks of it: what a replay is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
@@ -58,6 +61,16 @@ impl Question<'_> {
     /// Displacements of the stops: the user's, or the header's.
     pub(crate) fn displacements_m(&self) -> Option<&[[f64; 2]]> {
         self.asked.displacements_m.as_deref().or(self.header.displacements_m.as_deref())
+    }
+
+    /// That the user's latitude is another one than the header's, where it is.
+    #[must_use]
+    pub fn other_latitude(&self) -> Option<String> {
+        let [asked, stated] = [self.asked.latitude?.rad().to_degrees(), self.header.latitude_deg?];
+        let is_other = (asked - stated).abs() > OTHER_LATITUDE_DEG;
+        is_other.then(|| {
+            format!("the latitude is taken to be {asked:.4}°; the recording states {stated:.4}°")
+        })
     }
 
     /// The user's latitude, or the header's.

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::support::files::{Scratch, stored};
 use crate::support::pages::figures;
-use crate::support::program::{code, meridian, object, text};
+use crate::support::program::{code, meridian, object, text, words};
 
 proptest! {
     #[test]
@@ -223,6 +223,20 @@ fn what_is_refused_prints_no_empty_line() {
 fn a_plan_on_the_equator_from_the_south_has_no_negative_latitude() {
     let output = meridian(&["plan", "--latitude=-0", "--arw", "0.001", "--seconds", "600"]);
     assert_no_negative_zero("plan", &text(&output.stdout));
+}
+
+#[test]
+fn a_latitude_in_place_of_the_recordings_is_told_unless_it_is_the_same() {
+    let noted = |latitude: &str| {
+        let output = meridian(&["replay", &stored("stepwise-circle"), "--latitude", latitude]);
+        words(&text(&output.stdout)).contains("the recording states 47.5833°")
+    };
+    for other in ["-47.58", "47.7", "47.3"] {
+        assert!(noted(other), "{other}");
+    }
+    for same in ["47.58", "47°35′"] {
+        assert!(!noted(same), "{same}");
+    }
 }
 
 #[test]

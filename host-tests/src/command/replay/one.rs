@@ -97,7 +97,8 @@ impl One<'_> {
             Some(cause) => cause.explaining(&reason, outcome.remedy),
             None => reason,
         });
-        let outcome = Outcome { source: Some(Named::File(source.name())), reason, ..outcome };
+        let mut outcome = Outcome { source: Some(Named::File(source.name())), reason, ..outcome };
+        outcome.degradations.extend(question.other_latitude());
         let outcome = match interruption {
             Some(why) => outcome.interrupted(why),
             None => outcome,
