@@ -145,6 +145,8 @@ pub enum Kind {
     Used,
     /// What goes on between.
     Between,
+    /// What is searched for and not found yet.
+    Searching,
     /// What the gyros carry alone, nothing being measured beside them.
     Coasting,
     /// What took no part.
@@ -159,6 +161,7 @@ impl Kind {
         match self {
             Self::Used => "measured",
             Self::Between => "in motion",
+            Self::Searching => "not found yet",
             Self::Coasting => "by the gyros alone",
             Self::LeftOut => "left out",
             Self::Wrong => "went wrong",

@@ -5,8 +5,8 @@ use crate::support::program::{code, meridian, object, page, reason, text};
 
 /// Runs that end while another alignment is under way, or before one begins.
 const RUNS: [&str; 4] = [
-    "stage --rate 50 --dwell 2 --realign --hold 420",
-    "two-frame --rate 50 --dwell 2 --passes 1 --realign --hold 420",
+    "stage --rate 50 --dwell 2 --realign --hold 450",
+    "two-frame --rate 50 --dwell 2 --passes 1 --realign --hold 450",
     "turntable --rate 50 --turns 3 --realign --hold 480",
     "vehicle --rate 50 --stops 2 --stop-seconds 30 --realign --hold 420",
 ];

@@ -30,7 +30,8 @@ fn legend(timeline: &Timeline) -> String {
     let has = |kind: &Kind| {
         timeline.lanes.iter().flat_map(|lane| &lane.spans).any(|span| span.kind == *kind)
     };
-    let all = [Kind::Used, Kind::Between, Kind::Coasting, Kind::LeftOut, Kind::Wrong];
+    let all =
+        [Kind::Used, Kind::Between, Kind::Searching, Kind::Coasting, Kind::LeftOut, Kind::Wrong];
     let kinds = all.into_iter().filter(has);
     let entry = |kind: Kind| format!("<li><i class=\"{}\"></i>{}</li>\n", class(kind), kind.name());
     format!("<ul class=\"legend\">\n{}</ul>\n", kinds.map(entry).collect::<String>())
@@ -39,7 +40,7 @@ fn legend(timeline: &Timeline) -> String {
 fn class(kind: Kind) -> &'static str {
     match kind {
         Kind::Used => "used",
-        Kind::Between => "between",
+        Kind::Between | Kind::Searching => "between",
         Kind::Coasting => "coasting",
         Kind::LeftOut => "left-out",
         Kind::Wrong => "wrong",

@@ -68,7 +68,11 @@ fn scatter_that_is_no_noise_has_a_row_of_its_own_in_the_budget() {
     let header = "# kind: dwells\n# latitude_deg: 52\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n";
     let path = scratch.with("degrees.csv", format!("{header}{rows}"));
     let told = text(&meridian(&["replay", &path]).stdout);
-    assert!(told.contains("scatter beyond noise and drift  12.98"), "{told}");
+    assert!(
+        told.contains("(1σ of the azimuth): scatter beyond noise and drift dominates"),
+        "{told}"
+    );
+    assert!(told.contains("scatter beyond noise and drift  13."), "{told}");
     assert!(!told.contains("gyro noise           12"), "{told}");
 }
 

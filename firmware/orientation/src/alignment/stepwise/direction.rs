@@ -40,7 +40,7 @@ pub struct Direction {
     /// Variance of the azimuth, rad².
     pub variance: f64,
     /// Least standard deviation, 1σ, rad, of an azimuth where the noise is not small against the
-    /// Earth rate: its fivefold covers all azimuths about it that fit worse by no more than 5σ.
+    /// Earth rate: its fivefold covers all azimuths about it that fit worse by hardly 5σ.
     pub covering: f64,
     /// Gain of the azimuth with respect to the components, ∂A/∂β, rad.
     pub gain: [f64; 2],
@@ -53,6 +53,13 @@ impl Direction {
     pub(crate) fn along(&self) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
         [self.amplitude * cosine, self.amplitude * sine]
+    }
+
+    /// Variance of the azimuth, rad², that it would have at the Earth's own rate: a weaker one has a wide azimuth, which is
+    /// no reason to prefer a strong one.
+    pub(super) fn variance_at_earth_rate(&self) -> f64 {
+        let part = self.amplitude.min(1.0);
+        self.variance * part * part
     }
 
     /// Covariance of the components that the prior knowledge of ρ leaves, in units of `Ω_h`².
@@ -87,6 +94,8 @@ const OTHER_HALF: f64 = 25.0;
 /// Significance, in σ, at which the width of J(A) is measured: where the noise is not small against
 /// the Earth rate, J is no parabola, and its curvature says nothing of its width.
 const REACH: f64 = 5.0;
+/// Chi-square by which an azimuth of that width fits worse: a little less than of a parabola, whose width σ is.
+const WORSE: f64 = 24.0;
 /// Factor by which σ grows until it covers that width.
 const WIDER: f64 = 1.02;
 
@@ -188,9 +197,9 @@ impl<'a> Profile<'a> {
     }
 
     /// Least 1σ of an azimuth, rad, that is no less than this one, and with which [`REACH`] σ cover
-    /// all azimuths about it that fit worse by no more than [`REACH`] σ.
+    /// all azimuths about it that fit worse by no more than [`WORSE`].
     fn covering(&self, azimuth: f64, mut sigma: f64) -> f64 {
-        let worst = self.at(azimuth).0 + REACH * REACH;
+        let worst = self.at(azimuth).0 + WORSE;
         for side in [REACH, -REACH] {
             while sigma < PI / REACH && self.at(azimuth + side * sigma).0 <= worst {
                 sigma *= WIDER;

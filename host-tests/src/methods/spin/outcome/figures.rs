@@ -120,7 +120,8 @@ pub(crate) fn timeline(answer: &Track) -> Timeline {
 fn kind(condition: Condition) -> Kind {
     match condition {
         Condition::Locked => Kind::Used,
-        Condition::Searching | Condition::Holding | Condition::NotSpinning => Kind::Between,
+        Condition::Searching | Condition::NotSpinning => Kind::Searching,
+        Condition::Holding => Kind::Coasting,
         _ => Kind::Wrong,
     }
 }

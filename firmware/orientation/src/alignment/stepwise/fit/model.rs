@@ -40,12 +40,6 @@ pub struct Model {
 }
 
 impl Trial {
-    /// Variance of the azimuth normalised to one amplitude, because a weak Earth rate has a wide
-    /// azimuth, which is no reason to prefer a strong one.
-    fn cost(&self) -> f64 {
-        self.direction.variance * self.direction.amplitude * self.direction.amplitude
-    }
-
     /// Whether the azimuth can afford what a trend has made of the trial without it.
     fn is_affordable(&self, before: &Self) -> bool {
         let most = TREND_COST * TREND_COST * before.direction.variance;
@@ -94,9 +88,10 @@ impl Problem<'_> {
     pub(super) fn freed(&self, regression: &Equations, model: &Model) -> Option<Model> {
         let held = Model { amplitude: self.setting.known_amplitude(), ..*model };
         let free = Model { amplitude: Amplitude::Free, ..*model };
-        let known = self.trial(regression, &held)?.cost();
+        let cost = |trial: &Trial| trial.direction.variance_at_earth_rate();
+        let known = cost(&self.trial(regression, &held)?);
         match self.trial(regression, &free) {
-            Some(trial) if trial.cost() <= FREE_COST * FREE_COST * known => Some(free),
+            Some(trial) if cost(&trial) <= FREE_COST * FREE_COST * known => Some(free),
             _ => Some(held),
         }
     }

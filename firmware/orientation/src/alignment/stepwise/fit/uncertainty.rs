@@ -24,13 +24,12 @@ pub(super) type Covariance = [[f64; 2]; 2];
 
 impl Problem<'_> {
     /// Cramér–Rao bound for these columns when all stationary time counts fully, rad, and the bound
-    /// with the Earth rate free: of a signal that noise has made no smaller than the Earth's.
+    /// with the Earth rate free, at the Earth's own rate.
     #[inline(never)]
     pub(super) fn limits(&self, model: &Model, bent: &Bent) -> Option<[f64; 2]> {
         let regression = self.regression(self.setting.site.noise.model(), |_| 1.0, bent);
         let components = self.noise_components(&regression.solve(&model.columns())?);
-        let sigma =
-            |direction: Direction| libm::sqrt(direction.variance) * direction.amplitude.min(1.0);
+        let sigma = |direction: Direction| libm::sqrt(direction.variance_at_earth_rate());
         Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
     }
 
