@@ -40,7 +40,7 @@ impl Outcome {
         }
     }
 
-    fn with_run(self, source: Source, run: RunDetails) -> Self {
+    fn with_run(self, source: Source, mut run: RunDetails) -> Self {
         let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
             let this = match run.disagreement.filter(|_| this.is_ok()) {
@@ -49,10 +49,12 @@ impl Outcome {
             };
             return Self { run: Some(run), ..this };
         }
+        // The reason tells it.
+        run.degradations.retain(|remark| Some(remark) != run.lost.as_ref());
         let last = run.kept.as_ref();
         let azimuth = last.and_then(Point::azimuth_deg);
-        let until = if run.was_known { "any more" } else { "yet" };
-        let reason = azimuth.is_none().then(|| format!("the azimuth is not known {until}"));
+        let unknown = || "the azimuth is not known yet".to_owned();
+        let reason = azimuth.is_none().then(|| run.lost.clone().unwrap_or_else(unknown));
         Self {
             azimuth_deg: azimuth.map(|[azimuth, ..]| azimuth),
             sigma_deg: azimuth.map(|[_, sigma, _]| sigma),

@@ -41,9 +41,9 @@ pub struct RunDetails {
     /// What the keeper reported at last, where it did.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
-    /// Whether an azimuth was known at any time.
+    /// That an azimuth which was kept is not known any more, where it is so.
     #[serde(skip)]
-    pub(super) was_known: bool,
+    pub(super) lost: Option<String>,
     /// By how many σ the latest azimuth disagreed with what was kept, where neither is believed.
     #[serde(skip)]
     pub(super) disagreement: Option<f64>,
@@ -145,13 +145,13 @@ impl RunDetails {
         let (kept, last_kept) = if was_known { (kept, last) } else { (&Kept::default(), None) };
         let lines = last_kept.iter().map(|last| Part::from(in_words(kept, last, later)));
         let board = board.map(|board| Part::from(board).detail());
-        let is_lost = last_kept.is_some_and(|last| last.report.azimuth.is_none());
+        let lost = last_kept.filter(|last| last.report.azimuth.is_none()).and_then(|_| lost(kept));
         Self {
             keys: keys
                 .with_found("alignments", of_alignments(&later.found))
                 .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
             facts: found_anew(&later.found).into_iter().collect(),
-            degradations: is_lost.then(|| LOST.to_owned()).into_iter().collect(),
+            degradations: lost.iter().cloned().collect(),
             parts: lines
                 .chain(alignments(&later.found).map(Part::from))
                 .chain(figures::all(kept).into_iter().map(Part::from))
@@ -163,7 +163,7 @@ impl RunDetails {
                 .chain(figures::lanes(kept))
                 .collect(),
             kept: last,
-            was_known,
+            lost,
             disagreement: later.disagreement,
             interruption: interrupt::ended(),
             cut_short: None,
@@ -185,8 +185,18 @@ fn faults(health: &Health) -> Option<String> {
     (!words.is_empty()).then(|| format!("faults on the way: {}", words.join(", ")))
 }
 
-/// What takes from an azimuth that was kept.
-const LOST: &str = "the azimuth is not known any more at the end of what was kept";
+/// How long an azimuth was kept until it was last known, s, and its 1σ then, °.
+fn latest_known(kept: &Kept) -> Option<[f64; 2]> {
+    let (point, [_, sigma]) = kept.with_azimuth().last()?;
+    Some([point.report.seconds.0, sigma.to_degrees()])
+}
+
+/// That an azimuth which was kept is lost, and how well it was known at last.
+fn lost(kept: &Kept) -> Option<String> {
+    let [seconds, sigma_deg] = latest_known(kept)?;
+    let at_last = format!("it was kept for {seconds:.0} s, at last ± {sigma_deg:.2}° (1σ)");
+    Some(format!("the azimuth is not known any more: {at_last}"))
+}
 
 /// Of all devices together.
 fn sum(counts: &[u16]) -> u32 {
@@ -232,7 +242,7 @@ fn of_kept(kept: &Kept, last: &Point, realigned: usize) -> Keys {
 
 /// What was kept at last, in words.
 fn in_words(kept: &Kept, last: &Point, later: &Realignments) -> Lines {
-    let Report { seconds, pitch, roll, level_sigma, .. } = last.report;
+    let Report { pitch, roll, level_sigma, .. } = last.report;
     let azimuth = last.azimuth_deg().map_or_else(
         || "not known any more".to_owned(),
         |[azimuth, sigma, _]| format!("{}° ± {sigma:.4}° (1σ)", in_circle(azimuth, 4)),
@@ -247,7 +257,8 @@ fn in_words(kept: &Kept, last: &Point, later: &Realignments) -> Lines {
     let sigma = level_sigma.degrees();
     let [pitch_rms, roll_rms] = level_rms(kept).map(degrees);
     let level_rms = format!("{pitch_rms:.3}°, {roll_rms:.3}° RMS on the way");
-    Lines::new(&format!("Kept for {:.0} s", seconds.0))
+    let known_s = latest_known(kept).map_or(0.0, |[seconds, _]| seconds);
+    Lines::new(&format!("Kept for {known_s:.0} s"))
         .with("azimuth of body x", azimuth)
         .with_found("its error", error)
         .with("pitch, roll", format!("{pitch:.3}°, {roll:.3}°, each ± {sigma:.3}° (1σ)"))
