@@ -12,6 +12,7 @@ mod rotations;
 mod strapdown;
 mod swaying;
 mod turns;
+mod weak;
 mod world;
 
 use crate::support::assert_near;

@@ -320,7 +320,8 @@ impl End {
         let there = path.place.navigation(path.now - path.start, displaced);
         let navigation = product(&transposed(&there), &transposed(&solution.frame));
         let error = solution.filter.three(NOW);
-        let body = product(&without(&error), &path.carried.attitude.matrix());
+        let carried = product(&solution.drift.back, &path.carried.attitude.matrix());
+        let body = product(&without(&error), &carried);
         let forward = transposed(&body)[0];
         Self { attitude: product(&navigation, &body), navigation, forward }
     }

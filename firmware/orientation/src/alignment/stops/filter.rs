@@ -100,6 +100,13 @@ impl Filter {
         }
     }
 
+    /// Removes a known rotation, rad, from φ now.
+    pub(super) fn remove(&mut self, known: &Vector) {
+        for (state, known) in self.state[NOW..].iter_mut().zip(known) {
+            *state -= known;
+        }
+    }
+
     /// Adds linear combinations of the other states to three successive states.
     #[inline(never)]
     pub(crate) fn add(&mut self, first: usize, rows: &[Row; 3]) {

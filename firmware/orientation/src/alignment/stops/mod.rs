@@ -31,6 +31,7 @@
 
 mod block;
 pub mod conclusion;
+mod drift;
 pub(crate) mod filter;
 pub mod inclination;
 mod lever;

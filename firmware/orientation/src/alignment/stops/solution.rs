@@ -2,6 +2,7 @@
 
 use super::Setting;
 use super::block::Block;
+use super::drift::Drift;
 use super::filter::{
     BIAS, Filter, LATITUDE, Measurement, PLACE, START, STATES, VELOCITY, force_row, placed,
     rest_row, velocity_row,
@@ -12,8 +13,8 @@ use super::stop::Stop;
 use crate::earth::EARTH_RATE;
 use crate::math::chi_square_tail;
 use crate::math::rotation::{
-    Matrix, Vector, by, cross, difference, dot, length, product, scaled, small, sum, transposed,
-    turned,
+    Matrix, Vector, about_down, by, cross, difference, dot, length, product, scaled, small, sum,
+    transposed, turned,
 };
 use crate::signal::strapdown::{Carried, Rough};
 use crate::units::RadiansPerSecond;
@@ -26,6 +27,10 @@ const AZIMUTH_SIGMA: f64 = 3.0;
 const REPETITIONS: u32 = 16;
 /// Correction below which the iteration ends, rad: half of its square is below 1e-5°.
 const SETTLED: f64 = 5e-4;
+/// Greatest number of iterations from a far start, on either side of the circle.
+const APPROACHES: u32 = 8;
+/// Correction below which outliers are looked for, rad: half of its square is worth 0.1° of azimuth.
+const NEAR: f64 = 0.05;
 /// Ratio of the scatter to the assumed one from which it is too large.
 const ROUGH: f64 = 1.5;
 /// Greatest ratio that is attributed to a sway.
@@ -77,6 +82,8 @@ const NOTHING: Matrix = [[0.0; 3]; 3];
 pub(crate) enum Belief {
     /// Disturbances as the data show them.
     Shown,
+    /// The same, but without outliers.
+    Untested,
     /// No sway, no outliers, least noise: the Cramér–Rao bound, and the starting point of the
     /// iteration.
     Ideal,
@@ -89,8 +96,12 @@ pub struct Solution {
     pub filter: Filter,
     /// Rotation from the frozen north, east, down of the start to the start frame.
     pub frame: Matrix,
+    /// Drift by the biases about which the filter is linear, up to the end of the path.
+    pub(super) drift: Drift,
     /// Statistics of the latest run.
     pub tally: Tally,
+    /// Sum of all normalised innovations squared of that run: chi-square of the estimates, their prior included.
+    misfit: f64,
     /// Greatest rate relative to the Earth that was present all through a stop whose rest was
     /// excluded, rad/s.
     steady: f64,
@@ -165,6 +176,8 @@ struct Run<'a> {
     path: &'a Path<'a>,
     /// Power of the force noise, (m/s²)²·s.
     density: f64,
+    /// Powers of the random walks of the angle, rad²/s, and of the biases, (rad/s)²/s.
+    walks: [f64; 2],
     /// Place slightly farther north, for the derivative with respect to latitude; none where the
     /// latitude is exact.
     north: Option<Place>,
@@ -180,20 +193,75 @@ impl Solution {
     /// Solution before any run, with an approximate start frame.
     pub(crate) fn new(frame: Matrix) -> Self {
         let (filter, tally) = (Filter::EMPTY, Tally::default());
-        Self { filter, frame, tally, steady: 0.0, roughness: 1.0, colour: 1.0, widening: 1.0 }
+        let drift = Drift::by([0.0; 3]);
+        Self {
+            filter,
+            frame,
+            drift,
+            tally,
+            misfit: 0.0,
+            steady: 0.0,
+            roughness: 1.0,
+            colour: 1.0,
+            widening: 1.0,
+        }
     }
 
     /// Iterates along the path until the start frame is consistent; the first run must have been
     /// made.
     pub(crate) fn settle(&mut self, setting: &Setting, path: &Path) {
+        if self.correction(path) > NEAR {
+            self.search(setting, path);
+        }
         for _ in 0..REPETITIONS {
-            self.frame = product(&by(&self.filter.three(START)), &self.frame);
+            self.relinearise();
             self.run(setting, path, Belief::Shown);
-            let is_settled = length(&self.filter.three(START)) < SETTLED;
+            let is_settled = self.correction(path) < SETTLED;
             if is_settled && !self.widen(setting) && !self.roughen() {
                 break;
             }
         }
+    }
+
+    /// Comes near to the estimates that fit best, from a far start: another minimum may lie on the other side of the
+    /// circle, because biases explain what a wrong azimuth leaves.
+    #[inline(never)]
+    fn search(&mut self, setting: &Setting, path: &Path) {
+        let here = self.approach(setting, path);
+        let (frame, drift) = (self.frame, self.drift);
+        self.frame = product(&self.frame, &about_down(core::f64::consts::PI));
+        self.drift = Drift::by([0.0; 3]);
+        self.run(setting, path, Belief::Untested);
+        if self.approach(setting, path) > here {
+            (self.frame, self.drift) = (frame, drift);
+            self.run(setting, path, Belief::Untested);
+        }
+    }
+
+    /// Iterates until the estimates are near to those about which the filter is linear, without tests: what contradicts
+    /// an estimate that is far from the truth may be sound. Returns how badly they fit.
+    fn approach(&mut self, setting: &Setting, path: &Path) -> f64 {
+        for _ in 0..APPROACHES {
+            if self.correction(path) < NEAR {
+                break;
+            }
+            self.relinearise();
+            self.run(setting, path, Belief::Untested);
+        }
+        self.misfit
+    }
+
+    /// Makes the estimates those about which the filter is linear.
+    fn relinearise(&mut self) {
+        self.frame = product(&by(&self.filter.three(START)), &self.frame);
+        self.drift = Drift::by(self.filter.three(BIAS));
+    }
+
+    /// How far the estimates are from those about which the filter is linear, rad: the rotation at the start, or by the
+    /// biases until now.
+    fn correction(&self, path: &Path) -> f64 {
+        let more = difference(&self.filter.three(BIAS), &self.drift.biases);
+        length(&self.filter.three(START)).max(length(&more) * (path.now - path.start))
     }
 
     /// Inflates the prior 1σ of the biases where their estimates exceed it by more than chance. The
@@ -247,7 +315,8 @@ impl Solution {
     #[inline(never)]
     pub(crate) fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let site = &setting.site;
-        (self.tally, self.steady) = (Tally::default(), 0.0);
+        (self.tally, self.misfit, self.steady) = (Tally::default(), 0.0, 0.0);
+        self.drift = Drift::by(self.drift.biases);
         let bias_sigma = self.widening * setting.bias_sigma().0;
         self.filter.begin(&start_covariance(&self.frame), bias_sigma, site);
         let is_exact = site.latitude_sigma.0 <= 0.0;
@@ -255,6 +324,7 @@ impl Solution {
         let own_density = || self.roughness * self.colour * path.density();
         let mut run = Run {
             density: if is_ideal { path.least_density() } else { own_density() },
+            walks: walks(setting, path),
             solution: self,
             setting,
             path,
@@ -287,39 +357,33 @@ impl Run<'_> {
         self.carry(Moment::of(stop.from.0, &stop.begin));
         self.solution.filter.anchor();
         self.before = [0.0; 2];
+        let begin = self.attitude(&stop.begin);
         for block in self.path.blocks.of(index) {
             self.carry(Moment::within(block, stop.begin.scale));
             self.block(block, self.path.displaced(index));
         }
         self.carry(Moment::of(stop.to.0, &stop.end));
-        self.rest(stop);
+        self.rest(stop, &begin);
+    }
+
+    /// Attitude of the body, at the moment to which the filter was propagated, on the frame without drift.
+    fn attitude(&self, carried: &Carried) -> Matrix {
+        product(&self.solution.drift.back, &carried.attitude.matrix())
     }
 
     /// Propagates the filter to a moment.
     fn carry(&mut self, to: Moment) {
         let seconds = (to.at - self.last.at).max(0.0);
-        let noise = self.setting.site.noise.model();
-        let walk = noise.angle_random_walk.0.max(LEAST_WALK);
-        let bias = gained(&to.bias, &self.last.bias);
         let has_scale = self.setting.site.scale_sigma > 0.0;
         let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
+        let scale = product(&self.solution.drift.back, &scale);
         let lost = f64::from((to.lost - self.last.lost).max(0.0));
-        self.solution.filter.carry(&bias, &scale, walk * walk * seconds + lost);
-        self.solution.filter.walk(self.bias_walk() * seconds);
+        let bias = self.solution.drift.carry(&to.bias);
+        let [walk, bias_walk] = self.walks;
+        self.solution.filter.carry(&bias, &scale, walk * seconds + lost);
+        self.solution.filter.remove(&turned(&bias, &self.solution.drift.biases));
+        self.solution.filter.walk(bias_walk * seconds);
         self.last = to;
-    }
-
-    /// Power of the biases' random walk, (rad/s)²/s. A ramp is represented by the walk with its
-    /// Allan variance over the whole time, flicker by the walk with its Allan variance over a stop
-    /// of mean length, whose rates are compared with the drives.
-    fn bias_walk(&self) -> f64 {
-        let whole = (self.path.now - self.path.start).max(1.0);
-        let stood: f64 = self.path.stops.iter().map(|stop| stop.seconds().0).sum();
-        let part = (stood / self.path.stops.len() as f64).max(1.0);
-        let [_, _, b, k, r] = self.setting.site.noise.model().coefficients();
-        k * k
-            + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / part
-            + 1.5 * r * r * whole
     }
 
     /// Applies the condition that a drive to a stop, of this many seconds, ends at rest as it began
@@ -338,7 +402,7 @@ impl Run<'_> {
                 velocity_row(&predicted, axis, &block.attitude, length)
             });
             self.solution.filter.add(VELOCITY, &rows);
-            let beyond = difference(&block.force.map(f64::from), &predicted);
+            let beyond = difference(&self.solution.drift.force(block), &predicted);
             gained = sum(&gained, &scaled(&beyond, length));
             seconds += length;
         }
@@ -399,7 +463,7 @@ impl Run<'_> {
         let navigation = self.path.place.navigation(elapsed, displaced);
         let above = turned(&self.solution.frame, &up(&navigation));
         let predicted = scaled(&above, self.path.gravity);
-        let force = block.force.map(f64::from);
+        let force = self.solution.drift.force(block);
         let variance = self.density / f64::from(block.seconds);
         let along = transposed(&navigation);
         let farther = self.north.map(|place| {
@@ -431,11 +495,10 @@ impl Run<'_> {
 
     /// Updates the filter with the condition that the body turned with the Earth alone during a
     /// stop (zero angular rate).
-    fn rest(&mut self, stop: &Stop) {
+    fn rest(&mut self, stop: &Stop, begin: &Matrix) {
         let turn = EARTH_RATE * stop.seconds().0;
         let earth = by(&scaled(&turned(&self.solution.frame, &self.path.place.axis()), turn));
-        let [begin, end] = [&stop.begin, &stop.end].map(|carried| carried.attitude.matrix());
-        let shown = product(&end, &transposed(&begin));
+        let shown = product(&self.attitude(&stop.end), &transposed(begin));
         let beyond = small(&product(&shown, &transposed(&earth)));
         let rows: [_; 3] = core::array::from_fn(|axis| rest_row(&earth, axis));
         let sway = self.sway(stop);
@@ -496,11 +559,29 @@ impl Run<'_> {
         let is_ideal = self.belief == Belief::Ideal;
         let normalised_innovation_squared =
             if is_ideal { 0.0 } else { filter.normalised_innovation_squared(measurements) };
-        (normalised_innovation_squared <= OUTLIER).then(|| {
+        self.solution.misfit += normalised_innovation_squared;
+        let is_sound = normalised_innovation_squared <= OUTLIER;
+        (is_sound || self.belief == Belief::Untested).then(|| {
             filter.measure(measurements);
             normalised_innovation_squared
         })
     }
+}
+
+/// Powers of the random walks of the angle, rad²/s, and of the biases, (rad/s)²/s. A ramp is represented by the walk of
+/// the biases with its Allan variance over the whole time. Flicker has the same Allan variance over any time; it is
+/// represented by both walks, half and half at a time between the length of a stop and that of the way, whose rates are
+/// compared. A walk of the biases alone would double as a drive gets twice as long, and vanish within a long stop.
+fn walks(setting: &Setting, path: &Path) -> [f64; 2] {
+    let whole = (path.now - path.start).max(1.0);
+    let stood: f64 = path.stops.iter().map(|stop| stop.seconds().0).sum();
+    let stop = (stood / path.stops.len() as f64).max(1.0);
+    let middle = libm::sqrt(stop * libm::sqrt(stop * whole));
+    let noise = setting.site.noise.model();
+    let [_, _, b, k, r] = noise.coefficients();
+    let half = core::f64::consts::LN_2 / core::f64::consts::PI * b * b;
+    let walk = noise.angle_random_walk.0.max(LEAST_WALK);
+    [walk * walk + half * middle, k * k + 3.0 * half / middle + 1.5 * r * r * whole]
 }
 
 /// Prior covariance of φ at the start: the level is nearly known, the azimuth is not.
