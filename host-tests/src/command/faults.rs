@@ -64,8 +64,19 @@ pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
     }
     Err(format!(
         "--fault: {fault} is a fault of {}, not of {platform}; `--fault list` names those that it has",
-        having.join(" and ")
+        listed(&having)
     ))
+}
+
+/// Names in a row: a, b and c.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [all @ .., before, last] => {
+            let all: String = all.iter().map(|name| format!("{name}, ")).collect();
+            format!("{all}{before} and {last}")
+        }
+        few => few.concat(),
+    }
 }
 
 /// The names of the faults of a platform.

@@ -19,7 +19,8 @@ pub fn message(error: &clap::Error, program: &Command) -> String {
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     match error.kind() {
         ErrorKind::UnknownArgument => {
-            let meant = elsewhere(error, program).unwrap_or_else(|| meant(error));
+            let meant = elsewhere(error, program).or_else(|| behind(error, program));
+            let meant = meant.unwrap_or_else(|| self::meant(error));
             format!("{message}; see `{} --help`{meant}", command(&text))
         }
         ErrorKind::InvalidSubcommand => {
@@ -53,6 +54,13 @@ fn elsewhere(error: &clap::Error, program: &Command) -> Option<String> {
     let has = |platform: &&Command| platform.get_opts().any(|of| of.get_long() == Some(option));
     let having: Vec<_> = run.get_subcommands().filter(has).map(Command::get_name).collect();
     (!having.is_empty()).then(|| format!("; it is an option of run {}", having.join(", ")))
+}
+
+/// Where the platform of a run belongs, that stands behind its options.
+fn behind(error: &clap::Error, program: &Command) -> Option<String> {
+    let name = told(error, ContextKind::InvalidArg)?;
+    program.find_subcommand("run")?.find_subcommand(name)?;
+    Some(format!("; the platform comes first: `meridian run {name}`, then its options"))
 }
 
 /// The name of a command, an option or a value that resembles what was typed, as a question; nothing where none does.

@@ -210,7 +210,9 @@ fn shares(fit: &FitDetails, sigma_deg: Option<f64>) -> Option<Shares> {
 /// What helps against a part that dominates.
 fn remedy(source: Part) -> &'static str {
     match source {
-        Part::GSensitivity => ": level the platform mechanically, or calibrate κ at two tilts",
+        Part::GSensitivity => {
+            ": level the platform mechanically, or calibrate the g-sensitivity at two tilts"
+        }
         Part::Accelerometer => ": turn a full circle, or calibrate the accelerometer",
         Part::Scale => ": turn a longer arc, or calibrate the scale factor",
         Part::Drift | Part::Temperature => ": let the gyro settle, or repeat the circle faster",

@@ -44,7 +44,7 @@ pub struct Common {
     #[arg(long, value_name = "NAME", value_parser = faults::parse, help_heading = CHANCE)]
     pub fault: Option<FaultChoice>,
     /// Writes a recording for `replay`: FILE.csv holds the samples of the alignment, FILE.jsonl all that the board's
-    /// software took, keeping included; each also compressed, with .gz behind it.
+    /// software took, keeping included; each also compressed, with .gz behind it. Of a flight FILE.csv alone.
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub record: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.

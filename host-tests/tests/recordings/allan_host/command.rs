@@ -108,7 +108,7 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
         "fit</li>",
         "Q quantisation, slope −1: not observable",
         "N angle random walk, slope −½: 0.0",
-        "B bias instability, slope 0: ",
+        "B bias instability, slope 0, at 0.664 B: ",
         "K rate random walk, slope +½: ",
         "R rate ramp, slope +1: not observable",
     ];

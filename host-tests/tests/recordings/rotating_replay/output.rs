@@ -101,7 +101,7 @@ fn the_report_draws_profile_spectra_phasors_and_residuals() {
         "Amplitude spectra, clockwise at 0.100 Hz, rate-modulated",
         "Amplitude spectra, counter-clockwise at 0.200 Hz",
         "Phasor of the sensor's signal in each turn",
-        "Phasor of each turn less the mean of its stretch",
+        "Phasor of each turn less the median of its stretch",
     ];
     assert_drawn(&page, &titles);
     assert!(!page.contains("no points to draw"));

@@ -89,7 +89,7 @@ pub(crate) fn plane(parts: &[Part<'_>]) -> Figure {
     Figure::new(title, ["in step with cos θ", "°/h"], ["in step with −sin θ", "°/h"], series)
 }
 
-/// What the mean of its stretch leaves of each turn, with the 1σ of white noise.
+/// What the median of its stretch leaves of each turn, with the 1σ of white noise.
 pub(crate) fn residuals(turns: &[TurnDetails]) -> Figure {
     let mut series = Vec::new();
     for stretch in turns.chunk_by(|a, b| a.sense == b.sense && a.middle_s < b.middle_s) {
@@ -102,7 +102,7 @@ pub(crate) fn residuals(turns: &[TurnDetails]) -> Figure {
             series.push(Series::new(&name, Style::LineAndPoints, points));
         }
     }
-    let title = "Phasor of each turn less the mean of its stretch, with 1σ";
+    let title = "Phasor of each turn less the median of its stretch, with 1σ";
     Figure::new(title, ["time since the stretch began", "s"], ["residual", "°/h"], series)
 }
 

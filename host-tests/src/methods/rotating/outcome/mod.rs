@@ -16,6 +16,7 @@ use orientation::units::Radians;
 use serde::Serialize;
 
 use crate::cause::{self, Cause};
+use crate::median::median;
 use crate::methods::Course;
 use crate::methods::asked::Question;
 use crate::methods::rotating::Replay;
@@ -28,7 +29,7 @@ use crate::output::{
 use crate::recording::{Body, RotatingRow, Truth};
 use crate::report::{self, Columns, Lines, Part};
 
-/// A turn of the platform, with what the mean of its stretch leaves of it.
+/// A turn of the platform, with what the median of its stretch leaves of it.
 #[derive(Clone, Debug, Serialize)]
 pub struct TurnDetails {
     /// `clockwise` or `counter-clockwise`.
@@ -197,7 +198,7 @@ fn unevenness(average: &Average) -> f64 {
     average.turning.size() / average.speed
 }
 
-/// The turns of a stretch about their mean; a random walk in rad/√s gives either part of a phasor 1σ of
+/// The turns of a stretch about their median; a random walk in rad/√s gives either part of a phasor 1σ of
 /// N·√(2/T).
 fn of_stretch<'a>(
     stretch: &'a Stretch,
@@ -206,8 +207,8 @@ fn of_stretch<'a>(
 ) -> impl Iterator<Item = TurnDetails> + 'a {
     let phasors: Vec<[f64; 2]> =
         stretch.turns.iter().map(|turn| compensated(turn, misalignment)).collect();
-    let count = phasors.len().max(1) as f64;
-    let mean = [0, 1].map(|part: usize| phasors.iter().map(|at| at[part]).sum::<f64>() / count);
+    // Turns that are left out are far off, and do not move it.
+    let middle = [0, 1].map(|part: usize| median(phasors.iter().map(|at| at[part])));
     stretch.turns.iter().zip(phasors).map(move |(turn, phasor)| {
         let sense = if turn.speed < 0.0 { "counter-clockwise" } else { "clockwise" };
         let seconds = f64::from(turn.seconds);
@@ -216,7 +217,7 @@ fn of_stretch<'a>(
             speed_hz: f64::from(turn.speed.abs()) / TAU,
             middle_s: f64::from(turn.middle),
             seconds,
-            residual_deg_h: [0, 1].map(|part: usize| degrees_per_hour(phasor[part] - mean[part])),
+            residual_deg_h: [0, 1].map(|part: usize| degrees_per_hour(phasor[part] - middle[part])),
             sigma_deg_h: degrees_per_hour(walk * (2.0 / seconds).sqrt()),
         }
     })
