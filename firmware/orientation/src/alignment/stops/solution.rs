@@ -29,8 +29,12 @@ const REPETITIONS: u32 = 16;
 const SETTLED: f64 = 5e-4;
 /// Greatest number of iterations from a far start, on either side of the circle.
 const APPROACHES: u32 = 8;
+/// One of so many blocks at rest is used there.
+const APART: usize = 8;
 /// Correction below which outliers are looked for, rad: half of its square is worth 0.1° of azimuth.
 const NEAR: f64 = 0.05;
+/// Probability of the misfit of sound data below which the other side of the circle is looked at.
+const MISFIT: f64 = 1e-3;
 /// Ratio of the scatter to the assumed one from which it is too large.
 const ROUGH: f64 = 1.5;
 /// Greatest ratio that is attributed to a sway.
@@ -82,7 +86,7 @@ const NOTHING: Matrix = [[0.0; 3]; 3];
 pub(crate) enum Belief {
     /// Disturbances as the data show them.
     Shown,
-    /// The same, but without outliers.
+    /// The same, but of a few blocks and without outliers: enough to come near.
     Untested,
     /// No sway, no outliers, least noise: the Cramér–Rao bound, and the starting point of the
     /// iteration.
@@ -100,8 +104,9 @@ pub struct Solution {
     pub(super) drift: Drift,
     /// Statistics of the latest run.
     pub tally: Tally,
-    /// Sum of all normalised innovations squared of that run: chi-square of the estimates, their prior included.
-    misfit: f64,
+    /// Sum of all normalised innovations squared of that run, chi-square of the estimates with their prior, and its degrees
+    /// of freedom.
+    misfit: [f64; 2],
     /// Greatest rate relative to the Earth that was present all through a stop whose rest was
     /// excluded, rad/s.
     steady: f64,
@@ -199,7 +204,7 @@ impl Solution {
             frame,
             drift,
             tally,
-            misfit: 0.0,
+            misfit: [0.0; 2],
             steady: 0.0,
             roughness: 1.0,
             colour: 1.0,
@@ -223,24 +228,27 @@ impl Solution {
         }
     }
 
-    /// Comes near to the estimates that fit best, from a far start: another minimum may lie on the other side of the
-    /// circle, because biases explain what a wrong azimuth leaves.
+    /// Comes near to the estimates that fit best, from a far start. Where those that it comes to do not fit, another
+    /// minimum may lie on the other side of the circle: biases explain some of what a wrong azimuth leaves.
     #[inline(never)]
     fn search(&mut self, setting: &Setting, path: &Path) {
-        let here = self.approach(setting, path);
+        let [here, degrees] = self.approach(setting, path);
+        if chi_square_tail(here, degrees) > MISFIT {
+            return;
+        }
         let (frame, drift) = (self.frame, self.drift);
         self.frame = product(&self.frame, &about_down(core::f64::consts::PI));
         self.drift = Drift::by([0.0; 3]);
         self.run(setting, path, Belief::Untested);
-        if self.approach(setting, path) > here {
+        if self.approach(setting, path)[0] > here {
             (self.frame, self.drift) = (frame, drift);
             self.run(setting, path, Belief::Untested);
         }
     }
 
     /// Iterates until the estimates are near to those about which the filter is linear, without tests: what contradicts
-    /// an estimate that is far from the truth may be sound. Returns how badly they fit.
-    fn approach(&mut self, setting: &Setting, path: &Path) -> f64 {
+    /// an estimate that is far from the truth may be sound. Returns the misfit.
+    fn approach(&mut self, setting: &Setting, path: &Path) -> [f64; 2] {
         for _ in 0..APPROACHES {
             if self.correction(path) < NEAR {
                 break;
@@ -315,7 +323,7 @@ impl Solution {
     #[inline(never)]
     pub(crate) fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let site = &setting.site;
-        (self.tally, self.misfit, self.steady) = (Tally::default(), 0.0, 0.0);
+        (self.tally, self.misfit, self.steady) = (Tally::default(), [0.0; 2], 0.0);
         self.drift = Drift::by(self.drift.biases);
         let bias_sigma = self.widening * setting.bias_sigma().0;
         self.filter.begin(&start_covariance(&self.frame), bias_sigma, site);
@@ -358,7 +366,8 @@ impl Run<'_> {
         self.solution.filter.anchor();
         self.before = [0.0; 2];
         let begin = self.attitude(&stop.begin);
-        for block in self.path.blocks.of(index) {
+        let step = if self.belief == Belief::Untested { APART } else { 1 };
+        for block in self.path.blocks.of(index).step_by(step) {
             self.carry(Moment::within(block, stop.begin.scale));
             self.block(block, self.path.displaced(index));
         }
@@ -559,7 +568,8 @@ impl Run<'_> {
         let is_ideal = self.belief == Belief::Ideal;
         let normalised_innovation_squared =
             if is_ideal { 0.0 } else { filter.normalised_innovation_squared(measurements) };
-        self.solution.misfit += normalised_innovation_squared;
+        self.solution.misfit[0] += normalised_innovation_squared;
+        self.solution.misfit[1] += measurements.len() as f64;
         let is_sound = normalised_innovation_squared <= OUTLIER;
         (is_sound || self.belief == Belief::Untested).then(|| {
             filter.measure(measurements);
