@@ -71,10 +71,7 @@ pub fn check(fault: Fault, platform: Platform) -> Result<(), String> {
 /// Names in a row: a, b and c.
 fn listed(names: &[&str]) -> String {
     match names {
-        [all @ .., before, last] => {
-            let all: String = all.iter().map(|name| format!("{name}, ")).collect();
-            format!("{all}{before} and {last}")
-        }
+        [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
         few => few.concat(),
     }
 }

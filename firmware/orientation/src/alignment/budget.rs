@@ -97,7 +97,6 @@ impl Budget {
 
     /// The parts with noise and drift as they are stated, and last what scatters beyond them, of which a fit has raised
     /// both by this factor.
-    #[must_use]
     pub fn parts_of(&self, excess: f64) -> [(Source, Radians); 10] {
         let stated = |part: Radians| Radians(part.0 / excess);
         let of_noise = self.noise.0 * self.noise.0 + self.drift.0 * self.drift.0;
