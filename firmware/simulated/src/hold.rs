@@ -6,6 +6,7 @@ use embassy_time::Instant;
 use orientation::alignment::Azimuth;
 use orientation::attitude as keep;
 use orientation::navigation::{Policy, Realignment};
+use orientation::signal::sway::WATCH_UNTIL;
 use orientation::units::{Radians, Seconds};
 
 use firmware::ports::Aiding;
@@ -17,9 +18,9 @@ const STANDING_SECONDS: f32 = 50.0;
 pub const STOP_SECONDS: f64 = 60.0;
 /// How long a vehicle stands before it is aligned anew by a mechanism, s.
 pub(super) const STAND_SECONDS: f64 = 30.0;
-/// From the begin of a stop until another alignment begins, for which the base's sway is observed for 22 s, and from its
+/// From the begin of a stop until another alignment begins, for which the base's sway is observed first, and from its
 /// end until the vehicle sets off, s.
-const BEFORE_ANOTHER_SECONDS: f64 = STAND_SECONDS + 22.0 + 20.0;
+const BEFORE_ANOTHER_SECONDS: f64 = STAND_SECONDS + WATCH_UNTIL as f64 + 20.0;
 
 /// How a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,7 +19,6 @@ use orientation::alignment::stepwise::session::Prepared;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::schedule::{Position, Schedule};
 use orientation::alignment::stepwise::setting::Setting;
-use orientation::attitude as keep;
 use orientation::planner::POSITIONS;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
@@ -193,12 +192,6 @@ impl FramesScenario {
         let mut board = GimbalBoard::new(gimbal, OSCILLATOR);
         board.blackouts = &injection.blackouts;
         board
-    }
-
-    /// What the keeper is given about place and gyros; none where the latitude is none.
-    #[must_use]
-    pub fn keeper(&self) -> Option<keep::Setting> {
-        self.base.keeper()
     }
 
     /// How long an alignment takes, s.

@@ -65,7 +65,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     let wires = Wires(&board, injection);
     let mut sensors = wires.frame_sensors(scenario, base);
     let mut actuator = wires.actuators();
-    let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
+    let mut keeper = Keeper::new(&scenario.base.keeper().ok_or_else(outside)?);
     let policy = scenario.base.policy();
     let ended = harness.run(
         acquire(&mut on_mount(&mut sensors, &configuration, &frames, &channels)),

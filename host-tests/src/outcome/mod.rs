@@ -152,7 +152,7 @@ pub struct FitDetails {
     /// What the part of the noise holds beside the gyro's.
     #[serde(skip)]
     pub more_noise: Option<&'static str>,
-    /// Factor on noise and drift of the budget, because what was fitted scatters more than both; none where it does not.
+    /// Factor on noise and drift of the budget, because what was fitted scatters more than both; none without a fit.
     #[serde(skip)]
     pub excess: Option<f64>,
     /// The greatest part beside noise, where it makes up more than half of the variance.
@@ -216,7 +216,7 @@ impl FitDetails {
         Self {
             budget: budget.copied().map(BudgetDetails),
             dominant: dominant.map(|source| source.to_string()),
-            excess: Some(excess).filter(|excess| *excess > 1.0),
+            excess: Some(excess),
             positions,
             ..Self::default()
         }

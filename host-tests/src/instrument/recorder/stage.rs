@@ -49,7 +49,7 @@ impl Recorded for FramesScenario {
 
     fn given(&self) -> Option<Given> {
         let carrier = Carrier::TwoFrame(Box::new((self.setting()?, self.procedure())));
-        Some(Given { carrier, attitude: self.keeper()?, policy: self.base.policy() })
+        Some(Given { carrier, attitude: self.base.keeper()?, policy: self.base.policy() })
     }
 
     fn end_of<'r>(&self, run: &'r FramesRun) -> (&'r Kept, Truth) {

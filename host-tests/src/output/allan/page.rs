@@ -67,8 +67,8 @@ struct Asymptote {
 
 /// Letters of the coefficients, and the slopes of what each gives in both logarithms (IEEE Std 952-1997, annex C).
 const SLOPES: [[&str; 2]; 5] = [["Q", "−1"], ["N", "−½"], ["B", "0"], ["K", "+½"], ["R", "+1"]];
-/// What is beside the letter where the curve does not lie at the coefficient: bias instability is √(2 ln 2/π) B.
-const BELOW: [&str; 2] = ["B", ", at 0.664 B"];
+/// Where the curve of B lies, which is the only one that does not lie at its coefficient: at √(2 ln 2/π) B.
+const BELOW: &str = ", at 0.664 B";
 
 impl Asymptote {
     /// Broken where the record shows the coefficient, dotted where it is only an upper limit.
@@ -76,7 +76,7 @@ impl Asymptote {
         let is_found = matches!(self.coefficient.si, Estimate::Found { .. });
         let style = if is_found { Style::Dashed } else { Style::Dotted };
         let (Coefficient { name, .. }, [_, slope]) = (&self.coefficient, self.slope());
-        let below = if name.starts_with(BELOW[0]) { BELOW[1] } else { "" };
+        let below = if name.starts_with('B') { BELOW } else { "" };
         let name = format!("{name}, slope {slope}{below}: {}", self.coefficient.text());
         Series::new(&name, style, self.curve.iter().copied())
     }

@@ -72,7 +72,7 @@ fn scatter_that_is_no_noise_has_a_row_of_its_own_in_the_budget() {
         told.contains("(1σ of the azimuth): scatter beyond noise and drift dominates"),
         "{told}"
     );
-    assert!(told.contains("scatter beyond noise and drift  13."), "{told}");
+    assert!(told.contains("scatter beyond noise and drift  13.29"), "{told}");
     assert!(!told.contains("gyro noise           12"), "{told}");
 }
 

@@ -57,7 +57,7 @@ const OLDEST: f32 = 300.0;
 /// °/s.
 const WATCH_FROM: f32 = 10.0;
 /// Age at which compensation is decided, s: one period of a slow sway later.
-const WATCH_UNTIL: f32 = 22.0;
+pub const WATCH_UNTIL: f32 = 22.0;
 /// Longest time between two readings that is bridged, s.
 const LONGEST_STEP: f32 = 0.05;
 /// Least sway that is compensated, in standard deviations of the error that the compensation
