@@ -1,6 +1,8 @@
 //! Implements the instrument's [`ports`](crate::ports) by the chips' drivers: converts units,
 //! assigns axes, and decides which readings are valid.
 
+use core::time::Duration;
+
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::codec::Conversion;
 use drivers::ads1262::scale::Scale;
@@ -132,7 +134,8 @@ pub struct BaseImu<I, D> {
     pub chip: Lsm6dsl<I, D>,
     /// The stated noise and biases of its sensors.
     pub sensors: CoarseSensors,
-    /// Decimation: the unit is read once in this many samples of the precise gyro, ≥ 1.
+    /// Decimation: the unit is read once in this many samples of the precise gyro, ≥ 1, at least 1.5 times as
+    /// often as it has a new output.
     pub divider: u32,
 }
 
@@ -159,6 +162,10 @@ impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
 
     fn divider(&self) -> u32 {
         self.divider
+    }
+
+    fn output_period(&self) -> Duration {
+        self.chip.output_period()
     }
 }
 

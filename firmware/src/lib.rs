@@ -35,6 +35,7 @@ pub mod align;
 pub mod budget;
 pub mod calibration;
 pub mod guarded;
+pub mod output_clock;
 pub mod pointing;
 mod repeat_counter;
 pub mod retry_budget;

@@ -183,8 +183,12 @@ pub trait BaseSensors: Startable {
     /// The stated noise and biases of these sensors.
     fn sensors(&self) -> CoarseSensors;
 
-    /// Decimation: they are read once in this many samples of the precise gyro, ≥ 1.
+    /// Decimation: they are read once in this many samples of the precise gyro, ≥ 1, at least 1.5 times as often
+    /// as they have a new output.
     fn divider(&self) -> u32;
+
+    /// Nominal time between two outputs.
+    fn output_period(&self) -> core::time::Duration;
 }
 
 /// A base without sensors: the gyro's rates are used without compensation of sway.

@@ -301,7 +301,12 @@ impl<'a> Shared<'a> {
     /// The noise that the compensated sway leaves in the samples of an alignment that is to begin; [`None`] while the base
     /// is observed.
     pub(crate) fn observed_sway(&self) -> Option<SwayNoise> {
-        (self.observation.get() != Observation::Wanted).then(|| self.sway.get())
+        (!self.wants_sway()).then(|| self.sway.get())
+    }
+
+    /// Whether the base's sway is to be observed anew.
+    pub(crate) fn wants_sway(&self) -> bool {
+        self.observation.get() == Observation::Wanted
     }
 
     /// States that noise.

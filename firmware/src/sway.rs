@@ -1,7 +1,8 @@
 //! Compensation of the base's sway: subtracts the base's rate from the precise gyro's, on
 //! instruments with a coarse inertial measurement unit on the base.
 //!
-//! The base unit is read once in every `divider` samples; between, its latest rate is held. Until
+//! The base unit is read once in every `divider` samples, more often than it has a new output, so that none is
+//! left out; between, its latest rate is held. Until
 //! the sway has been observed for long enough, no decision is taken and no alignment begins. The
 //! decision then holds for that alignment. For another one the estimator begins anew: what it took
 //! for biases while the vehicle drove is in the rate that it would subtract, which turns with the
@@ -29,10 +30,11 @@ use micromath::F32Ext;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::sway::{CoarseSensors, Decision, Sway, SwayNoise};
-use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
+use orientation::units::{self, Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::event::Event;
 use crate::guarded::Guarded;
+use crate::output_clock::{Output, OutputClock};
 use crate::pointing::Decimator;
 use crate::ports::{BaseReading, BaseSensors, NoBase};
 use crate::repeat_counter::{RepeatCounter, STUCK};
@@ -66,7 +68,7 @@ pub trait CompensatesSway {
         shared: &'s Shared<'_>,
     ) -> (Option<&'s Compensation>, impl Future<Output = Infallible> + 's);
 
-    /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
+    /// Time between two outputs, µs, for a precise gyro with the sampling period `sample`, µs.
     fn period(&self, sample: u32) -> u32 {
         sample
     }
@@ -103,8 +105,8 @@ pub struct Compensation {
     due: Cell<Decimator>,
     /// Estimator of the sway.
     sway: RefCell<Sway>,
-    /// The latest reading with its time, for the attitude keeper.
-    fresh: Cell<Option<(Instant, BaseReading)>>,
+    /// The latest output with its time, for the attitude keeper.
+    fresh: Cell<Option<(Output, BaseReading)>>,
     /// A stage angle with its cosine and sine.
     axis: Cell<(Angle, [f32; 2])>,
     /// Time at which the base unit was given up.
@@ -168,8 +170,8 @@ impl Compensation {
         poll_fn(|_| if is_so(self.unit.get()) { Poll::Ready(()) } else { Poll::Pending }).await;
     }
 
-    /// The latest reading and its time; each is returned once.
-    pub(crate) fn reading(&self) -> Option<(Instant, BaseReading)> {
+    /// The latest output and its time; each is returned once.
+    pub(crate) fn reading(&self) -> Option<(Output, BaseReading)> {
         self.fresh.take()
     }
 
@@ -200,15 +202,14 @@ impl Compensation {
 
     /// Begins to observe the sway anew where that is wanted.
     fn begin_anew(&self, shared: &Shared<'_>) {
-        let mut sway = self.sway.borrow_mut();
-        if shared.observed_sway().is_none() && sway.decision != Decision::Watching {
-            sway.begin_anew();
+        if shared.wants_sway() && self.sway.borrow().decision != Decision::Watching {
+            self.sway.borrow_mut().begin_anew();
         }
     }
 
     /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
     fn lose(&self, shared: &Shared<'_>) {
-        if !self.is_decided() || shared.observed_sway().is_none() {
+        if !self.is_decided() || shared.wants_sway() {
             shared.observe_sway(SwayNoise::UNMEASURED);
         }
         self.lost.set(Some(Instant::now()));
@@ -263,25 +264,26 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 struct BaseUnit<'a, B> {
     /// The base unit with its retry budget.
     base: Guarded<'a, B>,
-    /// Time of the latest new reading that was not saturated.
-    latest: Instant,
+    /// Times of the outputs.
+    clock: OutputClock,
+    /// Time of the latest output that was not saturated.
+    latest: units::Instant,
     /// Begin of the present silence: the latest new reading or the latest start.
     silent: Instant,
     /// Counter of identical readings, by which a stuck unit is found.
     readings: RepeatCounter<[AngularRate; 3]>,
-    /// The latest reading, until it has been held once.
-    held: Option<BaseReading>,
 }
 
 impl<'a, B: BaseSensors> BaseUnit<'a, B> {
     /// Takes the device.
     fn new(device: &'a mut B) -> Self {
+        let period = device.output_period().as_secs_f32();
         Self {
             base: Guarded::new(device, Device::Base),
-            latest: Instant::MIN,
+            clock: OutputClock::new(1e6 * period),
+            latest: units::Instant(0),
             silent: Instant::MIN,
             readings: RepeatCounter::new(),
-            held: None,
         }
     }
 
@@ -318,48 +320,40 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
     /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
     async fn read(&mut self, known: &Compensation, shared: &Shared<'_>) -> Result<(), Symptom> {
         let begun = Instant::now();
+        let time = shared.clocks.instant(units::Instant(begun.as_micros()));
         let outcome = self.base.device.read().await;
         match self.base.checked(outcome)? {
             Some(reading) => {
                 shared.observer.sensed(begun, &reading);
-                self.push(begun, reading, known)
+                self.silent = begun;
+                let output = self.clock.take(time);
+                self.push(output, reading, known)
             }
             None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
             None => {
-                self.hold(begun, known);
+                self.clock.look(time);
                 Ok(())
             }
         }
     }
 
-    /// Repeats the latest rates for the keeper where no new output falls between two readings,
-    /// which happens now and then when both rates are nearly equal. Repeats once only, and marks
-    /// the specific force as invalid.
-    fn hold(&mut self, at: Instant, known: &Compensation) {
-        if let Some(reading) = self.held.take() {
-            known.fresh.set(Some((at, BaseReading { is_clipped: true, ..reading })));
-        }
-    }
-
-    /// Passes a reading to the estimator of sway. A saturated reading is omitted; the gap after it
+    /// Passes an output to the estimator of sway. A saturated reading is omitted; the gap after it
     /// makes the estimator begin anew.
     fn push(
         &mut self,
-        at: Instant,
+        output: Output,
         reading: BaseReading,
         known: &Compensation,
     ) -> Result<(), Symptom> {
         let BaseReading { rate, force, is_clipped } = reading;
-        self.silent = at;
         if self.readings.push(rate) >= STUCK {
             self.readings = RepeatCounter::new();
             return Err(Symptom::Stuck);
         }
-        known.fresh.set(Some((at, reading)));
-        self.held = Some(reading);
+        known.fresh.set(Some((output, reading)));
         if !is_clipped {
-            let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
-            self.latest = at;
+            let seconds = output.time.0.saturating_sub(self.latest.0) as f32 * 1e-6;
+            self.latest = output.time;
             known.sway.borrow_mut().push(seconds, rate, force);
         }
         Ok(())
@@ -371,6 +365,7 @@ impl<'a, B: BaseSensors> BaseUnit<'a, B> {
         let outcome = self.base.mend(symptom, shared).await;
         if outcome != Ok(false) {
             self.silent = Instant::now();
+            self.clock.restart();
         }
         let Err(reason) = outcome else { return };
         known.lose(shared);
@@ -388,6 +383,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
             self.compensation.lose(shared);
         }
         self.unit.silent = Instant::now();
+        self.unit.clock.restart();
         Ok(())
     }
 
@@ -398,8 +394,8 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
         (Some(&self.compensation), self.unit.serve(&self.compensation, shared))
     }
 
-    fn period(&self, sample: u32) -> u32 {
-        self.compensation.due.get().divider * sample
+    fn period(&self, _: u32) -> u32 {
+        self.unit.base.device.output_period().subsec_micros()
     }
 
     fn renew(&mut self) {

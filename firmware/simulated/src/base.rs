@@ -22,9 +22,13 @@ use super::coarse::CoarseClass;
 use super::fault::PortWrapper;
 use super::scenario::{Scenario, sway};
 use firmware::chips::BaseImu;
+use firmware::output_clock::LEAST_READINGS;
 
-/// Rate at which the base IMU is read, Hz.
+/// Greatest rate at which the base IMU is read, Hz.
 const READ_HERTZ: f64 = 200.0;
+/// Output rates of the chip, the fastest first.
+const OUTPUTS: [OutputRate; 4] =
+    [OutputRate::Hz104, OutputRate::Hz52, OutputRate::Hz26, OutputRate::Hz12];
 /// Ratio of the chip's oscillator to the nominal one.
 const CLOCK: f64 = 1.015;
 /// 1σ of the gyros' zero-rate level, °/s: ±3 °/s (data sheet, `G_TyOff`).
@@ -39,7 +43,7 @@ const SCALE: f64 = 0.005;
 const LEVER: [f64; 3] = [0.1, 0.0, -0.4];
 
 /// What the board takes for the noise of the sensors over what their data sheets call typical: the
-/// oscillator is off by some per cent, outputs are lost, and as the axis turns its angle error shares
+/// oscillator is off by some per cent, and as the axis turns its angle error shares
 /// less with that of the dwell before than the whitening believes (4 % of σ on a circle of 24).
 const STATED: f64 = 1.2;
 
@@ -93,34 +97,33 @@ fn divider(scenario: &Scenario) -> u32 {
     (libm::round(scenario.sample_rate_hz / READ_HERTZ) as u32).max(1)
 }
 
-/// The output rate nearest to that of the readings.
+/// The fastest output rate of which every output is read, or the slowest there is.
 fn output(scenario: &Scenario) -> OutputRate {
     let read = scenario.sample_rate_hz / f64::from(divider(scenario));
-    if read < 150.0 { OutputRate::Hz104 } else { OutputRate::Hz208 }
+    let is_read = |output: &OutputRate| read >= LEAST_READINGS * f64::from(output.hertz());
+    OUTPUTS.into_iter().find(is_read).unwrap_or(OutputRate::Hz12)
 }
 
-/// What the board is given: the class, and the times of its readings. An output is half a period old
-/// on average when it is read, and is held for some samples; one that is not read is lost to the
-/// noise.
+/// What the board is given: the class, and the times of its readings. An output is a mean over its period, waits
+/// for half the time between two readings on average, and is held for a period.
 fn sensors(scenario: &Scenario) -> CoarseSensors {
     let CoarseClass { rate_mdps_sqrt_hz, force_ug_sqrt_hz } = scenario.coarse;
     let period = 1.0 / f64::from(output(scenario).hertz());
     let read = f64::from(divider(scenario)) / scenario.sample_rate_hz;
-    let lost = STATED * libm::sqrt((read / period).max(1.0));
-    let held = 0.5 * (read - 1.0 / scenario.sample_rate_hz);
+    let held = 0.5 * (period - 1.0 / scenario.sample_rate_hz);
     CoarseSensors {
         mismatch: SCALE as f32,
-        delay: (0.5 * period + held) as f32,
-        delay_sigma: (period / libm::sqrt(12.0)) as f32,
+        delay: (0.5 * (period + read) + held) as f32,
+        delay_sigma: (read / libm::sqrt(12.0)) as f32,
         lever: 0.4,
-        ..CoarseSensors::of_densities(rate_mdps_sqrt_hz * lost, force_ug_sqrt_hz * lost)
+        ..CoarseSensors::of_densities(rate_mdps_sqrt_hz * STATED, force_ug_sqrt_hz * STATED)
     }
 }
 
-/// Seconds between two readings, as the keeper is given them.
+/// Seconds between two outputs, as the keeper is given them.
 #[must_use]
 pub(super) fn period(scenario: &Scenario) -> f64 {
-    f64::from(divider(scenario)) / scenario.sample_rate_hz
+    1.0 / f64::from(output(scenario).hertz())
 }
 
 /// The coarse gyros as the keeper is given them, and 1σ of the accelerometers' offsets, m/s².

@@ -14,10 +14,11 @@ use orientation::signal::InertialSample;
 use orientation::signal::force_offset::ForceOffset;
 use orientation::timebase::Timebase;
 use orientation::units::{
-    Angle, AngleIncrement, AngularRate, Instant, MetresPerSecondSquared, SpecificForce,
+    Angle, AngleIncrement, AngularRate, MetresPerSecondSquared, SpecificForce,
 };
 
 use super::increments;
+use crate::output_clock::Output;
 use crate::pointing::Decimator;
 use crate::ports::BaseReading;
 use crate::shared::Shared;
@@ -33,10 +34,10 @@ const TOLERANCE: u32 = (0.1 / 360.0 * 4_294_967_296.0) as u32;
 const LONGEST: u64 = 7;
 
 /// Greatest number of samples in the comparison of the coarse gyro with the precise one: two
-/// minutes at 200 Hz.
-const COMPARED: u32 = 24_000;
-/// Number of samples from which the comparison is used: ten seconds at 200 Hz.
-const ENOUGH: u32 = 2_000;
+/// minutes at 104 Hz.
+const COMPARED: u32 = 12_480;
+/// Number of samples from which the comparison is used: ten seconds at 104 Hz.
+const ENOUGH: u32 = 1_040;
 
 /// Decimation of the forces on a platform with which the coarse ones are compared: twelve times a
 /// second.
@@ -105,27 +106,6 @@ impl Excess {
     }
 }
 
-/// Time between the coarse readings.
-#[derive(Clone, Copy, Debug)]
-struct Timing {
-    /// Nominal time between two readings, µs.
-    period: u32,
-    /// Time of the latest reading.
-    latest: Option<Instant>,
-}
-
-impl Timing {
-    /// Time from the previous reading to one at this time, of the first the nominal period, and the part of
-    /// it for which the reading stands, both µs: all of it, or the nominal period where readings are missing,
-    /// since attitude and heading bridge the rest.
-    fn lasted(&mut self, at: Instant) -> [u32; 2] {
-        let since = self.latest.replace(at).map(|latest| at.0.saturating_sub(latest.0));
-        let since = since.map_or(self.period, |since| u32::try_from(since).unwrap_or(u32::MAX));
-        let is_near = since <= self.period + self.period / 2;
-        [since, if is_near { since } else { self.period }]
-    }
-}
-
 /// Rotation of the precise gyro since the latest coarse reading.
 #[derive(Clone, Copy, Debug)]
 struct Precise {
@@ -159,8 +139,6 @@ impl Precise {
 /// Samples of the base's motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coarse {
-    /// Time between coarse readings.
-    timing: Timing,
     /// Remainders of whole steps.
     carried: [i64; 3],
     /// Rotation of the precise gyro.
@@ -178,11 +156,9 @@ pub(super) struct Coarse {
 }
 
 impl Coarse {
-    /// Motion before the first reading, for coarse readings with a period in µs and precise samples with
-    /// one in ns.
-    pub(super) fn new(coarse: u32, precise: u32) -> Self {
+    /// Motion before the first reading, for precise samples with a period in ns.
+    pub(super) fn new(precise: u32) -> Self {
         Self {
-            timing: Timing { period: coarse, latest: None },
             carried: [0; 3],
             precise: Precise {
                 period: precise,
@@ -265,8 +241,8 @@ impl Coarse {
 
     /// Passes a coarse reading on to attitude and heading, where there is a new one.
     pub(super) fn pass_on(&mut self, base: Option<&Compensation>, shared: &Shared<'_>) {
-        if let Some((at, reading)) = base.and_then(Compensation::reading) {
-            self.convert(at, &reading, shared);
+        if let Some((output, reading)) = base.and_then(Compensation::reading) {
+            self.convert(output, &reading, shared);
         }
     }
 
@@ -304,13 +280,12 @@ impl Coarse {
         }
     }
 
-    /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
-    /// readings show in the times.
-    fn convert(&mut self, at: embassy_time::Instant, reading: &BaseReading, shared: &Shared<'_>) {
-        let time = shared.clocks.instant(Instant(at.as_micros()));
-        let [since, lasted] = self.timing.lasted(time);
-        let mut turned = increments(reading.rate, 1000 * u64::from(lasted), &mut self.carried);
-        turned[2] = match self.take_precise([since, lasted], shared) {
+    /// Converts a coarse output to a sample and passes it on. Saturation is kept as such; missing outputs show in
+    /// the times, and attitude and heading bridge them.
+    fn convert(&mut self, output: Output, reading: &BaseReading, shared: &Shared<'_>) {
+        let Output { time, period, periods } = output;
+        let mut turned = increments(reading.rate, period.into(), &mut self.carried);
+        turned[2] = match self.take_precise(periods, shared) {
             Some(precise) => {
                 self.excess.push(turned[2], precise);
                 precise
@@ -324,13 +299,9 @@ impl Coarse {
         shared.move_on(Motion::Moved(InertialSample { time, turned, force }));
     }
 
-    /// Rotation of the precise gyro about down in the time for which a reading stands, as its part of that
-    /// since the reading before, both µs; `None` where the axis was not vertical.
-    fn take_precise(
-        &mut self,
-        [since, lasted]: [u32; 2],
-        shared: &Shared<'_>,
-    ) -> Option<AngleIncrement> {
+    /// Rotation of the precise gyro about down in the time for which an output stands, as its part of that in so
+    /// many periods since the output before; `None` where the axis was not vertical.
+    fn take_precise(&mut self, periods: u32, shared: &Shared<'_>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
             (true, _) => VerticalGyro::Precise,
@@ -343,9 +314,10 @@ impl Coarse {
         if core::mem::replace(&mut self.down, down) != down {
             shared.move_on(Motion::Exchanged(down));
         }
-        let [since, lasted] = [since, lasted].map(i64::from);
-        let turned = if lasted < since { turned * lasted / since } else { turned };
-        let steps = i32::try_from(turned).ok().filter(|_| is_whole).unwrap_or(i32::MAX);
+        let steps = i32::try_from(turned / i64::from(periods.max(1)))
+            .ok()
+            .filter(|_| is_whole)
+            .unwrap_or(i32::MAX);
         (down == VerticalGyro::Precise).then_some(AngleIncrement(steps))
     }
 }

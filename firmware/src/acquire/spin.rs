@@ -5,7 +5,9 @@
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
 //!
 //! The forces show the roll, so a sample has their time. Converters are begun one after the other, and
-//! the accelerometers last: the median of all ends is earlier than theirs.
+//! the accelerometers last: the median of all ends is earlier than theirs. A gyro that converts earlier
+//! has turned by as much of the later conversion more, and of the earlier one less: a spin that changes
+//! would else be shown too late.
 
 use core::convert::Infallible;
 
@@ -48,6 +50,8 @@ pub struct SpinAcquisition<'a, C, R> {
     configuration: &'a SpinConfiguration,
     /// Length of a conversion, µs, rounded up.
     length: u64,
+    /// Conversions in a microsecond.
+    rate: f32,
     /// Outlet of samples.
     outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
@@ -69,20 +73,34 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
             converters: Group::new((converters, reader), NAMES, rate, period, &channels.shared),
             configuration,
             length: libm::ceil(1e6 / rate) as u64,
+            rate: (1e-6 * rate) as f32,
             outlet: Outlet::new(period, period, channels),
             before: None,
             carried: [0; GYROS],
         }
     }
 
-    /// Rotation of the gyros since the middle of the previous conversion; for the first one as much
-    /// as in a whole conversion.
+    /// Rotation of the gyros since the middle of the accelerometers' previous conversion; for the first one as
+    /// much as in a whole conversion.
     fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
         let gyros = &self.configuration.gyros;
         let steps = core::array::from_fn(|axis| gyros[axis].steps(codes[axis]));
         let before = self.before.replace(steps).unwrap_or(steps);
+        let earlier: [f32; GYROS] = core::array::from_fn(|axis| self.earlier(axis));
         let carried = &mut self.carried;
-        core::array::from_fn(|axis| between(before[axis], steps[axis], &mut carried[axis]))
+        core::array::from_fn(|axis| {
+            between([before[axis], steps[axis]], earlier[axis], &mut carried[axis])
+        })
+    }
+
+    /// By how much a gyro converts earlier than the accelerometers, in half conversions.
+    fn earlier(&self, axis: usize) -> f32 {
+        let after = |index| {
+            let [gyro, force] = [axis, index].map(|index| self.converters.end(index).at.0);
+            force.wrapping_sub(gyro).cast_signed() as i32
+        };
+        let [up, right] = ACCELEROMETERS.map(after);
+        (up + right) as f32 * self.rate
     }
 
     /// Specific forces up and right; [`None`] if one is saturated.
@@ -141,14 +159,15 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> Source<'a> for SpinAcq
     }
 }
 
-/// Half of the sum of two increments; saturated where one of them is.
-fn between(before: i32, now: i32, carried: &mut i64) -> AngleIncrement {
-    for steps in [before, now] {
-        if Code(steps).is_saturated() {
-            return AngleIncrement(steps);
-        }
+/// Half of the sum of two increments, with so many half parts more of the later one and less of the one before;
+/// saturated where one of them is.
+fn between(increments: [i32; 2], later: f32, carried: &mut i64) -> AngleIncrement {
+    if let Some(steps) = increments.into_iter().find(|steps| Code(*steps).is_saturated()) {
+        return AngleIncrement(steps);
     }
-    let whole = i64::from(before) + i64::from(now) + *carried;
+    let [before, now] = increments;
+    let moved = (now.wrapping_sub(before) as f32 * later) as i32;
+    let whole = i64::from(before) + i64::from(now) + i64::from(moved) + *carried;
     *carried = whole & 1;
     AngleIncrement((whole >> 1) as i32)
 }

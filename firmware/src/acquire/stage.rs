@@ -85,7 +85,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> OnBase<'a, 
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
-            coarse: Coarse::new(base.period(period), nanoseconds(sample_rate)),
+            coarse: Coarse::new(nanoseconds(sample_rate)),
             outlet: Outlet::new(period, base.period(period), channels),
             silence: silence(period),
         };

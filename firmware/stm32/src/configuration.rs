@@ -15,6 +15,7 @@
 //! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
+use drivers::lsm6dsl::registers::OutputRate as BaseRate;
 use firmware::calibration::Harmonics;
 use firmware::configuration::{
     Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
@@ -171,11 +172,13 @@ fn dwelling(schedule: Schedule, clocks: Timebase) -> Procedure {
 }
 
 /// Decimation of the LSM6DSL of the board itself: read once in this many samples of the gyro, 200 times a
-/// second. By it the result is held on a stage, two frames or a turntable, and the sway of the base is
+/// second, which finds every output of [`BASE_OUTPUT`]. By it the result is held on a stage, two frames or a turntable, and the sway of the base is
 /// compensated: the board is fixed to the base, the chip's x axis forward, y to the right, z down.
 pub const BASE_DIVIDER: u32 = if cfg!(feature = "sps2400") { 12 } else { 2 };
+/// Output rate of the LSM6DSL.
+pub const BASE_OUTPUT: BaseRate = BaseRate::Hz104;
 /// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
-/// its oscillator and the outputs that are not read.
+/// its oscillator and for errors that successive dwells share.
 const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];
 /// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases,
 /// m/s²: half of the zero-g level of ±40 mg (data sheet, `LA_TyOff`), since nothing calibrates them
@@ -184,21 +187,22 @@ const BASE_SIGMAS: (f64, f64, f64) = (3.0, 0.005, 20e-3 * 9.80665);
 /// Distance of the board from the point about which the base sways, m.
 const BASE_LEVER: f64 = 0.4;
 
-/// Time between two readings of the LSM6DSL, s.
+/// Time between two outputs of the LSM6DSL, s.
 fn base_period() -> f64 {
-    f64::from(BASE_DIVIDER) / CONVERTER.rate.hertz()
+    1.0 / f64::from(BASE_OUTPUT.hertz())
 }
 
-/// Properties of the LSM6DSL, for the compensation of sway. An output is half a period old on average
-/// when it is read, and is held until the next reading.
+/// Properties of the LSM6DSL, for the compensation of sway. An output is a mean over its period, waits for half
+/// the time between two readings on average, and is held for a period.
 pub fn base_sensors() -> CoarseSensors {
     let [rate, force] = BASE_NOISE;
-    let output = 1.0 / 208.0;
-    let held = 0.5 * (base_period() - 1.0 / CONVERTER.rate.hertz());
+    let sample = 1.0 / CONVERTER.rate.hertz();
+    let (output, read) = (base_period(), f64::from(BASE_DIVIDER) * sample);
+    let held = 0.5 * (output - sample);
     CoarseSensors {
         mismatch: BASE_SIGMAS.1 as f32,
-        delay: (0.5 * output + held) as f32,
-        delay_sigma: (0.29 * output) as f32,
+        delay: (0.5 * (output + read) + held) as f32,
+        delay_sigma: (0.29 * read) as f32,
         lever: BASE_LEVER as f32,
         ..CoarseSensors::of_densities(rate, force)
     }

@@ -4,7 +4,7 @@ use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::Configuration as Conversion;
 use drivers::adxl355::Adxl355;
 use drivers::adxl355::registers::OutputRate;
-use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate as BaseRate};
+use drivers::lsm6dsl::registers::ADDRESS_LOW;
 use drivers::lsm6dsl::{self, Lsm6dsl};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::Tmc5160;
@@ -66,8 +66,10 @@ pub fn encoder(wires: Device) -> AxisEncoder {
 
 /// Connects the IMU of the board.
 pub fn base(bus: BaseBus) -> Base {
-    let configuration =
-        lsm6dsl::Configuration { output: BaseRate::Hz208, ..lsm6dsl::Configuration::default() };
+    let configuration = lsm6dsl::Configuration {
+        output: configuration::BASE_OUTPUT,
+        ..lsm6dsl::Configuration::default()
+    };
     BaseImu {
         chip: Lsm6dsl::new(bus, Delay, ADDRESS_LOW, configuration),
         sensors: configuration::base_sensors(),

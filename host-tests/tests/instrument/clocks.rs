@@ -148,6 +148,10 @@ impl BaseSensors for Sensor {
     fn divider(&self) -> u32 {
         2
     }
+
+    fn output_period(&self) -> core::time::Duration {
+        core::time::Duration::from_secs(2).div_f64(HERTZ)
+    }
 }
 
 fn place() -> Latitude {

@@ -12,6 +12,7 @@ mod instrument_parts;
 mod keeping_instrument;
 mod kept_lines;
 mod mount;
+mod output_clock;
 mod postmortem;
 mod recordings;
 mod replaying;

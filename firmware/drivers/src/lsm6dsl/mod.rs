@@ -2,7 +2,7 @@
 //!
 //! **One sample.** Gyro and accelerometer run at one rate and sample together. The chip holds the
 //! two bytes of an axis together (block data update), but if a sample completes within a burst,
-//! some axes are older than others by one period, 5 ms. An integration of the rates must count this
+//! some axes are older than others by one period. An integration of the rates must count this
 //! as an uncertainty of time.
 //!
 //! **What protects a reading.** I²C has an acknowledge for every byte that is sent and nothing for
@@ -140,6 +140,11 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
     pub const fn new(bus: I, delay: D, address: u8, configuration: Configuration) -> Self {
         let reads_unchecked = READS_UNCHECKED;
         Self { bus, delay, address, configuration, reads_unchecked, was_stale: false }
+    }
+
+    /// Nominal time between two outputs.
+    pub const fn output_period(&self) -> Duration {
+        self.configuration.output.period()
     }
 
     /// Brings the chip from any state to measuring: identity, reset, boot, self-test,

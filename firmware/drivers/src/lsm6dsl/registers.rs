@@ -58,17 +58,24 @@ impl Status {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum OutputRate {
-    /// 104 Hz.
-    Hz104 = 4,
-    /// 208 Hz: the sway of a vehicle is sampled often enough to be integrated.
+    /// 12.5 Hz.
+    Hz12 = 1,
+    /// 26 Hz.
+    Hz26 = 2,
+    /// 52 Hz.
+    Hz52 = 3,
+    /// 104 Hz: the sway of a vehicle is sampled often enough to be integrated.
     #[default]
+    Hz104 = 4,
+    /// 208 Hz.
     Hz208 = 5,
     /// 416 Hz.
     Hz416 = 6,
 }
 
 impl OutputRate {
-    /// Outputs a second, Hz, nominal: 13 Hz · 2ⁿ. Chips are off by some per cent.
+    /// Outputs a second, Hz, nominal: 13 Hz · 2ⁿ, of which the data sheet rounds the first to 12.5 Hz. Chips are off
+    /// by some per cent.
     #[must_use]
     pub const fn hertz(self) -> u32 {
         13 << (self as u8 - 1)

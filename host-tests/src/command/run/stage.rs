@@ -82,6 +82,9 @@ pub(super) struct BaseOptions {
     pub(super) common: Common,
 }
 
+/// Least rate of the samples at which the coarse IMU, which is read with them, shows how a vehicle shakes, Hz.
+const KEPT_HERTZ: f64 = 50.0;
+
 fn amplitude(text: &str) -> Result<f64, String> {
     match angle(text, Quantity::Other) {
         Ok(degrees) if (0.0..=2.0).contains(&degrees) => Ok(degrees),
@@ -183,6 +186,13 @@ impl BaseOptions {
         let keeps = asked.is_some() || stated.has("hold") && scenario.hold.seconds > 0.0;
         if keeps && self.no_base_imu {
             return Err("--no-base-imu: without coarse sensors nothing is kept".to_owned());
+        }
+        if !self.no_base_imu && scenario.hold.seconds > 0.0 && scenario.sample_rate_hz < KEPT_HERTZ
+        {
+            return Err(format!(
+                "--rate: the coarse IMU is read with the samples, and an attitude is kept from {KEPT_HERTZ} a second on; \
+                 take more, or --hold 0"
+            ));
         }
         let keeping = (&scenario.hold, scenario.hold.stop_seconds(alignment_s));
         self.keeping.check(stated, keeping, &self.common, aligning)

@@ -50,9 +50,14 @@ fn the_scale_is_that_of_the_data_sheet() {
 
 #[test]
 fn the_control_registers_are_those_of_the_tables() {
-    for (output, code, hertz) in
-        [(OutputRate::Hz104, 4, 104), (OutputRate::Hz208, 5, 208), (OutputRate::Hz416, 6, 416)]
-    {
+    for (output, code, hertz) in [
+        (OutputRate::Hz12, 1, 13),
+        (OutputRate::Hz26, 2, 26),
+        (OutputRate::Hz52, 3, 52),
+        (OutputRate::Hz104, 4, 104),
+        (OutputRate::Hz208, 5, 208),
+        (OutputRate::Hz416, 6, 416),
+    ] {
         assert_eq!(output.hertz(), hertz);
         for (range, _, bits) in RATES {
             assert_eq!(control_rate(output, range), code << 4 | bits);

@@ -14,7 +14,7 @@ const USUAL: Configuration =
     Configuration { output: OutputRate::Hz208, rate: RateRange::Dps125, force: ForceRange::G2 };
 
 async fn fresh(imu: &mut Imu<'_>) -> Reading {
-    for _ in 0..20 {
+    for _ in 0..100 {
         if let Some(reading) = imu.read().await.expect("the chip is well") {
             return reading;
         }
@@ -29,7 +29,14 @@ fn the_driver_reads_rates_and_forces_and_leaves_no_violation() {
         [RateRange::Dps125, RateRange::Dps250, RateRange::Dps500, RateRange::Dps1000],
         [ForceRange::G2, ForceRange::G4, ForceRange::G8, ForceRange::G16],
     );
-    for output in [OutputRate::Hz104, OutputRate::Hz208, OutputRate::Hz416] {
+    for output in [
+        OutputRate::Hz12,
+        OutputRate::Hz26,
+        OutputRate::Hz52,
+        OutputRate::Hz104,
+        OutputRate::Hz208,
+        OutputRate::Hz416,
+    ] {
         for (rate, force) in rates.into_iter().zip(forces) {
             let rig = rig_with([0.25, -0.5, -1.0], [1.0, -20.0, 100.0]);
             rig.borrow_mut().environment.temperature = -15.0;

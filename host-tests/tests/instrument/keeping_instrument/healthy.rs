@@ -73,9 +73,28 @@ fn a_stage_keeps_by_its_coarse_gyros_alone_and_says_how_well() {
         sigmas(&found.kept)
     };
     let drives: Vec<[f64; 2]> = (1..=6).map(kept).collect();
-    // In about one drive of eight σ is too small, for minutes or more: what coarse gyros lose there is not all in it.
-    let right = drives.iter().filter(|[worst, within]| *worst < 4.0 && *within > 0.99).count();
-    assert!(right >= 4, "{drives:?}");
+    println!("greatest errors over σ, and parts within 3 σ: {drives:.2?}");
+    assert!(drives.iter().all(|[worst, within]| *worst < 4.0 && *within > 0.99), "{drives:?}");
+}
+
+#[test]
+fn what_a_stage_keeps_is_within_its_sigma_however_often_its_sensors_are_read() {
+    let cases: Vec<(f64, u64)> = [50.0, 60.0, 100.0, 1200.0]
+        .into_iter()
+        .flat_map(|rate| [2, 5, 7].map(|seed| (rate, seed)))
+        .collect();
+    let worst: Vec<f64> = cases
+        .par_iter()
+        .map(|&(sample_rate_hz, seed)| {
+            let usual = Scenario::usual(seed);
+            let base = Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz, ..usual };
+            let scenario = Scenario { hold: Hold::of(60.0), has_base_imu: true, ..base };
+            let found = Trial::of(&scenario).plan(KeptPlan::of(None)).run().expect("possible");
+            sigmas(&found.kept)[0]
+        })
+        .collect();
+    println!("greatest errors over σ: {worst:.1?}");
+    assert!(worst.iter().all(|sigmas| *sigmas < 4.5), "{worst:?} of {cases:?}");
 }
 
 #[test]

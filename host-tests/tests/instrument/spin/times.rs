@@ -11,17 +11,29 @@ use firmware::spin::configuration::{CHANNELS, SpinConfiguration};
 use host::instrument::Trial;
 use host::methods::spin::errors::wrapped;
 use host::virtual_time;
+use orientation::signal::SpinSample;
 use orientation::units;
 use simulated::spin::SpinScenario;
 
 /// When the first conversion begins, µs.
 const START: f64 = 1000.0;
 
+/// Code of a body that spins, when it begins to stop, and until when it does, µs.
+const SPINNING: f64 = 1e9;
+const STOPS: [f64; 2] = [21_234.5, 41_234.5];
+
 /// A converter that was begun so long after the first one, with the length of its conversions, both µs.
 struct Converter {
     after: f64,
     length: f64,
     count: u32,
+}
+
+/// Integral of the code of a body that stops up to a time, µs.
+fn spun(time: f64) -> f64 {
+    let [from, to] = STOPS;
+    let into = time.clamp(from, to) - from;
+    SPINNING * (time.min(from) + into - 0.5 * into * into / (to - from))
 }
 
 impl Startable for Converter {
@@ -39,7 +51,11 @@ impl Gyro<Code> for Converter {
     }
 
     async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
-        Ok(RateReading { rate: Code(1000 + self.count.cast_signed() % 7), is_new: true })
+        let end = START + self.after + f64::from(self.count) * self.length;
+        let mean = (spun(end) - spun(end - self.length)) / self.length;
+        // The last bits differ from reading to reading, as noise would have them.
+        let rate = Code(mean.round() as i32 + 1000 + self.count.cast_signed() % 7);
+        Ok(RateReading { rate, is_new: true })
     }
 }
 
@@ -53,9 +69,8 @@ impl InStep<Code> for Converter {
     }
 }
 
-/// How late the times of samples are for the middles of the accelerometers' conversions, µs, at a sample rate, Hz, where
-/// converters were begun so long after the first one, µs.
-fn late(begun: [f64; CHANNELS], sample_rate: f64) -> Vec<f64> {
+/// Samples at a rate, Hz, where converters were begun so long after the first one, µs.
+fn samples(begun: [f64; CHANNELS], sample_rate: f64) -> Vec<SpinSample> {
     let length = 1e6 / sample_rate;
     let converters = begun.map(|after| Converter { after, length, count: 0 });
     let mut sensors = SpinSensors { converters, reader: OneByOne::default() };
@@ -63,20 +78,18 @@ fn late(begun: [f64; CHANNELS], sample_rate: f64) -> Vec<f64> {
     let configuration = SpinConfiguration { sample_rate, ..configuration };
     let channels = Channels::new(&());
     let mut source = SpinAcquisition::new(&mut sensors, &configuration, &channels);
-    let mut late = Vec::new();
+    let mut taken = Vec::new();
     let taking = async {
-        let first = START + 0.5 * (begun[3] + begun[4]);
-        for count in 0..900 {
-            let time = channels.samples.receive().await.time.0 as f64;
-            late.push(time - first - (f64::from(count) + 0.5) * length);
+        for _ in 0..900 {
+            taken.push(channels.samples.receive().await);
         }
     };
     virtual_time::run_beside(acquire(&mut source), taking).expect("conversions come");
-    late
+    taken
 }
 
-#[test]
-fn a_sample_has_the_time_of_its_forces_however_far_apart_converters_were_begun() {
+/// How far apart converters are begun, µs, at a sample rate, Hz.
+fn spacings() -> impl Iterator<Item = ([f64; CHANNELS], f64)> {
     let spacings = [
         [0.0; CHANNELS],
         [0.0, 1.0, 2.0, 3.0, 4.0],
@@ -84,9 +97,41 @@ fn a_sample_has_the_time_of_its_forces_however_far_apart_converters_were_begun()
         [0.0, 3.0, 5.0, 20.0, 41.0],
         [9.0, 7.0, 6.0, 0.0, 2.0],
     ];
-    for (begun, sample_rate) in
-        spacings.into_iter().flat_map(|begun| [10_000.0, 14_400.0].map(|rate| (begun, rate)))
-    {
+    spacings.into_iter().flat_map(|begun| [10_000.0, 14_400.0].map(|rate| (begun, rate)))
+}
+
+/// How late the times of samples are for the middles of the accelerometers' conversions, µs.
+fn late(begun: [f64; CHANNELS], sample_rate: f64) -> Vec<f64> {
+    let first = START + 0.5 * (begun[3] + begun[4]);
+    let middle = |count: u32| first + (f64::from(count) + 0.5) * 1e6 / sample_rate;
+    let times = samples(begun, sample_rate).into_iter().map(|sample| sample.time.0 as f64);
+    (0..).zip(times).map(|(count, time)| time - middle(count)).collect()
+}
+
+#[test]
+fn a_spin_that_stops_has_turned_as_far_as_it_had_at_the_times_of_the_forces() {
+    for (begun, sample_rate) in spacings() {
+        let length = 1e6 / sample_rate;
+        let middle =
+            |count: u32| START + 0.5 * (begun[3] + begun[4]) + (f64::from(count) + 0.5) * length;
+        let taken = samples(begun, sample_rate);
+        let gyros = SpinScenario::default().configuration().expect("scales are numbers").gyros;
+        for (axis, gyro) in gyros.iter().enumerate() {
+            let turned: f64 =
+                taken[1..].iter().map(|sample| f64::from(sample.turned[axis].0)).sum();
+            let of_code = f64::from(gyro.steps(Code(SPINNING as i32))) / SPINNING;
+            let codes = (spun(middle(899)) - spun(middle(0))) / length + 1003.0 * 899.0;
+            // A stamp is good to a microsecond, and so is what the stop begins and ends with.
+            let error = turned / of_code - codes;
+            let most = 1.5 * SPINNING / length;
+            assert!(error.abs() < most, "{begun:?} at {sample_rate} Hz: {error} of {SPINNING}");
+        }
+    }
+}
+
+#[test]
+fn a_sample_has_the_time_of_its_forces_however_far_apart_converters_were_begun() {
+    for (begun, sample_rate) in spacings() {
         let late = late(begun, sample_rate);
         // Stamps are rounded, and so is the time.
         let most = late.iter().fold(0.0, |most, late| f64::max(most, late.abs()));

@@ -223,6 +223,10 @@ impl BaseSensors for Failing {
     fn divider(&self) -> u32 {
         1
     }
+
+    fn output_period(&self) -> core::time::Duration {
+        core::time::Duration::from_micros(2_500)
+    }
 }
 
 /// A run on a base with these sensors.

@@ -58,8 +58,8 @@ const OLDEST: f32 = 300.0;
 const WATCH_FROM: f32 = 10.0;
 /// Age at which compensation is decided, s: one period of a slow sway later.
 pub const WATCH_UNTIL: f32 = 22.0;
-/// Longest time between two readings that is bridged, s.
-const LONGEST_STEP: f32 = 0.05;
+/// Longest time between two readings that is bridged, s: the slowest outputs come 12.5 times a second.
+const LONGEST_STEP: f32 = 0.1;
 /// Least sway that is compensated, in standard deviations of the error that the compensation
 /// leaves: it then removes at least nine tenths of the variance.
 const LARGE: f32 = 3.0;
@@ -212,7 +212,7 @@ impl Sway {
     }
 
     /// Takes a reading `seconds` after the previous one: rates about, and specific forces on, the
-    /// base's axes forward, right, down. After a gap longer than 0.05 s the vector is set anew by
+    /// base's axes forward, right, down. After a gap longer than 0.1 s the vector is set anew by
     /// the accelerometers, and the estimated bias is kept.
     pub fn push(&mut self, seconds: f32, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
         if self.up.is_none() {
