@@ -188,6 +188,11 @@ fn microsteps(angle: f64) -> i32 {
     libm::round(angle / TURN * f64::from(MICROSTEPS_PER_TURN)) as i32
 }
 
+/// Converts microsteps to an angle of the stage, rad.
+fn angle(microsteps: i64) -> f64 {
+    microsteps as f64 / f64::from(MICROSTEPS_PER_TURN) * TURN
+}
+
 impl<S: SpiDevice, D: DelayNs> Startable for Tmc5160<S, D> {
     fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
         Tmc5160::start(self)
@@ -211,8 +216,11 @@ impl<S: SpiDevice, D: DelayNs> Actuator for Tmc5160<S, D> {
             }
             Command::Look => {
                 let status = self.status().await?;
+                let counted = self.counted(status.position);
+                let mark = self.take_mark(&status).await?;
                 return Ok(Some(Motion {
-                    angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
+                    angle: angle(counted),
+                    mark: mark.map(|edge| angle(self.beside(edge))),
                     is_standing: status.standing,
                     has_reached: status.reached,
                     is_stalled: status.stalled,

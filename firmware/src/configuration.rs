@@ -61,8 +61,13 @@ impl Default for StageConfiguration {
 /// Tolerances of a turntable, a platform that turns continuously on a slip ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurntableConfiguration {
+    /// Platform angles at which the index mark begins to close its switch as the platform turns
+    /// clockwise and counter-clockwise, rad, as the encoder showed them when its zero was set.
+    /// They are the only angles that do not come from the encoder, so they alone can show that it has
+    /// slipped while the board was off.
+    pub index: [f64; 2],
     /// Largest permitted change of the difference between motor and encoder from one turn to the
-    /// next, rad: backlash, the residual of the encoder's calibration, and the time between the two
+    /// next, and of encoder and index, rad: backlash, the residual of the encoder's calibration, and the time between the two
     /// readings. This check finds coarse slips only; slips as small as the azimuth's σ are found by
     /// the session from the turns themselves.
     pub agreement: f64,
@@ -72,9 +77,10 @@ pub struct TurntableConfiguration {
 }
 
 impl Default for TurntableConfiguration {
-    /// Motor and encoder within 0.15°, 0.25 s of settling.
+    /// Index from 30° to 40°, motor and encoder within 0.15°, 0.25 s of settling.
     fn default() -> Self {
-        Self { agreement: 0.15 * DEGREE, settle: Duration::from_millis(250) }
+        let index = [30.0 * DEGREE, 40.0 * DEGREE];
+        Self { index, agreement: 0.15 * DEGREE, settle: Duration::from_millis(250) }
     }
 }
 

@@ -209,6 +209,9 @@ pub struct Motion {
     pub is_stalled: bool,
     /// Whether the index switch at the lower end of the travel is closed.
     pub at_index: bool,
+    /// Stage angle by the motor's step count, rad, at which the index mark of a platform without
+    /// ends began to close its switch since the reading before; [`None`] if it did not.
+    pub mark: Option<f64>,
 }
 
 /// A request to the motor.

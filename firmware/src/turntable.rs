@@ -1,9 +1,13 @@
 //! Control of the turntable: a platform on a slip ring, which turns at the requested rate in either
 //! sense without limit.
 //!
-//! There is no index switch. The zero of the absolute encoder is the reference, and the motor's
-//! step count is set by it while the platform stands. From then on the two are compared at every
-//! reading of the motor's status. A gear is not uniform, so the platform runs ahead of the motor
+//! The motor's step count is set by the absolute encoder while the platform stands, so the encoder's
+//! zero enters the azimuth in full, and the motor cannot contradict it. An index mark on the platform
+//! can: it passes a switch once per turn, the motor driver latches its step count there, and the
+//! encoder must show the angle at which the mark was found when the zero was set. An encoder that has
+//! slipped while the board was off shows at the first pass.
+//!
+//! Motor and encoder are also compared at every reading of the motor's status. A gear is not uniform, so the platform runs ahead of the motor
 //! and behind it, but by the same amount at the same place of every turn. A change from one turn to
 //! the next means that the encoder slips, that the motor loses steps, or that one of them stands
 //! while the other turns.
@@ -21,7 +25,7 @@ use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
 use crate::motor::{Axis, Break, LONGEST_STOP, Motor, POLL, STALL_REST};
-use crate::ports::{Actuator, Command};
+use crate::ports::{Actuator, Command, Motion};
 use crate::shared::Shared;
 
 /// Number of stalls in a session after which the platform may turn on.
@@ -33,6 +37,13 @@ const SECTORS: usize = 32;
 /// Number of bits of an [`Angle`] below its sector.
 const SECTOR_BITS: u32 = u32::BITS - SECTORS.ilog2();
 
+/// Way of the platform within which the index mark must pass once, rad: two turns and what the start
+/// and a reversal take.
+const LONGEST_UNMARKED: f64 = 2.5 * TURN;
+/// Way between two readings, rad, below which the platform may have reversed between them: half a
+/// period of readings at the motor driver's deceleration of 33°/s² takes 0.002°.
+const REVERSING: f64 = 0.01 / DEGREES;
+
 /// The control of a turntable.
 pub struct Turntable<'a, M> {
     /// The motor and its encoder.
@@ -41,6 +52,9 @@ pub struct Turntable<'a, M> {
     configuration: TurntableConfiguration,
     /// Differences of encoder and motor around a turn.
     comparison: Comparison,
+    /// Angle by the motor's step count at which the mark passed last, or at which the count was set,
+    /// rad.
+    passed: f64,
     /// Time of the latest reading of the motor's status.
     looked: Instant,
     /// The rate requested last, rad/s, clockwise positive.
@@ -60,6 +74,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
             motor: Motor::new(Axis::ONLY, actuator, &shared.angles.outer, shared),
             configuration: *configuration,
             comparison: Comparison::default(),
+            passed: 0.0,
             looked: Instant::MIN,
             rate: 0.0,
             blocks: 0,
@@ -113,6 +128,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         self.motor.look().await?;
         self.looked = Instant::now();
         self.comparison = Comparison::at(Angle::from_rad(shown));
+        self.passed = shown;
         Ok(())
     }
 
@@ -143,7 +159,27 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         if self.is_far(apart) && !self.is_far(self.comparison.way(shown)) {
             return Err(Break::Stalled);
         }
-        self.motor.check(apart, self.configuration.agreement)
+        self.motor.check(apart, self.configuration.agreement)?;
+        self.compare_index(self.motor.motion.angle - before.1)
+    }
+
+    /// Compares the encoder with the index where the mark has passed while the motor has turned by
+    /// `turned` since the reading before, rad. A platform that reverses meanwhile may have met either
+    /// end of the mark; it meets it again.
+    fn compare_index(&mut self, turned: f64) -> Result<(), Break> {
+        let Motion { angle, mark, .. } = self.motor.motion;
+        let Some(mark) = mark else {
+            let is_missing = (angle - self.passed).abs() > LONGEST_UNMARKED;
+            return if is_missing { Err(self.motor.fail(Trouble::NoIndex).into()) } else { Ok(()) };
+        };
+        if turned.abs() < REVERSING || turned * self.rate < 0.0 {
+            return Ok(());
+        }
+        self.passed = mark;
+        let [clockwise, counter] = self.configuration.index;
+        let index = if turned > 0.0 { clockwise } else { counter };
+        let apart = self.comparison.latest - Angle::from_rad(index - mark);
+        self.motor.check(apart.signed_rad(), self.configuration.agreement)
     }
 
     /// Whether two angles that should be equal differ by more than the tolerance, rad.

@@ -49,4 +49,10 @@ pub trait Mechanics {
 
     /// Whether the left and the right reference switch are touched.
     fn reference_switches(&self) -> [bool; 2];
+
+    /// How far the motor has gone beyond the place at which the left switch last changed, microsteps, so that
+    /// a chip that looks only now and then can tell where that was; zero where it is not known.
+    fn beyond_edge(&self) -> f64 {
+        0.0
+    }
 }

@@ -4,7 +4,7 @@
 //! the sensor's own dynamics are its own. The chips are the same.
 
 use drivers::adxl355::registers::OutputRate;
-use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
+use drivers::tmc5160::configuration::{Configuration as Motor, Polarity, Switches};
 use embassy_time::{Duration, Instant};
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
@@ -22,8 +22,8 @@ use super::scenario::{CLOCKS, GyroClass, Scenario};
 use super::{Chips, board_around};
 use firmware::storage::Today;
 
-/// The motor driver of a platform that turns without end: it has no switches.
-const MOTOR: Switches = Switches { left: None, right: None };
+/// The motor driver of a platform that turns without end: an index mark passes its left switch.
+const MOTOR: Switches = Switches { left: Some(Polarity::ActiveHigh), right: None, do_stop: false };
 
 /// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
 /// which the platform is not to turn far.
@@ -65,6 +65,9 @@ pub struct TurntableScenario {
     pub turns: u32,
     /// How far the sensitive axis rises over the platform's plane, °.
     pub elevation_deg: f64,
+    /// From where to where in every turn the index mark closes its switch, °; none where the switch is
+    /// broken.
+    pub index_deg: Option<[f64; 2]>,
     /// How uneven the gear is, relative, once and twice per turn.
     pub unevenness: [f64; 2],
     /// Angles at which it is quickest, °.
@@ -76,7 +79,7 @@ pub struct TurntableScenario {
 }
 
 impl Default for TurntableScenario {
-    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve rate-modulated turns and ten each way, on a gear
+    /// The default gyro, raised by 0.8°, an index mark from 30° to 40°, at 0.137 Hz for twelve rate-modulated turns and ten each way, on a gear
     /// that is uneven by 0.2 % once and 0.05 % twice per turn.
     fn default() -> Self {
         Self {
@@ -86,6 +89,7 @@ impl Default for TurntableScenario {
             modulated_turns: 12,
             turns: 10,
             elevation_deg: 0.8,
+            index_deg: Some([30.0, 40.0]),
             unevenness: [0.002, 0.0005],
             quickest_deg: [35.0, 110.0],
             stored: [None; SPEEDS],
@@ -182,6 +186,7 @@ impl TurntableScenario {
         plant.stage = StageConfiguration {
             travel_rad: endless.travel_rad,
             switches_rad: endless.switches_rad,
+            mark_rad: self.index_deg.map(|edges| edges.map(|edge| edge * DEGREE)),
             unevenness: Unevenness { first: ripple(0), second: ripple(1) },
             ..plant.stage
         };

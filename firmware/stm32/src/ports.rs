@@ -130,9 +130,10 @@ fn force() -> OutputRate {
     }
 }
 
-/// Configuration of the motor driver. A platform that rotates without limit has no switches.
+/// Configuration of the motor driver. On a platform that rotates without limit the index mark passes
+/// the switch, and does not stop it.
 fn drive() -> Motor {
     let usual = Motor::default();
-    let none = Switches { left: None, right: None };
-    Motor { switches: if PLATFORM == Platform::Turntable { none } else { usual.switches }, ..usual }
+    let do_stop = PLATFORM != Platform::Turntable;
+    Motor { switches: Switches { do_stop, ..usual.switches }, ..usual }
 }

@@ -98,6 +98,10 @@ impl Mechanics for Drive<'_> {
     fn reference_switches(&self) -> [bool; 2] {
         self.train.switches()
     }
+
+    fn beyond_edge(&self) -> f64 {
+        self.train.beyond_edge()
+    }
 }
 
 impl StageFault {

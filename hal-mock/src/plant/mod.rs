@@ -233,4 +233,8 @@ impl Mechanics for Plant<'_> {
     fn reference_switches(&self) -> [bool; 2] {
         self.drive.reference_switches()
     }
+
+    fn beyond_edge(&self) -> f64 {
+        self.drive.beyond_edge()
+    }
 }

@@ -30,6 +30,9 @@ pub struct StageConfiguration {
     /// The left switch is closed below the first of these angles, the right one above the second,
     /// rad. Default −5° and +365°.
     pub switches_rad: [f64; 2],
+    /// A mark on the stage itself that closes the left switch from the first of these angles to the second of
+    /// every turn, rad, both within a turn, in place of the switches at the ends. Default none.
+    pub mark_rad: Option<[f64; 2]>,
     /// Play between motor and stage, rad at the stage, ≥ 0: half of it to either side at power-on.
     pub backlash_rad: f64,
     /// Undamped frequency at which the stage rings, Hz; zero (the default) for a rigid stage.
@@ -41,12 +44,13 @@ pub struct StageConfiguration {
 }
 
 impl StageConfiguration {
-    /// A stage that turns without end, its cables led through a slip ring: no hard ends, and no
-    /// reference switches. Everything else is the default.
+    /// A stage that turns without end, its cables led through a slip ring: no hard ends, and in place of
+    /// reference switches a mark from 30° to 40°. Everything else is the default.
     #[must_use]
     pub fn endless() -> Self {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-        Self { travel_rad: everywhere, switches_rad: everywhere, ..Self::default() }
+        let mark_rad = Some([30.0, 40.0].map(f64::to_radians));
+        Self { travel_rad: everywhere, switches_rad: everywhere, mark_rad, ..Self::default() }
     }
 }
 
@@ -56,6 +60,7 @@ impl Default for StageConfiguration {
             start_rad: 0.0,
             travel_rad: [-10.0, 370.0].map(f64::to_radians),
             switches_rad: [-5.0, 365.0].map(f64::to_radians),
+            mark_rad: None,
             backlash_rad: 0.0,
             ringing_hz: 0.0,
             ringing_damping: 0.0,
@@ -84,6 +89,11 @@ struct Segment {
     engaged_s: f64,
     /// When the stage meets an end, s after the beginning; infinite for never.
     ended_s: f64,
+}
+
+/// An angle within one turn, rad: from zero to 2π.
+fn within_turn(angle_rad: f64) -> f64 {
+    angle_rad - core::f64::consts::TAU * libm::floor(angle_rad / core::f64::consts::TAU)
 }
 
 /// The drive of the stage at work.
@@ -168,9 +178,27 @@ impl Train {
 
     /// Left and right reference switch.
     pub(crate) fn switches(&self) -> [bool; 2] {
+        if let Some([from, to]) = self.configuration.mark_rad {
+            let angle_rad = within_turn(self.state.angle_rad);
+            return [from <= angle_rad && angle_rad < to, false];
+        }
         let [left, right] = self.configuration.switches_rad;
         let output = self.output_at(self.elapsed_s(self.now));
         [output < left, output > right]
+    }
+
+    /// How far the stage has turned beyond the edge of the mark that it met last, microsteps; zero without a
+    /// mark.
+    pub(crate) fn beyond_edge(&self) -> f64 {
+        let Some([from, to]) = self.configuration.mark_rad else { return 0.0 };
+        let StageState { angle_rad, rate_rad_s } = self.state;
+        let since = |edge: f64| within_turn(angle_rad - edge);
+        let [from, to] = if rate_rad_s < 0.0 {
+            [from, to].map(|edge| since(edge) - core::f64::consts::TAU)
+        } else {
+            [from, to].map(since)
+        };
+        (if from.abs() < to.abs() { from } else { to }) / RAD_PER_MICROSTEP
     }
 
     /// Seconds from the beginning of the segment.

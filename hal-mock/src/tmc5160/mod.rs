@@ -6,7 +6,8 @@
 //! ```
 //!
 //! While the motor moves the chip looks at its surroundings every [`STEP`] (some 1 300 instructions of a
-//! Cortex-M4F): switches and stalls act with that granularity. Standing it has no events and looks at
+//! Cortex-M4F): switches and stalls act with that granularity, except that XLATCH holds the place of an
+//! edge where the surroundings know it. Standing it has no events and looks at
 //! each transaction.
 //!
 //! Simplified: `SG_RESULT` is 0 where the motor is blocked and [`FREE_RUNNING`] otherwise, `CoolStep`,
@@ -137,6 +138,8 @@ pub struct Tmc5160 {
     slipped: i64,
     /// Levels of REFL and REFR.
     pins: [bool; 2],
+    /// How far the motor had gone beyond the left switch's last edge at the last look, microsteps.
+    beyond: i32,
     /// The active switches at the last look, left and right.
     stops_seen: u8,
     /// Whether the target was reached at the last look.
@@ -177,6 +180,7 @@ impl Tmc5160 {
             left: None,
             slipped: 0,
             pins: [false; 2],
+            beyond: 0,
             stops_seen: 0,
             was_reached: false,
             fast: false,
@@ -249,7 +253,11 @@ impl Tmc5160 {
             self.still = self.still.saturating_add(clocks).min(u64::MAX >> 1);
         }
         self.drive(environment);
-        self.pins = environment.reference_switches();
+        let pins = environment.reference_switches();
+        if pins != self.pins {
+            self.beyond = libm::round(environment.beyond_edge()) as i32;
+        }
+        self.pins = pins;
         self.blocked = environment.is_blocked();
         let moved = self.ramp.motion.velocity;
         self.latch_switches();

@@ -227,7 +227,8 @@ impl Tmc5160 {
             let bit = if switches[side] { bit } else { bit + 1 };
             if switches[side] != is_touched[side] && mode & (1 << bit) != 0 {
                 self.events |= latch;
-                self.registers[usize::from(address::XLATCH)] = self.ramp.position().cast_unsigned();
+                let edge = self.ramp.position().wrapping_sub(self.beyond);
+                self.registers[usize::from(address::XLATCH)] = edge.cast_unsigned();
             }
         }
         self.stops_seen = u8::from(switches[0]) | u8::from(switches[1]) << 1;

@@ -113,9 +113,10 @@ pub fn switch_mode(configuration: &Configuration, guard: Guard) -> u32 {
         Some(Polarity::ActiveHigh) => enabled,
         Some(Polarity::ActiveLow) => enabled | low,
     };
-    let left = sw_mode::STOP_LEFT | sw_mode::LATCH_LEFT;
+    let stops = |stop: u32| if switches.do_stop { stop } else { 0 };
+    let left = stops(sw_mode::STOP_LEFT) | sw_mode::LATCH_LEFT;
     let left = bits(switches.left, left, sw_mode::LEFT_LOW);
-    let right = bits(switches.right, sw_mode::STOP_RIGHT, sw_mode::RIGHT_LOW);
+    let right = bits(switches.right, stops(sw_mode::STOP_RIGHT), sw_mode::RIGHT_LOW);
     let stop = match guard {
         Guard::Soft => sw_mode::SOFT_STOP,
         Guard::Stall => sw_mode::STALL_STOP,
@@ -197,6 +198,8 @@ pub struct Status {
     pub standing: bool,
     /// Whether a stall has stopped the motor and has not been acknowledged.
     pub stalled: bool,
+    /// Whether XLATCH holds the position at which the left switch became active.
+    pub latched_left: bool,
     /// Whether the left switch is active.
     pub left_switch: bool,
     /// Whether the right switch is active.
@@ -217,6 +220,7 @@ impl Status {
             reached: is_set(ramp_stat::REACHED),
             standing: is_set(ramp_stat::STANDING),
             stalled: is_set(ramp_stat::STALLED),
+            latched_left: is_set(ramp_stat::LATCHED_LEFT),
             left_switch: is_set(ramp_stat::LEFT),
             right_switch: is_set(ramp_stat::RIGHT),
             driver_error: driver_error(driver, global, velocity),

@@ -88,6 +88,9 @@ pub struct Switches {
     pub left: Option<Polarity>,
     /// The switch at the upper end; it stops motions to the right.
     pub right: Option<Polarity>,
+    /// Whether switches stop the motor. The left input of a platform without ends is closed by a
+    /// mark that passes once per turn: its position is latched, and the motor goes on.
+    pub do_stop: bool,
 }
 
 /// The complete configuration of the motor driver.
@@ -132,7 +135,7 @@ impl Default for Configuration {
             ramp: Ramp::default(),
             currents: Currents { run_ma: 1000, hold_ma: 500, sense_milliohm: 75 },
             stall: Some(Stall { threshold: 0, above: Velocity(200 * 256) }),
-            switches: Switches { left: Some(Polarity::ActiveHigh), right: None },
+            switches: Switches { left: Some(Polarity::ActiveHigh), right: None, do_stop: true },
             reversed: false,
         }
     }

@@ -93,6 +93,9 @@ const CLEAR_STALL: [(Address, u32); 3] = [
     (registers::RAMP_STAT, ramp_stat::STALLED),
 ];
 
+/// Clears the event of a latched position.
+const CLEAR_LATCH: [(Address, u32); 1] = [(registers::RAMP_STAT, ramp_stat::LATCHED_LEFT)];
+
 /// Clears the global flags with the bridges off.
 const CLEAR_ERRORS: [(Address, u32); 2] =
     [(registers::CHOPCONF, codec::CHOPPER_OFF), (registers::GSTAT, gstat::ALL)];
@@ -114,13 +117,15 @@ pub struct Tmc5160<S, D> {
     link: Link<S>,
     delay: D,
     configuration: Configuration,
+    /// The position, microsteps, counted on where the chip's 32 bits overflow.
+    counted: i64,
 }
 
 impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// Creates the driver of a chip that has not been started.
     #[must_use]
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
-        Self { link: Link(spi), delay, configuration }
+        Self { link: Link(spi), delay, configuration, counted: 0 }
     }
 
     /// Stops the motor, checks and configures the chip, tests the bridges, and leaves it standing in
@@ -141,6 +146,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         let look = Pass::Read(&[registers::XACTUAL], &mut position);
         self.link.pass(&mut [Pass::Configure(&self.configuration), look], false).await?;
         self.stand_ready(position).await?;
+        self.counted = 0;
         self.test_bridges().await
     }
 
@@ -178,7 +184,9 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         let mode = if is_forward { ramp_mode::FORWARD } else { ramp_mode::BACKWARD };
         let units = self.configuration.clock.velocity_units(velocity);
         let guard = self.guard(velocity);
-        let first = [guard, (registers::RAMP_STAT, ramp_stat::LATCHED_LEFT)];
+        // A mark that has just passed is still to be taken.
+        let cleared = if self.configuration.switches.do_stop { ramp_stat::LATCHED_LEFT } else { 0 };
+        let first = [guard, (registers::RAMP_STAT, cleared)];
         let last = [(registers::VMAX, units), (registers::RAMPMODE, mode)];
         self.depart(&first, &[guard], &last).await
     }
@@ -202,11 +210,43 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         let follow = [(registers::RAMPMODE, ramp_mode::POSITION)];
         let mut passes =
             [Pass::Write(&HOLD), Pass::Write(&both), Pass::Verify(&both), Pass::Write(&follow)];
-        self.pass(&mut passes).await.map(|_| ())
+        self.pass(&mut passes).await?;
+        self.counted = microsteps.into();
+        Ok(())
+    }
+
+    /// A position, microsteps, counted on beyond the 32 bits of the chip, which the stage passes
+    /// every 466 turns. It must be asked for more often than that: the position next to the one
+    /// before is meant.
+    pub fn counted(&mut self, position: i32) -> i64 {
+        self.counted = self.beside(position);
+        self.counted
+    }
+
+    /// A position, microsteps, on the same count, next to the latest one; for an edge that was
+    /// passed.
+    #[must_use]
+    pub fn beside(&self, position: i32) -> i64 {
+        self.counted + i64::from(position.wrapping_sub(self.counted as i32))
+    }
+
+    /// Takes the position, microsteps, of a mark that has passed, so that the next one can be
+    /// latched; `status` is the latest. [`None`] where switches stop the motor, or no mark has
+    /// passed.
+    ///
+    /// # Errors
+    /// The bus fails.
+    pub async fn take_mark(&mut self, status: &Status) -> Result<Option<i32>, Fault> {
+        if self.configuration.switches.do_stop || !status.latched_left {
+            return Ok(None);
+        }
+        let edge = self.left_edge().await?;
+        self.pass(&mut [Pass::Write(&CLEAR_LATCH)]).await?;
+        Ok(edge)
     }
 
     /// The position, microsteps, at which the left switch became active since the last
-    /// [`Self::run`]; a soft stop ends beyond it.
+    /// [`Self::run`], or the last mark that was taken; a soft stop ends beyond it.
     pub async fn left_edge(&mut self) -> Result<Option<i32>, Fault> {
         let [state, edge, ..] =
             self.read(&[registers::RAMP_STAT, registers::XLATCH], false).await?;

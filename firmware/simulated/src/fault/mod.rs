@@ -175,12 +175,10 @@ impl Fault {
         Platform::ALL.into_iter().filter(move |platform| Self::all(*platform).any(|of| of == self))
     }
 
-    /// What the board of a platform must notice. A turntable has no index at which an encoder's zero would be
-    /// compared.
+    /// What the board must notice.
     #[must_use]
-    pub fn notice(self, platform: Platform) -> Notice {
+    pub fn notice(self) -> Notice {
         match self {
-            Self::Axis(_, AxisFault::SlipAtStart) if platform == Turntable => Notice::Nothing,
             Self::Chip(device, fault) => fault.notice(device),
             Self::Axis(_, fault) => fault.entry().1,
             other => other.entry().1,

@@ -86,7 +86,7 @@ fn row(platform: Platform, fault: Fault, seed: u64) -> Row {
         error_sigmas,
         reason: failed.or(reason),
         noticed: notice::first(&events).map(ToString::to_string),
-        is_noticed: notice::is_noticed(fault.notice(platform), &events),
+        is_noticed: notice::is_noticed(fault.notice(), &events),
         faults: health.faults(),
         repeated: dwells.map(|[repeated, _]| repeated),
         left_out: dwells.map(|[_, left_out]| left_out),

@@ -111,3 +111,28 @@ fn without_noise_two_speeds_leave_hundredths_of_a_degree() {
         assert!(rms(&errors) < allowed_deg && mean.abs() < 0.01, "{draw:?}");
     }
 }
+
+/// Two independent results A and B at the speeds a < b give (b² B − a² A)/(b² − a²): the variance of this for times
+/// `slow` and `fast`, of results whose variance is one over the time.
+fn variance([a, b]: [f64; 2], slow: f64, fast: f64) -> f64 {
+    (b.powi(4) / fast + a.powi(4) / slow) / (b * b - a * a).powi(2)
+}
+
+#[test]
+fn a_session_at_two_speeds_is_bounded_and_its_noise_near_the_least_of_its_length() {
+    for ratio in [1.2, 1.5, 2.0, 2.5, 5.0, 10.0, 25.0] {
+        let (a, b) = (0.02 * TAU, 0.02 * TAU * ratio);
+        let speeds = [b, a].map(RadiansPerSecond);
+        let given = Procedure { turns: 400, ..Procedure::new(&speeds, Seconds(0.02)) };
+        let [fast, slow] =
+            [0, 1].map(|index| f64::from(given.turns_at(index)) * TAU / speeds[index].0);
+        assert!(fast < 4.001 * slow, "{ratio}: {fast} s and {slow} s");
+        // The least over all ways to divide the same time.
+        let parts = (1..10_000).map(|part| f64::from(part) * 1e-4 * (slow + fast));
+        let least = parts.map(|part| variance([a, b], part, slow + fast - part));
+        let least = least.fold(f64::INFINITY, f64::min);
+        let excess = (variance([a, b], slow, fast) / least).sqrt();
+        let most = if ratio <= 2.0 { 1.001 } else { 1.12 };
+        assert!(excess < most, "{ratio}: {excess} times the least σ");
+    }
+}

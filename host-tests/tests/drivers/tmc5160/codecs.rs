@@ -115,8 +115,12 @@ fn soft_stop_and_stall_stop_exclude_each_other() {
     assert_eq!(Guard::at(limit, Velocity(1000)), Guard::Soft);
     assert_eq!(Guard::at(limit, Velocity(-1001)), Guard::Stall);
     assert_eq!(Guard::at(None, Velocity(i32::MIN)), Guard::Soft);
-    let bare = Configuration { switches: Switches { left: None, right: None }, ..configuration };
+    let switches = Switches { left: None, right: None, do_stop: true };
+    let bare = Configuration { switches, ..configuration };
     assert_eq!(codec::switch_mode(&bare, Guard::Stall), 0x400);
+    let switches = Switches { do_stop: false, ..configuration.switches };
+    let mark = Configuration { switches, ..configuration };
+    assert_eq!(codec::switch_mode(&mark, Guard::Stall), 0x420);
 }
 
 #[test]

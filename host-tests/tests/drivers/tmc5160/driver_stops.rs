@@ -92,6 +92,28 @@ fn a_switch_stops_a_fast_motion_at_once_and_lets_it_go_back() {
 }
 
 #[test]
+fn a_position_is_counted_on_where_the_chips_register_overflows() {
+    for way in [1, -1] {
+        on_a_stage(async |driver, _, _| {
+            let begin = way * (i32::MAX - 1000);
+            driver.set_position(begin).await.expect("it stands");
+            let before = driver.status().await.expect("it is well").position;
+            assert_eq!(driver.counted(before), i64::from(begin));
+            driver.run(Velocity(way * 40_000)).await.expect("it runs");
+            Timer::after(Duration::from_secs(1)).await;
+            let after = driver.status().await.expect("it is well").position;
+            assert!(after.signum() == -way, "it has overflowed: {after}");
+            let moved = (driver.counted(after) - i64::from(begin)) * i64::from(way);
+            assert!((36_000..40_500).contains(&moved), "{moved}");
+            driver.stop().await.expect("it stops");
+            rest(driver).await;
+            driver.set_position(7).await.expect("it stands");
+            assert_eq!(driver.counted(7), 7, "a position that was set is what it says");
+        });
+    }
+}
+
+#[test]
 fn a_moving_motor_keeps_its_position() {
     on_a_stage(async |driver, _, _| {
         driver.run(Velocity(1000)).await.expect("it runs");

@@ -125,8 +125,22 @@ impl Conclusion {
         let fit = self.fit.ok_or(alignment::Refusal::MisalignmentUnknown)?;
         self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
-        setting.site.check_sigma(fit.sigma(), fit.budget.greatest(1.0))?;
+        let is_accepted = setting.site.check_sigma(fit.sigma(), fit.budget.greatest(1.0));
+        is_accepted.map_err(|reason| self.for_want_of_misalignment(evidence, &fit, reason))?;
         Ok(Azimuth { angle: fit.azimuth, sigma: fit.sigma() })
+    }
+
+    /// The reason for a σ that is not accepted: where most of it is an axis misalignment that is not
+    /// known, that and not the encoder is to be mended.
+    fn for_want_of_misalignment(
+        &self,
+        evidence: &Evidence,
+        fit: &Fit,
+        reason: alignment::Refusal,
+    ) -> alignment::Refusal {
+        let part = self.problem(evidence).misalignment_sigma(fit) / fit.sigma().0;
+        let is_cause = self.misalignments.is_empty() && part * part > 0.5;
+        if is_cause { alignment::Refusal::MisalignmentUnknown } else { reason }
     }
 
     /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.

@@ -470,7 +470,7 @@ impl Problem<'_> {
     /// that is fixed to the angle, and so changes its sign with the sense, the in-phase part
     /// cancels except for what an integrated g-sensitivity mixes in; the quadrature part, a lag,
     /// does not cancel.
-    fn misalignment_sigma(&self, fit: &Fit) -> f64 {
+    pub(super) fn misalignment_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
             let [clockwise, counter] = pair.senses().map(|average| average.turning);
