@@ -37,12 +37,15 @@ use crate::guarded::Guarded;
 use crate::output_clock::{Output, OutputClock};
 use crate::pointing::Decimator;
 use crate::ports::{BaseReading, BaseSensors, NoBase};
-use crate::repeat_counter::{RepeatCounter, STUCK};
+use crate::repeat_counter::RepeatCounter;
 use crate::retry_budget::{RETRY, Symptom};
 use crate::shared::Shared;
 
 /// Time without a new reading after which the base unit counts as silent, µs.
 const SILENCE: u64 = 100_000;
+/// Number of identical successive outputs that is not chance: that noise leaves the last bits of all three gyros as
+/// they are.
+const STUCK: u32 = 32;
 /// Step of an [`Angle`], rad.
 const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
 /// Change of the stage's angle, in steps, below which its sine is not computed again: 2⁻¹⁴ of a

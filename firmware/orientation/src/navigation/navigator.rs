@@ -282,11 +282,13 @@ impl<'k> Navigator<'k> {
     /// also does everything else.
     fn tick(&mut self, now: Instant, outlet: Outlet) {
         self.now = now;
-        self.due.get_or_insert(Instant(now.0 + LOOK));
-        if !self.is_due(now) {
+        let due = self.due.get_or_insert(Instant(now.0 + LOOK));
+        if now < *due {
             return;
         }
-        self.due = Some(Instant(now.0 + LOOK));
+        // Increments of any period keep the pace; after a time without any it begins anew.
+        let next = due.0 + LOOK;
+        *due = Instant(if next > now.0 { next } else { now.0 + LOOK });
         self.look(outlet);
         self.looks += 1;
         if self.looks >= LOOKS {

@@ -23,8 +23,9 @@ use simulated::turntable::TurntableScenario;
 const POWER_ON: f64 = 0.0;
 const AMID: f64 = 40.0;
 const AFTER: f64 = 60.0;
-/// Longest time between two motions, µs: the eight periods of 10 ms after which a gyro counts as silent, and two.
-const LONGEST: u64 = 100_000;
+/// Longest time between two motions, µs: the eight periods of 10 ms after which a gyro counts as silent, and two of the
+/// coarse sensors' outputs, of 19 ms.
+const LONGEST: u64 = 120_000;
 /// Longest time from power-on to the first motion, µs: the coarse sensors' self-test takes 0.7 s.
 const FIRST: u64 = 800_000;
 
