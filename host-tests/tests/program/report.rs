@@ -342,6 +342,61 @@ fn a_wedge_is_drawn_wider_by_a_round_number_and_never_over_a_quarter_turn() {
     }
 }
 
+/// The colours of the series of a page's only figure, by their names.
+fn colours(names: &[&str]) -> Vec<(String, String)> {
+    let series = names.iter().map(|name| Series::new(name, Style::Line, [(0.0, 1.0), (1.0, 2.0)]));
+    let page = page("colours.html", vec![linear(series.collect()).into()]);
+    let figure = figures(&page).remove(0);
+    let all = figure["series"].as_array().expect("series").iter();
+    let text = |value: &serde_json::Value| value.as_str().expect("a text").to_owned();
+    all.map(|series| (text(&series["name"]), text(&series["class"]))).collect()
+}
+
+#[test]
+fn a_quantity_has_its_colour_on_every_page_whatever_else_is_drawn_before_it() {
+    let pages = [
+        &["kept ±1σ", "kept", "truth"][..],
+        &["something", "σ", "limit (Cramér–Rao)", "truth"],
+        &["a", "b", "c", "pitch", "roll", "±1σ", "kept"],
+        &["error", "truth", "what is known by then", "the last one ± the limit"],
+    ];
+    let all: Vec<_> = pages.into_iter().flat_map(colours).collect();
+    let of = |name: &str| -> Vec<&str> {
+        all.iter().filter(|(other, _)| other == name).map(|(_, colour)| &colour[..]).collect()
+    };
+    for (same, count) in [("truth", 3), ("kept", 2)] {
+        assert_eq!(of(same), vec![of(same)[0]; count], "{same}");
+    }
+    for [one, other] in [
+        ["kept", "kept ±1σ"],
+        ["kept", "what is known by then"],
+        ["σ", "±1σ"],
+        ["limit (Cramér–Rao)", "the last one ± the limit"],
+    ] {
+        assert_eq!(of(one)[0], of(other)[0], "{one} and {other}");
+    }
+    for page in pages {
+        let classes = colours(page).into_iter().map(|(_, colour)| colour);
+        let different: std::collections::BTreeSet<_> = classes.collect();
+        assert!(different.len() + usize::from(page[0] == "kept ±1σ") == page.len(), "{page:?}");
+    }
+}
+
+#[test]
+fn the_papers_that_a_page_names_stand_on_it_with_their_titles() {
+    let figure = |title: &str| Figure { title: title.to_owned(), ..linear(line_of("a")) };
+    let named = page("papers.html", vec![figure("Stops (Szymanowski 2003, Fig. 6)").into()]);
+    assert!(named.contains("Static Initial Azimuth Update Method in Land Navigation Systems"));
+    assert!(!named.contains("Sokolov"), "no other paper");
+    let none = page("none.html", vec![figure("Stops").into()]);
+    assert!(!none.contains("<h2>Papers</h2>"));
+}
+
+/// A series of this name.
+fn line_of(name: &str) -> Vec<Series> {
+    vec![Series::new(name, Style::Line, [(0.0, 1.0), (1.0, 2.0)])]
+}
+
 #[test]
 fn a_path_that_cannot_be_written_is_named() {
     let missing = Path::new("/no/such/folder/report.html");

@@ -3,6 +3,7 @@
 mod chart;
 mod markup;
 mod palette;
+mod papers;
 mod rose;
 mod span;
 mod timeline;
@@ -30,13 +31,14 @@ pub(super) fn document(report: &Report) -> String {
     let subtitle: String = report.subtitle.iter().map(|line| element("p", line)).collect();
     let mut palette = Palette::default();
     let parts: String = report.parts.iter().map(|each| part(each, &mut palette)).collect();
+    let papers = papers::papers(&format!("{head}{subtitle}{parts}"));
     let origin = origin();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
          <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n{head}\
-         <div class=\"subtitle\">\n{subtitle}</div>\n{origin}</header>\n<main>\n{parts}</main>\n\
+         <div class=\"subtitle\">\n{subtitle}</div>\n{origin}</header>\n<main>\n{parts}{papers}</main>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n"
     )
 }

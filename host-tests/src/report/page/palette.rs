@@ -1,46 +1,97 @@
-//! A colour for each name, the same in all figures of a page.
+//! A colour for each quantity, the same in all figures of all pages.
 
 use crate::report::Figure;
 
-/// How many colours the page's style has for series.
-const COLOURS: usize = 8;
+/// The quantities that pages share, by the colour of the page's style that each has. In one figure no two of them have
+/// the same one.
+const QUANTITIES: [&[&str]; 8] = [
+    // What is found: azimuth and heading, a measured curve, a model.
+    &[
+        "kept",
+        "what is known by then",
+        "heading",
+        "the whole model",
+        "overlapping Allan deviation",
+        "optimum",
+        "forward",
+        "angle between the verticals",
+        "inclination",
+        "way by the forces, fitted to the stops",
+    ],
+    // What it is held to.
+    &["truth", "true pitch", "threshold", "wanted", "best", "stops", "left out", "fit"],
+    &["limit (Cramér–Rao)", "the last one ± the limit", "N"],
+    // Its standard deviation.
+    &["σ", "±1σ", "within 1σ", "σ(t)", "σ of the phase lock", "1σ of pitch and of roll", "B"],
+    &["pitch", "right", "north", "about north of the level frame", "K"],
+    &["roll", "down", "east", "about east of the level frame", "R"],
+    // What it is off, and what a model leaves.
+    &[
+        "error",
+        "size of the error",
+        "scale error",
+        "rate error",
+        "one run each",
+        "one drive each",
+        "dwells",
+        "measured less the whole model",
+        "the plan",
+        "true roll",
+    ],
+    &["Q"],
+];
 
-/// The names that have a colour, in the order in which they came.
+/// The quantities that have a colour, and those of this page alone, in the order in which they came.
 #[derive(Default)]
 pub(super) struct Palette {
-    names: Vec<String>,
+    others: Vec<String>,
 }
 
 impl Palette {
-    /// The colour of each series of a figure, by its class in the page's style. Two names of one figure have the same one
-    /// only where it has more names than there are colours.
+    /// The colour of each series of a figure, by its class in the page's style. Two quantities of one figure have the same
+    /// one only where it has more of them than there are colours.
     pub fn classes(&mut self, figure: &Figure) -> Vec<String> {
-        let mut taken: Vec<(&str, usize)> = Vec::new();
-        for series in &figure.series {
-            let name = quantity(&series.name);
+        let names = || figure.series.iter().map(|series| quantity(&series.name));
+        let mut taken: Vec<(&str, usize)> =
+            names().filter_map(|name| Some((name, shared(name)?))).collect();
+        for name in names() {
             if taken.iter().all(|(other, _)| *other != name) {
                 let is_free = |colour: &usize| taken.iter().all(|(_, other)| other != colour);
                 let own = self.colour(name);
-                let colour = [own].into_iter().chain(0..COLOURS).find(is_free).unwrap_or(own);
-                taken.push((name, colour));
+                let all = [own].into_iter().chain(0..QUANTITIES.len());
+                taken.push((name, all.into_iter().find(is_free).unwrap_or(own)));
             }
         }
         let colour = |name| taken.iter().find(|(other, _)| *other == name).map_or(0, |(_, at)| *at);
-        figure.series.iter().map(|series| format!("s{}", colour(quantity(&series.name)))).collect()
+        names().map(|name| format!("s{}", colour(name))).collect()
     }
 
-    /// The colour of a name, from now on where it has none yet.
+    /// The colour of a quantity of this page alone, from now on where it has none yet.
     fn colour(&mut self, name: &str) -> usize {
-        let known = self.names.iter().position(|other| other == name);
+        let known = self.others.iter().position(|other| other == name);
         let place = known.unwrap_or_else(|| {
-            self.names.push(name.to_owned());
-            self.names.len() - 1
+            self.others.push(name.to_owned());
+            self.others.len() - 1
         });
-        place % COLOURS
+        place % QUANTITIES.len()
     }
 }
 
-/// What a series is of: a quantity and the bands of its σ have one colour.
+/// The colour of a quantity that pages share.
+fn shared(quantity: &str) -> Option<usize> {
+    QUANTITIES.iter().position(|names| names.contains(&quantity))
+}
+
+/// What a series is of: a quantity, the bands of its σ, its points that are hardly known, and what the solution makes of it
+/// have one colour. A coefficient of the noise is named by its letter.
 fn quantity(name: &str) -> &str {
-    [" ±1σ", " ±3σ"].into_iter().find_map(|band| name.strip_suffix(band)).unwrap_or(name)
+    let name = match name {
+        "limits of 68.3 %" | "fewer than 8 degrees of freedom" => "overlapping Allan deviation",
+        _ => name.strip_prefix("the solution, ").unwrap_or(name),
+    };
+    if name.contains(", slope ") {
+        return &name[..name.chars().next().map_or(0, char::len_utf8)];
+    }
+    let ends = [" ±1σ", " ±3σ", ", each with its 1σ", ", with 1σ"];
+    ends.into_iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name)
 }
