@@ -19,10 +19,10 @@ const LINES: u64 = 12;
 const REDRAWN: Duration = Duration::from_millis(500);
 /// What the steps of a session are called.
 const POSITIONS: &str = "positions";
-/// What the bar shows in the place of the time that is left, before anything is done.
-const ESTIMATING: &str = "estimating time left, ";
+/// How long nothing may be done before the bar shows how long that has been.
+const SOON: Duration = Duration::from_secs(1);
 /// What the bar shows: of 80 columns half are left to the words, and the rest of a line is cut.
-const TEMPLATE: &str = "{bar:10} {percent:>3} % {left}{wide_msg}";
+const TEMPLATE: &str = "{bar:10} {share}{left}{wide_msg}";
 
 /// The progress of one task; shared by the threads that work at it.
 pub struct Progress {
@@ -53,7 +53,10 @@ impl Progress {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let bar = match ProgressStyle::with_template(TEMPLATE) {
-            Ok(style) => bar.with_style(style.progress_chars("━╸ ").with_key("left", write_left)),
+            Ok(style) => {
+                let style = style.with_key("left", write_left).with_key("share", write_share);
+                bar.with_style(style.progress_chars("━╸ "))
+            }
             Err(_) => bar,
         };
         let prints_lines = manner.shows_progress() && bar.is_hidden();
@@ -124,8 +127,9 @@ impl Progress {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
         let part = 1 + done * LINES / all;
         if self.printed.fetch_max(part, Ordering::Relaxed) < part {
-            let left = left(self.bar.elapsed(), done, all).map(in_words).unwrap_or_default();
-            let line = format!("{words}, {} %, {left}{}", done * 100 / all, more());
+            let left = left(self.bar.elapsed(), done, all);
+            let left = left.map(|left| in_words(left, "left")).unwrap_or_default();
+            let line = format!("{words}, {}, {left}{}", percent(done, all), more());
             say(line.trim_end());
         }
     }
@@ -146,11 +150,34 @@ fn counted(what: &str, done: u64, all: u64) -> String {
     format!("{what} {done}/{all}")
 }
 
-/// Writes the time that is left into the bar, or that nothing is done yet to tell it from.
+/// Writes the share that is done into the bar; nothing before anything is.
+fn write_share(state: &ProgressState, to: &mut dyn Write) {
+    if state.pos() > 0 {
+        let share = percent(state.pos(), state.len().unwrap_or(0));
+        // A bar that lacks it does no harm.
+        let _ = write!(to, "{share:>5} ");
+    }
+}
+
+/// The part of a whole, in per cent: of a long task the first step is less than one.
+fn percent(done: u64, all: u64) -> String {
+    match done * 100 / all.max(1) {
+        0 if done > 0 => "<1 %".to_owned(),
+        percent => format!("{percent} %"),
+    }
+}
+
+/// Writes the time that is left into the bar. Before anything is done there is nothing to tell it from: how long that has
+/// been takes its place, where it is long.
 fn write_left(state: &ProgressState, to: &mut dyn Write) {
-    let left = left(state.elapsed(), state.pos(), state.len().unwrap_or(0));
+    let (elapsed, done) = (state.elapsed(), state.pos());
+    let words = match left(elapsed, done, state.len().unwrap_or(0)) {
+        Some(left) => in_words(left, "left"),
+        None if elapsed >= SOON => in_words(elapsed, "so far"),
+        None => String::new(),
+    };
     // A bar that lacks it does no harm.
-    let _ = write!(to, "{}", left.map_or_else(|| ESTIMATING.to_owned(), in_words));
+    let _ = write!(to, "{words}");
 }
 
 /// The time that is left where the rest goes on as what is done; none before anything is.
@@ -159,13 +186,13 @@ fn left(elapsed: Duration, done: u64, all: u64) -> Option<Duration> {
     (done > 0).then(|| elapsed.mul_f64(rest / done as f64))
 }
 
-/// The time that is left, in words, and a space.
-fn in_words(left: Duration) -> String {
-    let seconds = left.as_secs_f64().ceil() as u64;
+/// A time, what it is, and a space.
+fn in_words(time: Duration, what: &str) -> String {
+    let seconds = time.as_secs_f64().ceil() as u64;
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     match hours {
-        0 => format!("{minutes}:{seconds:02} left "),
-        _ => format!("{hours}:{minutes:02}:{seconds:02} left "),
+        0 => format!("{minutes}:{seconds:02} {what} "),
+        _ => format!("{hours}:{minutes:02}:{seconds:02} {what} "),
     }
 }
 
