@@ -15,7 +15,7 @@ use host::interrupt;
 use host::new_file;
 use host::output::manner::{self, Manner};
 use host::output::{printable, say};
-use host::report::Verbosity;
+use host::report::{Grade, Verbosity};
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
@@ -204,7 +204,11 @@ fn misused(wrong: &str) -> ExitCode {
 /// Says why there is no result, as JSON too where that was asked for.
 fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCode {
     if manner.as_json {
-        let output = Output::Object(serde_json::json!({}));
+        let mut object = serde_json::json!({});
+        if interrupt::is_asked() {
+            object["status"] = Grade::Interrupted.status().into();
+        }
+        let output = Output::Object(object);
         let refusal = Some(reason.clone());
         let nothing = Answer { output, refusal, is_told: true, warnings: warnings.clone() };
         // The reason goes to standard error all the same.

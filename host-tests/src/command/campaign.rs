@@ -7,6 +7,7 @@ use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::interrupt;
 use host::output::manner::Manner;
 use host::output::progress::Progress;
+use host::report::Grade;
 use simulated::fault::Platform;
 
 use super::files::Written;
@@ -87,7 +88,12 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
     report.subtitle.splice(0..0, interrupted());
     let refusal = interrupted().or(refusal.map(str::to_owned));
     object["campaign"] = campaign.name.into();
-    object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
+    object["status"] = match (&refusal, interrupted()) {
+        (None, _) => Grade::Found.status(),
+        (Some(_), Some(_)) => Grade::Interrupted.status(),
+        (Some(_), None) => "failed",
+    }
+    .into();
     let answer = Answer::reported(refusal, manner, &object, || report.clone())?;
     Ok(answer.with_page(page, || report))
 }

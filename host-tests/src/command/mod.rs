@@ -233,8 +233,6 @@ impl Shown<'_> {
         let made = |figures| outcome::report(name, outcome, &**finished, figures);
         let text = || made(Vec::new());
         let answer = Answer::reported(outcome.reason.clone(), manner, &outcome.noted(), text)?;
-        // The rest is not lost with it.
-        let answer = answer.with_written(outcome.interruption.clone().map_or(Ok(()), Err));
         Ok(answer.with_page(report, || made(finished.figures(outcome, truth, body.as_ref()))))
     }
 }

@@ -96,7 +96,8 @@ fn positions(
     let method = if is_mounted { standing::POSITIONS } else { standing::name_of(&session) };
     let assumed = standing::given_with(session.setting.half);
     let is_aligned = session.conclusion().is_some();
-    let finished = finished(is_aligned, standing::Replay { method, session, assumed });
+    let site = session.setting.site;
+    let finished = finished(is_aligned, &site, standing::Replay { method, session, assumed });
     Ok(Replayed { finished, body: None, done })
 }
 
@@ -111,7 +112,8 @@ fn turntable(
     let mut samples = Vec::new();
     let mut done = drive(&mut session, given, lines, |sample: &Sample| samples.push(*sample))?;
     let session = done.concluded::<Sample, _>(session);
-    let finished = finished(session.conclusion().is_some(), turning::Replay::of_run(session));
+    let (is_aligned, site) = (session.conclusion().is_some(), session.setting.site);
+    let finished = finished(is_aligned, &site, turning::Replay::of_run(session));
     Ok(Replayed { finished, body: Some(Body::Rotating(turning_rows(&samples))), done })
 }
 
@@ -123,12 +125,12 @@ fn vehicle(
 ) -> Result<Replayed, ReadError> {
     let begin = || begun(stops::Session::new(*setting, procedure.clone()), lines);
     let (mut session, beside) = (Latest::of(begin()?), begin()?);
-    let (method, criteria, assumed) = (stopping::SIAP, Vec::new(), vec![GIVEN.to_owned()]);
-    let mut seen = stopping::Replay { method, session: beside, zero_s: 0.0, criteria, assumed };
+    let mut seen = stopping::Replay::of(stopping::SIAP, beside, 0.0, vec![GIVEN.to_owned()]);
     let mut done = drive(&mut session, given, lines, |sample| seen.push(sample))?;
     let session = done.concluded::<InertialSample, _>(session);
     let is_aligned = session.conclusion().is_some();
-    let finished = finished(is_aligned, stopping::Replay { session, ..seen });
+    let site = session.setting.site;
+    let finished = finished(is_aligned, &site, stopping::Replay { session, ..seen });
     Ok(Replayed { finished, body: None, done })
 }
 

@@ -1,25 +1,40 @@
 //! The outcome of a run, where there is an alignment and where an azimuth is only kept.
 
+use orientation::alignment::site::Site;
+
 use super::keys::Keys;
 use super::run::RunDetails;
+use super::summary::of_site;
 use super::{Finished, Outcome, Source};
 use crate::instrument::kept::Point;
+use crate::output::fixed;
 use crate::recording::Truth;
 
 /// A run whose azimuth is kept while no alignment's conclusion stands: it came from outside, or the session was begun
 /// anew at a stop. The azimuth is the one that is kept at the end.
-#[derive(Clone, Copy, Debug)]
-pub struct KeptAzimuth;
+#[derive(Clone, Debug)]
+pub struct KeptAzimuth {
+    /// Place and gyro, in words.
+    circumstances: Vec<[String; 2]>,
+}
 
-/// What an alignment found, or that its azimuth was kept where none of a run stands.
+/// What an alignment at a site found, or that its azimuth was kept where none of a run stands.
 #[must_use]
-pub fn finished(is_aligned: bool, alignment: impl Finished + 'static) -> Box<dyn Finished> {
-    if is_aligned { Box::new(alignment) } else { Box::new(KeptAzimuth) }
+pub fn finished(
+    is_aligned: bool,
+    site: &Site,
+    alignment: impl Finished + 'static,
+) -> Box<dyn Finished> {
+    if is_aligned {
+        return Box::new(alignment);
+    }
+    Box::new(KeptAzimuth { circumstances: of_site(site).lines })
 }
 
 impl Finished for KeptAzimuth {
     fn outcome(&self, _: &Truth) -> Outcome {
-        Outcome::new("kept", Keys::default(), Vec::new())
+        let circumstances = self.circumstances.clone();
+        Outcome { circumstances, ..Outcome::new("kept", Keys::default(), Vec::new()) }
     }
 
     fn titles(&self) -> [&'static str; 2] {
@@ -34,24 +49,33 @@ impl Outcome {
     pub fn of_run(self, source: Source, run: RunDetails) -> Self {
         let (cut_short, interruption) = (run.cut_short.clone(), run.interruption.clone());
         let this = self.with_run(source, run);
-        match cut_short {
-            Some(why) => this.interrupted(why),
-            None => Self { interruption, ..this },
+        match (cut_short, interruption) {
+            (Some(why), _) => this.cut_short(why),
+            (None, Some(why)) => this.interrupted(&why),
+            (None, None) => this,
         }
     }
 
-    fn with_run(self, source: Source, mut run: RunDetails) -> Self {
+    fn with_run(self, source: Source, run: RunDetails) -> Self {
         let this = Self { source: Some(source), ..self };
         if !this.details.is_empty() {
-            let this = match run.disagreement.filter(|_| this.is_ok()) {
+            let this = match run.disagreement.filter(|_| this.has_result()) {
                 Some(sigmas) => this.disagreeing(sigmas),
                 None => this,
             };
             return Self { run: Some(run), ..this };
         }
+        this.keeping(run)
+    }
+
+    /// The outcome of a run that only kept an azimuth.
+    fn keeping(self, mut run: RunDetails) -> Self {
         // The reason tells it.
         run.degradations.retain(|remark| Some(remark) != run.lost.as_ref());
         let last = run.kept.as_ref();
+        let time = last.map(|last| format!("kept for {} s", fixed(last.report.seconds.0, 1)));
+        let mut circumstances = self.circumstances;
+        circumstances.extend(time.map(|time| ["time".to_owned(), time]));
         let azimuth = last.and_then(Point::azimuth_deg);
         let unknown = || "the azimuth is not known yet".to_owned();
         let reason = azimuth.is_none().then(|| run.lost.clone().unwrap_or_else(unknown));
@@ -63,7 +87,8 @@ impl Outcome {
             roll_deg: last.map(|last| last.report.roll.degrees()),
             seconds: last.map_or(0.0, |last| last.report.seconds.0),
             run: Some(run),
-            ..this
+            circumstances,
+            ..self
         }
         .settled(reason)
     }

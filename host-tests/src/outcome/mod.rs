@@ -28,13 +28,13 @@ use crate::methods::asked::Question;
 use crate::methods::vertical::Moment;
 use crate::output::{azimuth_error, in_number, signed};
 use crate::recording::{Body, Truth};
-use crate::report::Part as ReportPart;
+use crate::report::{Grade, Part as ReportPart};
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;
 
-/// The status of what was not carried to its end.
-const FAILED: &str = "failed";
+/// What is shown of what was interrupted.
+const SO_FAR: &str = "what was done until then is shown";
 
 /// A finished analysis of a recording or of a simulated run, whatever the method.
 pub trait Finished {
@@ -85,14 +85,11 @@ pub struct Outcome {
     pub source: Option<Source>,
     /// Name of the method on the command line.
     pub method: &'static str,
-    /// `ok` or `refused`; `failed` on the command line where a file could not be written.
+    /// `ok`, `refused` or `interrupted`; `failed` on the command line where a file could not be written.
     pub status: &'static str,
-    /// Why the result is refused; only with `refused`.
+    /// Why the result is refused, or where it was interrupted; not with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// That it was interrupted, and how far it was, where what was found stands all the same.
-    #[serde(skip)]
-    pub interruption: Option<String>,
     /// How that reason ends where it names the usual remedy, which a likelier cause takes the place of.
     #[serde(skip)]
     pub remedy: &'static str,
@@ -265,23 +262,43 @@ impl Outcome {
 
     /// The outcome with its status: refused where there is a reason.
     pub fn settled(self, reason: Option<String>) -> Self {
-        let status = if reason.is_none() { "ok" } else { "refused" };
+        let grade = if reason.is_none() { Grade::Found } else { Grade::Refused };
+        let status = grade.status();
         // A sum of nothing is −0.
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
 
-    /// The outcome of what was interrupted, as the reason says. A result of a part of what was to be measured is none, but
-    /// its 1σ is told; what goes on from sample to sample stands as it was at the last one.
-    pub fn interrupted(self, why: String) -> Self {
-        if self.fit.is_none() {
-            return Self { interruption: Some(why), ..self };
+    /// The outcome of what was interrupted while it measured, as the reason says. A result of a part of what was to be
+    /// measured is none, but its 1σ is told; what goes on from sample to sample stands as it was at the last one.
+    pub fn cut_short(self, why: String) -> Self {
+        let status = Grade::Interrupted.status();
+        match (&self.fit, &self.reason) {
+            (None, None) => return self.interrupted(&why),
+            (None, Some(reason)) => {
+                let reason = Some(format!("{why}; {reason}"));
+                return Self { status, reason, remedy: "", ..self };
+            }
+            _ => {}
         }
         let budget = self.fit.as_ref().and_then(|fit| fit.budget);
         let so_far = budget.map(|BudgetDetails(budget)| {
             format!("; what was measured until then gives 1σ of {:.4}°", budget.sigma().degrees())
         });
         let reason = why + &so_far.unwrap_or_default();
-        Self { status: FAILED, remedy: "", ..self.withdrawn(reason) }
+        Self { status, remedy: "", ..self.withdrawn(reason) }
+    }
+
+    /// The outcome of what was interrupted after it had its result, as the reason says: what was found is shown as it was
+    /// then, but it is no run that came to its end. A refusal stays one.
+    pub fn interrupted(self, why: &str) -> Self {
+        match self.reason {
+            Some(reason) => Self { reason: Some(format!("{reason}; {why}")), ..self },
+            None => Self {
+                status: Grade::Interrupted.status(),
+                reason: Some(format!("{why}: {SO_FAR}")),
+                ..self
+            },
+        }
     }
 
     /// The outcome without its azimuth, for a reason.
@@ -303,9 +320,20 @@ impl Outcome {
         Some(turned.to_degrees().rem_euclid(360.0))
     }
 
-    /// Whether there is a result.
-    pub(crate) fn is_ok(&self) -> bool {
-        self.reason.is_none()
+    /// What came of it, of which status, exit code, heading and badge follow; `is_clean` where nothing takes from it.
+    fn grade(&self, is_clean: bool) -> Grade {
+        match (self.reason.is_none(), is_clean) {
+            (true, true) => Grade::Found,
+            (true, false) => Grade::Degraded,
+            (false, _) if self.status == Grade::Interrupted.status() => Grade::Interrupted,
+            (false, _) => Grade::Refused,
+        }
+    }
+
+    /// Whether something was found that stands, also where it was interrupted afterwards.
+    pub(crate) fn has_result(&self) -> bool {
+        let is_found = self.sigma_deg.is_some() || self.found.is_some();
+        self.reason.is_none() || self.grade(true) == Grade::Interrupted && is_found
     }
 }
 

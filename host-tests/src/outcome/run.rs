@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::figures;
 use super::keys::Keys;
+use crate::campaign::faults::notice;
 use crate::campaign::statistics::rms;
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
@@ -26,6 +27,9 @@ pub struct RunDetails {
     /// Further keys of the outcome.
     #[serde(flatten)]
     keys: Keys,
+    /// Whether the board reported that something is wrong.
+    #[serde(skip)]
+    reports_wrong: bool,
     /// What is said first of the result: label and value.
     #[serde(skip)]
     pub(super) facts: Vec<[String; 2]>,
@@ -112,7 +116,23 @@ impl RunDetails {
         let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
         let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
-        Self { degradations, lanes, cut_short, ..this }
+        let reports_wrong = run.events.iter().any(|(_, event)| notice::is_wrong(event));
+        Self { reports_wrong, degradations, lanes, cut_short, ..this }
+    }
+
+    /// With what was made to go wrong, by its name, and whether the board reported anything wrong.
+    #[must_use]
+    pub fn made_wrong(mut self, fault: Option<&str>) -> Self {
+        let Some(fault) = fault else { return self };
+        self.keys = self.keys.with("fault", fault);
+        let noticed = if self.reports_wrong {
+            "reported that something is wrong"
+        } else {
+            "reported nothing wrong"
+        };
+        self.facts
+            .push(["fault".to_owned(), format!("{fault}, as asked for; the board {noticed}")]);
+        self
     }
 
     /// With something more that takes from the result.
@@ -147,6 +167,7 @@ impl RunDetails {
         let board = board.map(|board| Part::from(board).detail());
         let lost = last_kept.filter(|last| last.report.azimuth.is_none()).and_then(|_| lost(kept));
         Self {
+            reports_wrong: false,
             keys: keys
                 .with_found("alignments", of_alignments(&later.found))
                 .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
@@ -217,7 +238,7 @@ fn board<R, T>(run: &Run<R, T>, rate: f64, wall: f64, beside: OfPlatform) -> Lin
         .with("simulated", simulated)
         .with("samples", taken)
         .with("devices", format!("{lost}, {restarts}"))
-        .with_found("FORBIDDEN", &run.violations)
+        .with_found("forbidden", &run.violations)
         .with_found("gyro", beside.gyro)
 }
 

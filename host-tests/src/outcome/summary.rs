@@ -4,15 +4,13 @@ use orientation::alignment::budget::Source as Part;
 use orientation::alignment::site::Site;
 use orientation::units::Radians;
 
-use super::{Excluded, FAILED, Finished, FitDetails, Outcome, shown};
+use super::{Excluded, Finished, FitDetails, Outcome, shown};
 use crate::methods;
 use crate::output::{
     azimuth as in_circle, counted, degrees, fixed, noise_in_words, positive_zero, signed,
 };
 use crate::recording::GIVEN;
-use crate::report::{
-    Grade, Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline,
-};
+use crate::report::{Lines, Part as ReportPart, Report, Rose, Share, Shares, Summary, Timeline};
 
 /// The report on an outcome of what `name` names: what was found, the figures, then lines and tables.
 pub fn report(
@@ -29,7 +27,11 @@ pub fn report(
     parts.push(ReportPart::from(assumed(outcome)).detail());
     parts.extend(outcome.run.iter().flat_map(|run| run.parts.iter().cloned()));
     let [found, refused] = finished.titles();
-    let title = format!("{} {name}", if outcome.is_ok() { found } else { refused });
+    let title = match (outcome.has_result(), outcome.reason.is_some()) {
+        (true, false) => format!("{found} {name}"),
+        (true, true) => format!("{found} {name}, which was interrupted"),
+        (false, _) => format!("{refused} {name}"),
+    };
     Report::new(title, parts).headed(summary(outcome))
 }
 
@@ -49,14 +51,8 @@ fn add_lanes(parts: &mut Vec<ReportPart>, outcome: &Outcome) {
 /// What is said first of an outcome.
 fn summary(outcome: &Outcome) -> Summary {
     let remarks = degradations(outcome);
-    let grade = match (outcome.is_ok(), remarks.is_empty()) {
-        (false, _) if outcome.status == FAILED => Grade::Interrupted,
-        (false, _) => Grade::Refused,
-        (true, true) => Grade::Found,
-        (true, false) => Grade::Degraded,
-    };
     Summary {
-        grade,
+        grade: outcome.grade(remarks.is_empty()),
         reasons: outcome.reason.iter().cloned().collect(),
         remarks,
         found: found(outcome),
@@ -72,12 +68,8 @@ pub(super) fn degradations(outcome: &Outcome) -> Vec<String> {
     let left_out =
         excluded.map(|Excluded { words, reason, .. }| format!("left out: {words}{reason}"));
     let run = outcome.run.iter().flat_map(|run| run.degradations.iter().cloned());
-    let interruption = outcome.interruption.iter().map(|why| format!("{why}: {SO_FAR}"));
-    run.chain(left_out).chain(outcome.degradations.iter().cloned()).chain(interruption).collect()
+    run.chain(left_out).chain(outcome.degradations.iter().cloned()).collect()
 }
-
-/// What is shown of what was interrupted.
-const SO_FAR: &str = "what was done until then is shown";
 
 /// What was looked for, and what it is.
 fn found(outcome: &Outcome) -> Option<[String; 2]> {
@@ -122,7 +114,7 @@ fn circumstances(outcome: &Outcome) -> Lines {
 }
 
 /// Place and gyro of a site.
-fn of_site(site: &Site) -> Lines {
+pub(super) fn of_site(site: &Site) -> Lines {
     let noise = noise_in_words(site.noise.model(), site.noise.is_white_known());
     Lines::default()
         .with("place", format!("latitude {}°", fixed(degrees(site.latitude.rad()), 4)))
@@ -144,13 +136,15 @@ fn error(((azimuth, sigma), error): ((f64, f64), f64)) -> String {
 fn limit(outcome: &Outcome) -> Option<String> {
     match outcome.limit_deg {
         Some(limit) => Some(format!("{limit:.4}° (Cramér–Rao for the stated noise)")),
-        None => outcome.is_ok().then(|| "none: the noise is estimated from the data".to_owned()),
+        None => {
+            outcome.has_result().then(|| "none: the noise is estimated from the data".to_owned())
+        }
     }
 }
 
 fn level(outcome: &Outcome) -> Option<String> {
     let Some((pitch, roll)) = outcome.pitch_deg.zip(outcome.roll_deg) else {
-        return outcome.is_ok().then(|| "not measured".to_owned());
+        return outcome.has_result().then(|| "not measured".to_owned());
     };
     let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
     Some(format!("{pitch:.4}°, {roll:.4}°"))

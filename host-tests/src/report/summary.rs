@@ -20,7 +20,7 @@ pub struct Summary {
     pub rose: Option<Rose>,
 }
 
-/// What came of an analysis.
+/// What came of an analysis: the one verdict that text, object, page and exit code tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grade {
     /// A result, and nothing is wrong.
@@ -42,6 +42,15 @@ impl Grade {
             Self::Degraded => "degraded",
             Self::Refused => "refused",
             Self::Interrupted => "interrupted",
+        }
+    }
+
+    /// The `status` of an object with this verdict: `ok` where the exit code is 0, and nowhere else.
+    #[must_use]
+    pub fn status(self) -> &'static str {
+        match self {
+            Self::Found | Self::Degraded => "ok",
+            Self::Refused | Self::Interrupted => self.word(),
         }
     }
 }

@@ -75,9 +75,9 @@ fn assert_reason(said: &str, begin: &str) {
 
 /// The object of a program that was interrupted.
 #[track_caller]
-fn failed((code, printed, said): &Ended) -> Value {
+fn ended((code, printed, said): &Ended) -> Value {
     let object: Value = serde_json::from_str(printed).expect("one object");
-    assert_eq!((*code, &object["status"]), (Some(1), &"failed".into()), "{said}");
+    assert_eq!((*code, &object["status"]), (Some(1), &"interrupted".into()), "{said}");
     let reason = object["reason"].as_str().expect("a reason");
     assert!(reason.contains("interrupted"), "{reason}");
     object
@@ -121,8 +121,8 @@ fn a_run_that_is_interrupted_in_its_alignment_says_what_sigma_it_had_by_then() {
         "turntable --turns 300 --hold 0",
     ] {
         let steps = if run.starts_with("turntable") { "turn 300 of" } else { "dwell 12 of" };
-        let ended = interrupted_at(steps, &format!("run {run} --json -v"));
-        let object = failed(&ended);
+        let after = interrupted_at(steps, &format!("run {run} --json -v"));
+        let object = ended(&after);
         let reason = object["reason"].as_str().expect("a reason");
         assert!(reason.contains("what was measured until then gives 1σ of 0."), "{run}: {reason}");
         assert!(object.get("azimuth_deg").is_none() && object.get("kept").is_none(), "{object}");
@@ -140,11 +140,13 @@ fn a_run_that_is_interrupted_later_has_its_result_and_what_was_kept_until_then()
     for (run, words) in runs {
         let (code, printed, said) = interrupted_at(words, &format!("run {run} -v"));
         assert_eq!(code, Some(1), "{run}: {said}");
-        for words in ["True north found", "noted", "interrupted at ", "Kept for"] {
+        let heading = printed.lines().next().unwrap_or_default();
+        assert!(heading.ends_with(", which was interrupted"), "{run}: {heading}");
+        for words in ["True north found", "reason", "interrupted at ", "Kept for"] {
             assert!(printed.contains(words), "{run}: {words} in {printed}");
         }
         assert_reason(&said, "interrupted at ");
-        let object = failed(&interrupted_at(words, &format!("run {run} --json -v")));
+        let object = ended(&interrupted_at(words, &format!("run {run} --json -v")));
         assert!(object["azimuth_deg"].is_number(), "{object}");
         assert!(object["kept"]["azimuth_deg"].is_number(), "{object}");
     }
@@ -155,7 +157,7 @@ fn the_inputs_of_a_run_that_was_interrupted_replay_to_what_it_had() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.with("run.jsonl.gz", "before");
     let run = format!("run stage --hold 14400 --record {path} --json -v");
-    let ran = failed(&interrupted_at("coasting for 3", &run));
+    let ran = ended(&interrupted_at("coasting for 3", &run));
     let output = meridian(&["replay", &path, "--json"]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
     let replayed = object(&output);
@@ -174,7 +176,7 @@ fn the_inputs_of_an_alignment_that_was_interrupted_are_no_result_and_tell_its_si
     let scratch = Scratch::new("interrupted");
     let path = scratch.path("run.jsonl");
     let run = format!("run stage --dwell 120 --hold 0 --record {path} --json -v");
-    let ran = failed(&interrupted_at("dwell 12 of", &run));
+    let ran = ended(&interrupted_at("dwell 12 of", &run));
     let output = meridian(&["replay", &path, "--json"]);
     assert_eq!(code(&output), 1);
     let replayed = object(&output);
@@ -190,7 +192,7 @@ fn the_samples_of_a_run_that_was_interrupted_are_a_recording_too() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.path("run.csv.gz");
     let run = format!("run stage --rate 50 --dwell 600 --hold 0 --record {path} --json -v");
-    let ran = failed(&interrupted_at("dwell 12 of", &run));
+    let ran = ended(&interrupted_at("dwell 12 of", &run));
     let replayed = object(&meridian(&["replay", &path, "--json"]));
     assert_eq!(replayed["dwells"], ran["dwells"]);
     assert!(replayed["azimuth_deg"].is_number(), "{replayed}");
@@ -200,8 +202,8 @@ fn the_samples_of_a_run_that_was_interrupted_are_a_recording_too() {
 fn a_replay_that_is_interrupted_says_what_sigma_it_had_by_then() {
     let recording = unpacked("stepwise-circle");
     let [first, rest] = parted(&recording, 70);
-    let ended = interrupted_between([&first, &rest], &["replay", "-", "--json"]);
-    let object = failed(&ended);
+    let after = interrupted_between([&first, &rest], &["replay", "-", "--json"]);
+    let object = ended(&after);
     assert!(object["reason"].to_string().contains("gives 1σ of 0."), "{object}");
     assert!(object.get("azimuth_deg").is_none(), "{object}");
     let (code, printed, said) = interrupted_between([&first, &rest], &["replay", "-"]);
@@ -219,8 +221,8 @@ fn a_replay_that_is_interrupted_says_what_sigma_it_had_by_then() {
 #[test]
 fn a_noise_analysis_that_is_interrupted_is_that_of_the_rows_that_were_read() {
     let [first, rest] = parted(&unpacked("static-gyro-1h"), 50);
-    let ended = interrupted_between([&first, &rest], &["allan", "-", "--json"]);
-    let object = failed(&ended);
+    let after = interrupted_between([&first, &rest], &["allan", "-", "--json"]);
+    let object = ended(&after);
     let samples = object["samples"].as_u64().expect("a number");
     assert!((10_000..30_000).contains(&samples), "{samples}");
     assert!(object["reason"].to_string().contains(&format!("interrupted at {samples} rows")));
@@ -250,8 +252,8 @@ fn an_interruption_ends_what_waits_for_standard_input_that_stays_open() {
     let half = &hour[..hour.len() / 2];
     let packed = std::fs::read(stored("static-gyro-1h")).expect("it is there");
     for first in [half.as_bytes(), &packed[..packed.len() / 2]] {
-        let ended = interrupted_while_it_waits(first, &["allan", "-", "--json"]);
-        let object = failed(&ended);
+        let after = interrupted_while_it_waits(first, &["allan", "-", "--json"]);
+        let object = ended(&after);
         assert!(object["samples"].as_u64().is_some_and(|samples| samples > 1000), "{object}");
         assert!(object["n_deg_sqrt_h"].is_number(), "{object}");
     }
@@ -262,7 +264,7 @@ fn an_interruption_ends_what_waits_for_standard_input_that_stays_open() {
     assert!(scratch.read("page.html").contains(">interrupted<"));
     let circle = unpacked("stepwise-circle");
     let first = &circle.as_bytes()[..circle.len() * 7 / 10];
-    let object = failed(&interrupted_while_it_waits(first, &["replay", "-", "--json"]));
+    let object = ended(&interrupted_while_it_waits(first, &["replay", "-", "--json"]));
     assert!(object["reason"].to_string().contains("gives 1σ of 0."), "{object}");
     let (code, printed, said) = interrupted_while_it_waits(b"", &["allan", "-"]);
     assert_eq!((code, printed.as_str()), (Some(1), ""));
@@ -277,6 +279,7 @@ fn a_page_of_what_was_interrupted_is_drawn() {
     assert_eq!(code, Some(1));
     let page = scratch.read("run.html");
     assert!(page.contains("True north found") && page.contains("interrupted at keeping"));
+    assert!(page.contains(">interrupted</span>") && !page.contains(">degraded</span>"));
 }
 
 #[test]

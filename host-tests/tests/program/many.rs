@@ -69,6 +69,17 @@ fn a_folder_is_all_recordings_in_it_by_name_and_each_object_is_that_of_the_recor
 }
 
 #[test]
+fn what_a_single_recording_or_none_of_several_gave_is_said_in_words() {
+    let scratch = Scratch::new("none");
+    let reasons = ["one.csv", "two.csv"].map(|name| {
+        scratch.with(name, "# kind: stage\n");
+        reason(&meridian(&["replay", &scratch.folder().display().to_string()]))
+    });
+    assert_eq!(reasons[0], "meridian: the recording gave no result");
+    assert_eq!(reasons[1], "meridian: none of 2 recordings gave a result");
+}
+
+#[test]
 fn the_table_has_a_row_for_each_recording_and_tells_what_each_found() {
     let (scratch, paths) = folder("table");
     let output = meridian(&["replay", &scratch.folder().display().to_string()]);

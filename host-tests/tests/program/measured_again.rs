@@ -79,6 +79,18 @@ fn a_run_that_is_given_its_azimuth_keeps_it_from_then_on_and_ends_when_it_says()
 }
 
 #[test]
+fn a_run_that_is_given_its_azimuth_says_where_with_which_gyro_and_how_long() {
+    for platform in ["stage", "two-frame", "turntable", "vehicle"] {
+        let (_, page) = page(&["run", platform, "--handover", "213.7,0.1", "--hold", "30"]);
+        let head = page.split("</header>").next().expect("a head");
+        for words in ["<dt>place</dt>", "latitude 4", "<dt>gyro</dt>", "<dt>time</dt>", "kept for "]
+        {
+            assert!(head.contains(words), "{platform}: {words} in {head}");
+        }
+    }
+}
+
+#[test]
 fn a_run_at_a_pole_ends_with_its_refusal_and_tells_no_time_of_no_dwells() {
     for platform in ["stage", "two-frame", "turntable", "vehicle"] {
         let run = ["run", platform, "--latitude", "89", "--hold", "14400", "-v"];

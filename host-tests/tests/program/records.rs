@@ -32,7 +32,8 @@ const RUNS: [&[&str]; 16] = [
 /// What is found: all keys that no other kind of source changes. What is noted of a run holds faults of its board, too.
 fn found(mut object: Value) -> Value {
     let keys = object.as_object_mut().expect("it is an object");
-    let of_the_source = ["seed", "file", "simulated_seconds", "health", "noted", "kept", "stored"];
+    let of_the_source =
+        ["seed", "file", "simulated_seconds", "health", "fault", "noted", "kept", "stored"];
     let of_the_mechanism = ["truth_off_vertical_deg", "recalled"];
     keys.retain(|key, _| !of_the_source.iter().chain(&of_the_mechanism).any(|other| key == other));
     object
@@ -60,7 +61,7 @@ const KEEPING: [&[&str]; 15] = [
 /// What both halves find: all keys but those of source and board.
 fn of_halves(mut object: Value) -> Value {
     let keys = object.as_object_mut().expect("it is an object");
-    let of_the_source = ["seed", "file", "simulated_seconds", "health", "recalled"];
+    let of_the_source = ["seed", "file", "simulated_seconds", "health", "fault", "recalled"];
     let of_the_mechanism = ["stored", "truth_off_vertical_deg"];
     keys.retain(|key, _| !of_the_source.iter().chain(&of_the_mechanism).any(|other| key == other));
     object

@@ -54,8 +54,8 @@ fn a_vehicle_that_never_drives_is_refused_with_the_reason() {
 fn the_report_draws_the_stop_criteria_of_the_board() {
     let (_, page) = page(&[&["run"], &SHORT[..]].concat());
     let titles = [
-        "Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)",
-        "U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
+        "Stop criterion of the rates, Ω − |ω|",
+        "Inclination U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
         "stop 2",
     ];
     assert_drawn(&page, &titles);

@@ -55,7 +55,7 @@ fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) ->
         of_drift(drift),
         of_classes(classes),
     ];
-    Report::new("Burov: orientation systems with rotated sensing elements", parts).below([
+    Report::new("Burov: autocompensation, devices and classes", parts).below([
         &format!("{SECONDS} s in all, {ROTATION} s a rotation, {LATITUDE_DEG}° of latitude"),
         "angles times the secant of the latitude; a full azimuth takes √2 of one axis",
         &normal(),

@@ -72,7 +72,7 @@ fn of_classes(rows: &[Row]) -> Part {
         .fixed("worst, σ", 1, |row| row.worst_sigmas)
         .column("harmless answered", |row| format!("{} of {}", row.harmless_answered, row.harmless))
         .column("healthy refused", |row| row.healthy_refused)
-        .column("met", |row| if row.is_met { "yes" } else { "NO" })
+        .column("met", |row| if row.is_met { "yes" } else { "no" })
         .column("severity", |row| {
             let [low, high] = row.fault.severity;
             format!("{low} to {high} {}", row.fault.unit)

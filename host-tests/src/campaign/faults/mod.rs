@@ -22,7 +22,7 @@ pub struct Row {
     pub platform: &'static str,
     /// The fault's name.
     pub fault: String,
-    /// `ok`, `refused`, `WRONG` for an azimuth or roll off by more than 5 σ, or `FAILED` for a board that
+    /// `ok`, `refused`, `wrong` for an azimuth or roll off by more than 5 σ, or `failed` for a board that
     /// did not come to an end.
     pub outcome: &'static str,
     /// Error in σ, where there is an azimuth or a roll.
@@ -49,7 +49,7 @@ impl Row {
     /// Whether the fault did what no fault may.
     #[must_use]
     pub fn is_bad(&self) -> bool {
-        matches!(self.outcome, "WRONG" | "FAILED") || self.is_noticed == Some(false)
+        matches!(self.outcome, "wrong" | "failed") || self.is_noticed == Some(false)
     }
 }
 
@@ -78,10 +78,10 @@ fn row(platform: Platform, fault: Fault, seed: u64) -> Row {
         platform: platform.name(),
         fault: fault.to_string(),
         outcome: match error_sigmas {
-            _ if failed.is_some() => "FAILED",
+            _ if failed.is_some() => "failed",
             None => "refused",
             Some(sigmas) if sigmas.abs() <= WRONG_SIGMAS => "ok",
-            Some(_) => "WRONG",
+            Some(_) => "wrong",
         },
         error_sigmas,
         reason: failed.or(reason),

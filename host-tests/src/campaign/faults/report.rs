@@ -52,7 +52,7 @@ fn table(title: &str, rows: &[&Row]) -> Part {
         .column("repeated", |row| or_dash(row.repeated))
         .column("left out", |row| or_dash(row.left_out))
         .fixed("after, s", 1, |row| row.seconds)
-        .column("noticed", |row| or_dash(row.is_noticed.map(|is| if is { "yes" } else { "NO" })))
+        .column("noticed", |row| or_dash(row.is_noticed.map(|is| if is { "yes" } else { "no" })))
         .column("what the board noticed first → why it refused", |row| {
             let reason = row.reason.as_ref().map(|reason| format!(" → {reason}"));
             let first = row.noticed.as_deref().unwrap_or("nothing");
@@ -72,8 +72,8 @@ fn summary(rows: &[Row]) -> Part {
         .column("faults", |rows| rows.len())
         .column("ok", ended("ok"))
         .column("refused", ended("refused"))
-        .column("WRONG", ended("WRONG"))
-        .column("FAILED", ended("FAILED"))
+        .column("wrong", ended("wrong"))
+        .column("failed", ended("failed"))
         .column("not noticed", |rows| {
             rows.iter().filter(|row| row.is_noticed == Some(false)).count()
         })

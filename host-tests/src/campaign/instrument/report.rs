@@ -29,7 +29,7 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
 fn report(runs: &Runs) -> Report {
     let lines = Lines::default()
         .with("measured again", format!("{} dwells", runs.repeated))
-        .with("FORBIDDEN", format!("{} accesses that a data sheet forbids", runs.violations));
+        .with("forbidden", format!("{} accesses that a data sheet forbids", runs.violations));
     let table = Columns::of("Azimuths", std::slice::from_ref(runs))
         .column("board", |_| "whole instrument")
         .precision(|runs| &runs.precision);

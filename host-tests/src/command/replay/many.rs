@@ -12,7 +12,7 @@ use host::output::manner::Manner;
 use host::output::progress::Progress;
 use host::output::{azimuth as in_circle, printable, signed};
 use host::refused;
-use host::report::{Columns, Lines, Look, Report, Verbosity};
+use host::report::{Columns, Grade, Lines, Look, Report, Verbosity};
 use host::work::side_by_side;
 use serde_json::{Value, json};
 
@@ -151,13 +151,23 @@ fn refusal(rows: &[Row]) -> Option<String> {
         return Some(format!("{reason}: the table holds the recordings that were done"));
     }
     let (all, none) = (rows.len(), rows.iter().filter(|row| !row.is_ok).count());
-    (none > 0).then(|| format!("{none} of {all} recordings gave no result"))
+    match none {
+        0 => None,
+        1 if all == 1 => Some("the recording gave no result".to_owned()),
+        _ if none == all => Some(format!("none of {all} recordings gave a result")),
+        _ => Some(format!("{none} of {all} recordings gave no result")),
+    }
 }
 
 /// All objects in one.
 fn object(rows: &[Row], refusal: Option<&str>) -> Value {
     let results: Vec<_> = rows.iter().map(|row| &row.object).collect();
-    let status = if refusal.is_none() { "ok" } else { "refused" };
+    let grade = match refusal {
+        None => Grade::Found,
+        Some(_) if interrupt::is_asked() => Grade::Interrupted,
+        Some(_) => Grade::Refused,
+    };
+    let status = grade.status();
     json!({ "schema": SCHEMA, "status": status, "results": results })
 }
 

@@ -100,7 +100,7 @@ impl One<'_> {
         let mut outcome = Outcome { source: Some(Named::File(source.name())), reason, ..outcome };
         outcome.degradations.extend(question.other_latitude());
         let outcome = match interruption {
-            Some(why) => outcome.interrupted(why),
+            Some(why) => outcome.cut_short(why),
             None => outcome,
         };
         Ok(Done { name, outcome, warnings: Vec::new(), finished, truth, body: Some(body) })

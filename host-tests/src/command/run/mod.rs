@@ -153,6 +153,7 @@ pub fn run(options: &RunOptions, stated: &Stated, manner: Manner) -> Result<Answ
     let begun = Begun { fault, manner, record };
     let Ran { shown, details, written } = options.run(&begun)?;
     let written = written.and_then(|()| begun.record.map_or(Ok(()), NewFile::keep));
+    let details = details.made_wrong(fault.map(|fault| fault.to_string()).as_deref());
     let outcome = shown.finished.outcome(&shown.truth).of_run(Source::Seed(*seed), details);
     Ok(shown.answer(&outcome, page, manner)?.with_written(written))
 }

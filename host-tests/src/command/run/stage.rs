@@ -266,6 +266,7 @@ impl Simulated for FramesOptions {
 
 /// What came of a run at standstills; what it kept, where no alignment of it stands.
 fn ran<T>(name: &'static str, run: Run<Replay, T>, details: RunDetails, truth: Truth) -> Ran {
-    let finished = finished(run.conclusion().is_some(), run.replay);
+    let site = run.replay.session.setting.site;
+    let finished = finished(run.conclusion().is_some(), &site, run.replay);
     Ran { shown: Shown { name, finished, truth, body: None }, details, written: Ok(()) }
 }

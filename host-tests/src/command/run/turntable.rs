@@ -197,7 +197,8 @@ impl Simulated for TurntableOptions {
         let beside = OfPlatform::recalled(&recalled.collect::<Vec<_>>());
         let details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall, beside);
         let is_aligned = run.replay.conclusion().is_some();
-        let finished = finished(is_aligned, Replay::of_run(run.replay));
+        let site = run.replay.setting.site;
+        let finished = finished(is_aligned, &site, Replay::of_run(run.replay));
         let body = Some(Body::Rotating(turning_rows(&recorder.taken)));
         let shown = Shown { name: "the simulated run", finished, truth, body };
         Ok(Ran { shown, details, written })

@@ -81,8 +81,7 @@ impl Simulated for VehicleOptions {
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let beside = beside.map_err(|error| error.to_string())?;
-        let (criteria, assumed) = (Vec::new(), vec![GIVEN.to_owned()]);
-        let mut seen = Replay { method: SIAP, session: beside, zero_s: 0.0, criteria, assumed };
+        let mut seen = Replay::of(SIAP, beside, 0.0, vec![GIVEN.to_owned()]);
         let (mut wanted, inputs) = self.common.wanted(record.as_ref(), scenario.given())?;
         // Figures show them.
         wanted.is_idle = self.common.report.is_none() && wanted.is_idle;
@@ -98,7 +97,8 @@ impl Simulated for VehicleOptions {
             RunDetails::of(&run, scenario.base.sample_rate_hz, wall, OfPlatform::default());
         let replay = Replay { session: run.replay, ..seen };
         let period_s = replay.session.procedure.sample_seconds.0;
-        let finished = finished(replay.session.conclusion().is_some(), replay);
+        let site = replay.session.setting.site;
+        let finished = finished(replay.session.conclusion().is_some(), &site, replay);
         let body = Some(Body::Imu(driven_rows(&wanted.taken, period_s)));
         let shown = Shown { name: "the simulated drive", finished, truth, body };
         Ok(Ran { shown, details, written })

@@ -60,14 +60,31 @@ pub struct Replay {
     pub zero_s: f64,
     /// The stop criteria and what they are held to over the time, s from the session's zero.
     pub criteria: Vec<(f64, Criteria, Limits)>,
+    /// Seconds of stops that were left out, from … to, s from the session's zero.
+    pub left_out: Vec<[f64; 2]>,
     /// What had to be assumed.
     pub assumed: Vec<String>,
 }
 
 impl Replay {
-    /// Feeds a sample to the session, and keeps the stop criteria where they are new.
+    /// A replay of a session that begins.
+    #[must_use]
+    pub fn of(method: &'static str, session: Session, zero_s: f64, assumed: Vec<String>) -> Self {
+        let (criteria, left_out) = Default::default();
+        Self { method, session, zero_s, criteria, left_out, assumed }
+    }
+
+    /// Feeds a sample to the session, and keeps the stop criteria where they are new, and what it leaves out of a stop.
     pub(crate) fn push(&mut self, sample: &InertialSample) {
+        let before = self.session.stops().last().map(|stop| (stop.from, stop.to, stop.left_out));
         self.session.feed(Input::Sample(sample));
+        if let Some(stop) = self.session.stops().last() {
+            let same = before.filter(|(from, ..)| *from == stop.from);
+            let (to, left_out) = same.map_or((stop.from, 0), |(_, to, left_out)| (to, left_out));
+            if stop.left_out > left_out {
+                self.left_out.push([to.0, stop.to.0]);
+            }
+        }
         if let Some((criteria, limits)) = self.session.criteria()
             && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
         {
@@ -158,9 +175,8 @@ fn again(
     of.asked.change(&mut setting.site);
     procedure.displacements = displacements(of)?;
     let period_s = procedure.sample_seconds;
-    let (session, criteria) = (Session::new(setting, procedure)?, Vec::new());
-    let assumed = vec![GIVEN.to_owned()];
-    let replay = Replay { method: SIAP, session, zero_s: 0.0, criteria, assumed };
+    let session = Session::new(setting, procedure)?;
+    let replay = Replay::of(SIAP, session, 0.0, vec![GIVEN.to_owned()]);
     let end = ended.as_ref().map_or(Input::End, Input::Failed);
     Ok(replay.fed(samples::given(rows, period_s.0), end))
 }
@@ -225,8 +241,7 @@ fn follow(of: &Question, rows: &[ImuRow]) -> Result<Replay, ReplayError> {
     site.scale_sigma = site.scale_sigma.hypot(rate_error);
     let setting = setting(header, site, rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, Seconds(period_s)) };
-    let (session, criteria) = (Session::new(setting, procedure)?, Vec::new());
-    let replay = Replay { method, session, zero_s, criteria, assumed };
+    let replay = Replay::of(method, Session::new(setting, procedure)?, zero_s, assumed);
     let replay = replay.fed(samples::samples(rows, period_s), Input::End);
     check_displacements(&replay.session)?;
     Ok(replay)

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::support::files::{Scratch, stored, unpacked};
-use crate::support::program::{code, meridian, reason, text};
+use crate::support::program::{code, meridian, object, reason, text, words};
 
 use super::{mapped, recorded, refused, scaled};
 
@@ -192,4 +192,17 @@ fn two_positions_are_refused_with_the_option_that_tells_their_azimuths_apart() {
         assert_eq!(code(&output), 1);
         assert!(reason(&output).ends_with("--half east, or --half west"), "{}", reason(&output));
     }
+}
+
+#[test]
+fn a_run_says_what_was_made_to_go_wrong_and_whether_the_board_said_so() {
+    for (fault, noticed) in [("overload-once", "nothing wrong"), ("gyro-silent-once", "is wrong")] {
+        let run = ["run", "--fault", fault];
+        let told = words(&text(&meridian(&run).stdout));
+        let line = format!("fault {fault}, as asked for; the board reported");
+        assert!(told.contains(&line) && told.contains(noticed), "{told}");
+        let object = object(&meridian(&[&run[..], &["--json"]].concat()));
+        assert_eq!(object["fault"], fault);
+    }
+    assert!(object(&meridian(&["run", "--json"])).get("fault").is_none());
 }

@@ -97,10 +97,10 @@ fn the_block_prints_both_ends_the_paper_and_the_stops() {
 fn the_report_draws_the_papers_figures() {
     let (_, page) = page(&["replay", &stored(FOG)]);
     let titles = [
-        "U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
-        "U near its minimum",
-        "Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)",
-        "Kryt2 = g − |f| (Szymanowski 2003, Fig. 7)",
+        "Inclination U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
+        "Inclination U near its minimum",
+        "Stop criterion of the rates, Ω − |ω|",
+        "Stop criterion of the forces, g − |f|",
         "threshold",
         "stop 2",
         "W = 2 Ω_h |sin(δ/2)|",
@@ -117,6 +117,14 @@ fn the_report_draws_the_papers_figures() {
 /// A plain copy of a recording with its text changed.
 fn changed(scratch: &Scratch, name: &str, change: impl FnOnce(String) -> String) -> String {
     scratch.with("changed.csv", change(unpacked(name)))
+}
+
+#[test]
+fn the_page_of_a_parked_vehicle_shows_what_was_left_out_and_why_sigma_grows() {
+    let (_, page) = page(&["replay", &stored(PARKED)]);
+    assert!(page.contains("class=\"left-out\""), "the second of the blow stands in the timeline");
+    assert!(page.contains("left out from "), "with its time");
+    assert!(page.contains("biases beyond stated"), "beside the curve of σ");
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
-//! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
+//! time (Figs. 6 and 7), the inclination U over the azimuth (Fig. 9).
 
 use orientation::alignment::stops::plain::Plain;
 use orientation::earth::Latitude;
@@ -16,7 +16,7 @@ const PLACES: i32 = 240;
 const REACH_SIGMAS: f64 = 4.0;
 const LEAST_REACH_DEG: f64 = 0.02;
 
-/// U over the whole circle, and near its minimum.
+/// The inclination U over the whole circle, and near its minimum.
 pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
     let reach = (REACH_SIGMAS * plain.sigma.degrees()).clamp(LEAST_REACH_DEG, 90.0);
     let minimum = plain.azimuth.degrees();
@@ -24,8 +24,12 @@ pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
     let near: Vec<f64> = (-PLACES..=PLACES).map(|i| minimum + reach * part(i)).collect();
     let circle: Vec<f64> = (0..=PLACES).map(|i| 360.0 * part(i)).collect();
     [
-        inclination(plain, "U over the azimuth at the start (Szymanowski 2003, Fig. 9)", &circle),
-        inclination(plain, "U near its minimum", &near),
+        inclination(
+            plain,
+            "Inclination U over the azimuth at the start (Szymanowski 2003, Fig. 9)",
+            &circle,
+        ),
+        inclination(plain, "Inclination U near its minimum", &near),
     ]
 }
 
@@ -41,10 +45,10 @@ fn inclination(plain: &Plain, title: &str, azimuths_deg: &[f64]) -> Figure {
         Series::new("√(ΔΘ² + ΔΦ²)", Style::Dashed, curve(&|a| inclination.euler(a))),
         Series::new("closed form", Style::Points, [least]),
     ];
-    Figure::new(title, ["azimuth azp at the start", "°"], ["U", "°"], series)
+    Figure::new(title, ["azimuth at the start, as assumed", "°"], ["inclination U", "°"], series)
 }
 
-/// Kryt1 and Kryt2 over time, with their thresholds and the stops; none where the session never had them.
+/// The stop criteria of rate and force over time (Kryt1 and Kryt2 of Szymanowski 2003), with their thresholds and the stops; none where the session never had them.
 pub(crate) fn criteria(replay: &Replay) -> Vec<Figure> {
     if replay.criteria.is_empty() {
         return Vec::new();
@@ -54,10 +58,14 @@ pub(crate) fn criteria(replay: &Replay) -> Vec<Figure> {
     };
     let force = |criteria: &Criteria, limits: &Limits| [criteria.force.0, limits.force.0];
     vec![
-        criterion(replay, ["Kryt1 = Ω − |ω| (Szymanowski 2003, Fig. 6)", "|Kryt1|", "°/h"], rate),
-        criterion(replay, ["Kryt2 = g − |f| (Szymanowski 2003, Fig. 7)", "|Kryt2|", "m/s²"], force),
+        criterion(replay, [STOP_BY_RATE, "Earth's rate less that measured, size", "°/h"], rate),
+        criterion(replay, [STOP_BY_FORCE, "gravity less the force measured, size", "m/s²"], force),
     ]
 }
+
+/// The criteria by which a vehicle stands, with their formulas.
+const STOP_BY_RATE: &str = "Stop criterion of the rates, Ω − |ω|: the Earth's less that measured (Szymanowski 2003, Fig. 6)";
+const STOP_BY_FORCE: &str = "Stop criterion of the forces, g − |f|: gravity less the force measured (Szymanowski 2003, Fig. 7)";
 
 /// One criterion: its size and its threshold. On a logarithmic axis: while driving it is a thousand times
 /// as great as at rest.
@@ -103,8 +111,8 @@ pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) ->
     series.extend(drive.map(|(plain, seconds)| {
         let at = |error: f64| plain.inclination.angle(wrapped(plain.azimuth.0 + error));
         let of = |error: f64| degrees_per_hour(at(error) / seconds);
-        Series::new("U of this drive over its time", Style::Dashed, over(&of))
+        Series::new("inclination U of this drive over its time", Style::Dashed, over(&of))
     }));
-    let title = "Rate errors and W over the heading error δ (Szymanowski 2003, Figs. 4 and 5)";
+    let title = "Rate errors of a wrong heading, and their geometric sum W (Szymanowski 2003, Figs. 4 and 5)";
     Figure::new(title, ["heading error δ", "°"], ["rate", "°/h"], series)
 }

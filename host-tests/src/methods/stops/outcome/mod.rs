@@ -24,6 +24,9 @@ use crate::output::{
 use crate::recording::{Body, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Stretch};
 
+/// Why seconds of a stop are left out.
+const BLOWN: &str = "a blow, or an accelerometer at its limit";
+
 /// Azimuths of the least inclination U between the first stop and the last, as the method of Szymanowski 2003 finds
 /// them, °: at the end, to which what the gyros turned leads, and at the first stop.
 fn plain_azimuths(found: &Found) -> [f64; 2] {
@@ -116,7 +119,7 @@ impl Replay {
         let stops = self.session.stops().iter().enumerate();
         let blown = stops.filter(|(_, stop)| stop.left_out > 0).map(|(index, stop)| {
             let (stop, seconds) = (index + 1, stop.left_out);
-            let reason = format!("{seconds} s: a blow, or an accelerometer at its limit");
+            let reason = format!("{seconds} s: {BLOWN}");
             let words = format!("at stop {stop}, ");
             Excluded { place: Keys::default().with("stop", stop), words, reason }
         });
@@ -287,5 +290,5 @@ fn of_plain(found: &Found) -> Lines {
         .with("at the start", format!("{start:.7}° in closed form"))
         .with("least angle", format!("{brent:+.2e}° from that, by Brent's search"))
         .with("√(ΔΘ² + ΔΦ²)", format!("least {euler:+.2e}° from that"))
-        .with("U there", format!("{:.5}°", degrees(plain.angle.value)))
+        .with("inclination there", format!("{:.5}°", degrees(plain.angle.value)))
 }

@@ -5,7 +5,7 @@ use orientation::alignment::stops::session::Session;
 use orientation::alignment::stops::stop_detector::Rests;
 use orientation::units::{Radians, Seconds, wrapped};
 
-use super::StopDetails;
+use super::{BLOWN, StopDetails};
 use crate::methods::stops::Replay;
 use crate::output::degrees;
 use crate::recording::ImuRow;
@@ -19,6 +19,8 @@ const CONCLUSIONS: usize = 16;
 /// How many times as great σ is at least after a drive that is told, and the words.
 const DRIVEN: f64 = 1.01;
 const DROVE_ON: &str = "the drive after the last stop";
+/// Why σ grows although the vehicle stands on.
+const DOUBTED: &str = "biases beyond stated";
 
 /// The way as the forces have it, fitted to the stops; none where no place but the first is known.
 pub(super) fn track(replay: &Replay, rows: &[ImuRow], found: &Found) -> Option<Figure> {
@@ -93,6 +95,10 @@ pub(super) fn convergence(
         Milestone::new(replay.zero_s + end.0, [carried, known.azimuth.sigma, known.limit])
     };
     let mut all: Vec<Milestone> = known.iter().map(milestone).collect();
+    for (index, pair) in known.windows(2).enumerate() {
+        let [before, after] = [&pair[0].1, &pair[1].1].map(|found| found.widening);
+        all[index + 1].remark = (after > 1.0 && before <= 1.0).then_some(DOUBTED);
+    }
     if let Some(last) = all.last_mut() {
         drive_on(last, found);
     }
@@ -113,9 +119,18 @@ fn known(replay: &Replay, rows: &[ImuRow], end: Seconds) -> Option<Found> {
     conclusion.found.filter(|_| conclusion.verdict.is_ok())
 }
 
-/// When the vehicle stood and when it drove.
+/// When the vehicle stood and when it drove, and which seconds of its stops were left out.
 pub(super) fn timeline(replay: &Replay) -> Timeline {
-    Timeline::of(vec![Lane::new("vehicle", stretches(&replay.session, replay.zero_s))])
+    let stood = stretches(&replay.session, replay.zero_s);
+    let is_in = |[from, to]: &&[f64; 2]| {
+        replay.session.stops().iter().any(|stop| stop.from.0 <= *from && *to <= stop.to.0)
+    };
+    let left_out = replay.left_out.iter().filter(is_in).map(|span| {
+        let [from_s, to_s] = span.map(|time| replay.zero_s + time);
+        let words = format!("left out from {from_s:.1} s to {to_s:.1} s: {BLOWN}");
+        Stretch { from_s, to_s, kind: Kind::LeftOut, words }
+    });
+    Timeline::of(vec![Lane::new("vehicle", stood.into_iter().chain(left_out))])
 }
 
 /// The stops of a session that began at a time, s, and the drives between them.
