@@ -11,6 +11,7 @@
 pub mod analysis;
 mod level;
 pub mod rest;
+pub mod spike;
 
 use orientation::noise::allan::Point;
 use orientation::units::Seconds;

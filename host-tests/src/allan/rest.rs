@@ -8,13 +8,16 @@ use std::thread;
 
 use orientation::noise::allan::Point;
 use orientation::noise::fit::FitError;
-use orientation::units::AngularRate;
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_SQRT_HOUR};
 use thiserror::Error;
 
 use super::Overlapping;
+use super::spike::{Spike, Spikes};
 use crate::interrupt;
+use crate::output::significant;
 use crate::recording::{
-    Kind, Opened, ReadError, RestRows, Short, Spacer, Spacing, StaticRow, Unsteady, Warning,
+    Gap, Kind, Opened, ReadError, RestRows, Short, Spacer, Spacing, StaticRow, Unsteady, Warning,
+    are_milliseconds,
 };
 
 /// Rows from which the usual step between samples is learnt.
@@ -23,6 +26,9 @@ pub const LEARNT: usize = 1 << 20;
 const BATCH: usize = 4096;
 /// Batches that wait for the other thread.
 const WAITING: usize = 8;
+/// Mean rate of a gyro at rest, rad/s, and angle random walk, °/√h, beyond which no gyro is made: 20 °/s and 30 °/√h.
+const MOST_BIAS: f64 = 20.0 * DEGREE;
+const MOST_WALK: f64 = 30.0;
 
 /// The rate in a row, where it has that column.
 type RateOf = fn(&StaticRow) -> Option<f64>;
@@ -99,20 +105,86 @@ impl Rest {
         interrupt::ended().map(|_| why())
     }
 
-    /// What a reader must know of the record: an interruption, gaps, and a header's rate that is wrong.
+    /// The sample that stands far from its neighbours, where one does.
+    #[must_use]
+    pub fn spike(&self) -> Option<Spike> {
+        self.survey.spikes.found(self.step())
+    }
+
+    /// That the rates are in another unit, as it seems, and what to do about it.
+    fn unit_note(&self) -> Option<String> {
+        let (column, why) = (&self.column, self.other_unit()?);
+        Some(format!(
+            "{column} was read in rad/s, as every rate is, but {why}: multiply it by 0.0174532925 where it is in °/s, by \
+             4.84813681e-6 where it is in °/h, or name a column in rad/s by --column"
+        ))
+    }
+
+    /// What says that the rates are not in rad/s: the column's name, or a mean and a noise at rest that no gyro has.
+    fn other_unit(&self) -> Option<String> {
+        let name = self.column.to_lowercase();
+        if ["deg", "dps", "°"].iter().any(|unit| name.contains(unit)) {
+            return Some("its name says degrees".to_owned());
+        }
+        let (mean, white) = (self.mean(), self.points.first()?);
+        let walk = (white.variance * white.seconds.0).sqrt() / DEGREE_PER_SQRT_HOUR;
+        let is_likely = mean.abs() <= MOST_BIAS && walk <= MOST_WALK;
+        let [mean, walk] = [mean / DEGREE, walk].map(|number| significant(number, 3));
+        let words = || {
+            format!(
+                "its mean of {mean} °/s and its N of about {walk} °/√h are those of no gyro at rest"
+            )
+        };
+        (!is_likely).then(words)
+    }
+
+    /// What a reader must know of the record: an interruption, units that cannot be, a header's rate that is wrong, gaps, and
+    /// a sample far from all others.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let Spacing { period_s, gaps, gap_count, missing_s, contradicted_rate_hz } = &self.spacing;
-        let rate = contradicted_rate_hz.map(|stated| {
-            let (stated, found) = (Short(stated), 1.0 / period_s);
-            format!("the header's {stated} Hz contradicts the times, which have {found:.6} Hz: the times are believed")
-        });
-        let gaps = gaps.first().map(|first| {
-            let (line, from) = (first.line, first.from_s);
-            let gaps = if *gap_count == 1 { "gap" } else { "gaps" };
-            format!("{gap_count} {gaps}, {missing_s:.3} s in all, the first before line {line} after {from} s: no window crosses one")
-        });
-        self.interruption().into_iter().chain(rate).chain(gaps).collect()
+        let units = [self.spacing.unit_note(), self.unit_note()];
+        let rest = [self.rate_note(), self.gap_note(), self.spike_note()];
+        self.interruption().into_iter().chain(units.into_iter().chain(rest).flatten()).collect()
+    }
+
+    /// That the header's rate is not that of the times.
+    fn rate_note(&self) -> Option<String> {
+        let (stated, found) = (self.spacing.contradicted_rate_hz?, 1.0 / self.spacing.period_s);
+        let unit = if are_milliseconds(stated, found) {
+            "; t_s was read in s, and is in ms, as it seems: divide it by 1000"
+        } else {
+            ""
+        };
+        let stated = Short(stated);
+        Some(format!(
+            "the header's {stated} Hz contradicts the times, which have {found:.6} Hz: the times are believed{unit}"
+        ))
+    }
+
+    /// Where samples are missing.
+    fn gap_note(&self) -> Option<String> {
+        let Spacing { gaps, gap_count, missing_s, .. } = &self.spacing;
+        let Gap { line, from_s, .. } = gaps.first()?;
+        let gaps = if *gap_count == 1 { "gap" } else { "gaps" };
+        Some(format!(
+            "{gap_count} {gaps}, {missing_s:.3} s in all, the first before line {line} after {from_s} s: no window crosses one"
+        ))
+    }
+
+    /// That a sample stands far from its neighbours.
+    fn spike_note(&self) -> Option<String> {
+        let Spike { line, off, sigmas } = self.spike()?;
+        let off = significant((off / DEGREE).abs(), 3);
+        Some(format!(
+            "line {line}: one sample is {sigmas:.0} σ off its neighbours, {off} °/s: the coefficients hold it, too; leave the \
+             row out if it is no motion of the gyro"
+        ))
+    }
+
+    /// The mean rate, rad/s.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.survey.sum / self.samples as f64
     }
 
     /// Why nothing can be said whatever the variances are.
@@ -216,8 +288,9 @@ impl Gatherer {
         if let Some(spacer) = &mut self.spacer {
             if spacer.is_apart(sample.line, sample.time_s) {
                 self.sums.part();
+                self.survey.spikes.part();
             }
-            self.survey.take(sample.rate);
+            self.survey.take(sample.line, sample.rate);
             self.sums.push(sample.rate);
             self.samples += 1;
             return;
@@ -263,16 +336,23 @@ struct Survey {
     step: f64,
     /// The latest sample, rad/s.
     latest: Option<f64>,
+    /// The sum of all, rad/s.
+    sum: f64,
+    /// Samples far from their neighbours.
+    spikes: Spikes,
 }
 
 impl Default for Survey {
     fn default() -> Self {
-        Self { is_saturated: false, is_constant: true, step: f64::INFINITY, latest: None }
+        let (latest, sum, spikes) = Default::default();
+        Self { is_saturated: false, is_constant: true, step: f64::INFINITY, latest, sum, spikes }
     }
 }
 
 impl Survey {
-    fn take(&mut self, rate: f64) {
+    fn take(&mut self, line: u64, rate: f64) {
+        self.sum += rate;
+        self.spikes.take(line, rate);
         self.is_saturated |= AngularRate::from_rad_per_s(rate).is_saturated();
         let change = self.latest.replace(rate).map_or(0.0, |before| (rate - before).abs());
         if change > 0.0 {

@@ -6,7 +6,7 @@ use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::units::{DEGREE_PER_HOUR, Seconds};
 use serde_json::{Value, json};
 
-use super::{degrees_per_hour, places_of, printable, to_sigma};
+use super::{degrees_per_hour, places_of, printable, significant, to_sigma};
 use crate::allan::analysis::{Analysis, Confident};
 use crate::allan::rest::Rest;
 use crate::outcome::SCHEMA;
@@ -35,26 +35,27 @@ struct Coefficient {
     name: &'static str,
     unit: &'static str,
     key: &'static str,
+    /// Its place among the terms of the variance.
+    term: usize,
     /// In SI units.
     si: Estimate,
     /// In the unit of data sheets.
     estimate: Estimate,
 }
 
-/// Q, N, B, K and R, in the order of [`orientation::noise::allan::terms`].
+/// N, B, K, R and Q: what is asked for first stands first. With each its place among [`orientation::noise::allan::terms`].
 fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
     let names = [
-        ("Q quantisation", "arcsec", "q_arcsec"),
-        ("N angle random walk", "°/√h", "n_deg_sqrt_h"),
-        ("B bias instability", "°/h", "b_deg_h"),
-        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h"),
-        ("R rate ramp", "°/h²", "r_deg_h2"),
+        (1, "N angle random walk", "°/√h", "n_deg_sqrt_h"),
+        (2, "B bias instability", "°/h", "b_deg_h"),
+        (3, "K rate random walk", "°/h/√h", "k_deg_h_sqrt_h"),
+        (4, "R rate ramp", "°/h²", "r_deg_h2"),
+        (0, "Q quantisation", "arcsec", "q_arcsec"),
     ];
     let in_field_units = fit.in_field_units();
-    core::array::from_fn(|index| {
-        let (name, unit, key) = names[index];
-        let (si, (_, estimate)) = (fit.estimates[index], in_field_units[index]);
-        Coefficient { name, unit, key, si, estimate }
+    names.map(|(term, name, unit, key)| {
+        let (si, (_, estimate)) = (fit.estimates[term], in_field_units[term]);
+        Coefficient { name, unit, key, term, si, estimate }
     })
 }
 
@@ -120,15 +121,20 @@ impl Shown<'_> {
             .with_found("residuals", analysis.ok().map(residuals));
         all.extend(record.lines);
         Summary {
-            grade: match (analysis.is_ok(), self.rest.interruption()) {
-                (_, Some(_)) => Grade::Interrupted,
-                (false, None) => Grade::Refused,
-                (true, None) => Grade::Found,
-            },
+            grade: self.grade(),
             reasons: analysis.err().map(ToString::to_string).into_iter().collect(),
             found,
             facts: all,
             ..Summary::default()
+        }
+    }
+
+    /// What came of it; what is left out, or not believed, takes from no coefficient.
+    fn grade(&self) -> Grade {
+        match (self.analysis.is_ok(), self.rest.interruption()) {
+            (_, Some(_)) => Grade::Interrupted,
+            (false, None) => Grade::Refused,
+            (true, None) => Grade::Found,
         }
     }
 
@@ -156,20 +162,23 @@ impl Shown<'_> {
         let plural = if segments == 1 { "" } else { "s" };
         let (rate, seconds) = (1.0 / period, samples as f64 * period);
         let rate = short(rate);
-        format!("{samples} samples at {rate} Hz, {seconds:.1} s in {segments} segment{plural}")
+        let mean = significant(degrees_per_hour(self.rest.mean()), 3);
+        format!(
+            "{samples} samples at {rate} Hz, {seconds:.1} s in {segments} segment{plural}; read in s and rad/s: mean rate \
+             {mean} °/h"
+        )
     }
 
     /// The analysis as one JSON object.
     pub fn object(&self) -> Keys {
         let reason = self.analysis.as_ref().err().map(ToString::to_string);
-        let status = if reason.is_none() { "ok" } else { "refused" };
         let rest = self.rest;
         let gap =
             |gap: &Gap| json!({"line": gap.line, "from_s": gap.from_s, "seconds": gap.seconds});
         Keys::default()
             .with("schema", SCHEMA)
             .with("file", self.name)
-            .with("status", status)
+            .with("status", self.grade().status())
             .with_found("reason", reason)
             .with("column", &rest.column)
             .with("samples", rest.samples)

@@ -44,6 +44,7 @@ pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS, MAX_STREAMED_ROWS};
 pub use problem::Problem;
+pub(crate) use problem::are_milliseconds;
 pub use range::{Range, Short};
 pub use rows::{
     DwellRow, GREATEST_BODY_RATE, GREATEST_SPIN_RATE, ImuRow, ImuSample, RotatingRow, SpinRow,

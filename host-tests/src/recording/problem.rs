@@ -238,9 +238,14 @@ impl fmt::Display for Rounded {
 /// Deviation of a ratio of rates from a thousand at which the times are milliseconds.
 const NEAR: f64 = 0.3;
 
+/// Whether a rate that is stated, Hz, says that times which have this one are milliseconds.
+pub(crate) fn are_milliseconds(stated: f64, found: f64) -> bool {
+    (stated / (1000.0 * found) - 1.0).abs() < NEAR
+}
+
 /// What to do about a rate, and another one that the times have, Hz.
 fn correction(stated: f64, found: f64) -> &'static str {
-    if (stated / (1000.0 * found) - 1.0).abs() < NEAR {
+    if are_milliseconds(stated, found) {
         "the times are in ms, as it seems, and must be in s"
     } else {
         "correct it"

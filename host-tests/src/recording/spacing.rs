@@ -34,6 +34,25 @@ pub struct Spacing {
     pub contradicted_rate_hz: Option<f64>,
 }
 
+/// Time from one sample to the next, s, beyond which it is likely to be one in milliseconds.
+const LONG: f64 = 2.0;
+
+impl Spacing {
+    /// That the times are in milliseconds, as it seems.
+    pub(crate) fn unit_note(&self) -> Option<String> {
+        let Self { period_s, contradicted_rate_hz, .. } = self;
+        // A stated rate says more than a guess, and is told with the correction.
+        let is_long = *period_s > LONG && contradicted_rate_hz.is_none();
+        is_long.then(|| {
+            let period = Short(*period_s);
+            format!(
+                "t_s was read in s: the samples are {period} s apart, which is long for a gyro; if the times are in ms, divide \
+                 them by 1000"
+            )
+        })
+    }
+}
+
 /// A step that is longer than a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {

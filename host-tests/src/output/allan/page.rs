@@ -120,11 +120,11 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Asymptote> {
     let deviations = analysis.points.iter().map(|point| degrees_per_hour(point.deviation));
     let low = deviations.clone().fold(f64::INFINITY, f64::min) / HEADROOM;
     let high = deviations.fold(0.0, f64::max) * HEADROOM;
-    coefficients(&analysis.fit).into_iter().enumerate().map(move |(index, coefficient)| {
+    coefficients(&analysis.fit).into_iter().map(move |coefficient| {
         let (Estimate::Found { value, .. } | Estimate::NotObservable { at_most: value }) =
             coefficient.si;
         let curve = times(analysis)
-            .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
+            .map(|tau| (tau, degrees_per_hour(value * terms(tau)[coefficient.term].sqrt())))
             .filter(|(_, deviation)| (low..high).contains(deviation))
             .collect();
         Asymptote { coefficient, curve }

@@ -46,6 +46,67 @@ fn refusal(output: &Output) -> String {
     message
 }
 
+/// The notes of a recording of white noise whose rows are written otherwise, and whose column has this name.
+fn notes(column: &str, row: impl Fn(u32, f64, f64) -> (f64, f64)) -> String {
+    let rewritten = noisy(3000, |index, text| {
+        let (time, rate) = text.trim().split_once(',').expect("two columns");
+        let number = |text: &str| text.parse::<f64>().expect("a number");
+        let (time, rate) = row(index, number(time), number(rate));
+        Some(format!("{time},{rate:e}\n"))
+    });
+    let rewritten = rewritten.replace("g_rad_s", column).replace("# rate_hz: 10\n", "");
+    let object = object(&on("notes.csv", &rewritten, &["--json", "--column", column]));
+    assert_eq!(object["status"], "ok", "{object}");
+    object["notes"].to_string()
+}
+
+#[test]
+fn units_that_cannot_be_are_noted_with_what_was_read_and_what_to_do() {
+    assert_eq!(notes("rate", |_, time, rate| (time, rate)), "[]");
+    let milliseconds = notes("rate", |_, time, rate| (1e3 * time, rate));
+    assert!(milliseconds.contains("t_s was read in s: the samples are 100"), "{milliseconds}");
+    assert!(milliseconds.contains("divide them by 1000"), "{milliseconds}");
+    for (bias, times) in [(0.5, 1.0), (0.0, 1e4)] {
+        let other = notes("rate", |_, time, rate| (time, bias + times * rate));
+        assert!(other.contains("rate was read in rad/s"), "{other}");
+        assert!(other.contains("in °/s") && other.contains("--column"), "{other}");
+    }
+    let named = notes("gyro_dps", |_, time, rate| (time, rate));
+    assert!(named.contains("its name says degrees"), "{named}");
+}
+
+#[test]
+fn times_in_milliseconds_beside_a_stated_rate_are_told_as_such() {
+    let rows = noisy(3000, |index, text| {
+        let (_, rate) = text.split_once(',').expect("two columns");
+        Some(format!("{},{rate}", 100 * index))
+    });
+    let object = object(&on("ms.csv", &rows, &["--json"]));
+    let notes = object["notes"].to_string();
+    assert!(notes.contains("in ms, as it seems: divide it by 1000"), "{notes}");
+}
+
+#[test]
+fn a_sample_far_from_all_others_is_noted_with_its_line_and_size() {
+    let spiked =
+        notes("rate", |index, time, rate| (time, if index == 1234 { rate + 1e-2 } else { rate }));
+    // The header has two lines less than that of the recording with its rate.
+    assert!(spiked.contains("line 1237: one sample is "), "{spiked}");
+    assert!(spiked.contains("σ off its neighbours, 0.57"), "{spiked}");
+    let rounded = notes("rate", |_, time, rate| (time, (rate / 2e-5).round() * 2e-5));
+    assert_eq!(rounded, "[]", "a coarse step is none");
+}
+
+#[test]
+fn n_and_b_stand_first_however_little_is_told() {
+    let first = |options: &[&str]| {
+        let printed = text(&allan(&[&[&hour()[..]], options].concat()).stdout);
+        printed.lines().skip(1).take(2).map(|line| line.trim()[..1].to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(first(&[]), ["N", "B"]);
+    assert_eq!(first(&["-q"])[0], "N");
+}
+
 #[test]
 fn the_stored_hour_gives_the_noise_that_its_simulator_had() {
     let object = object(&allan(&[&hour(), "--json"]));
