@@ -9,7 +9,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{Read, Write};
@@ -27,6 +27,7 @@ use serde_json::Value;
 use simulated::trace::ABSENT;
 
 use support::files::{Scratch, recording, recordings};
+use support::pages::figures;
 use support::program::command;
 
 /// A command, and the name of its files.
@@ -289,6 +290,25 @@ fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
     // No recording of these has a warning.
     let unmet: Vec<_> = of_objects.difference(&found).filter(|key| *key != "warnings").collect();
     assert!(unmet.is_empty(), "in README.md, but in no object: {unmet:?}");
+}
+
+#[test]
+fn a_quantity_has_one_colour_on_the_pages_of_all_commands() {
+    let mut colours: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let files = fs::read_dir(folder()).expect("the folder is ours");
+    let paths = files.map(|file| file.expect("a file").path());
+    for path in paths.filter(|path| path.to_string_lossy().ends_with(".html.gz")) {
+        let page = unpacked("page.html.gz", &fs::read(path).expect("it is there"));
+        let all =
+            figures(&page).into_iter().filter_map(|figure| figure["series"].as_array().cloned());
+        for series in all.flatten() {
+            let [name, class] = ["name", "class"].map(|key| series[key].to_string());
+            colours.entry(name).or_default().insert(class);
+        }
+    }
+    // The stretches of a turntable are named by their speeds, which each has of its own.
+    colours.retain(|name, colours| !name.contains(" Hz") && colours.len() > 1);
+    assert!(colours.is_empty(), "{colours:?}");
 }
 
 /// A recording of every kind.

@@ -17,14 +17,40 @@ const QUANTITIES: [&[&str]; 8] = [
         "angle between the verticals",
         "inclination",
         "way by the forces, fitted to the stops",
+        "W = 2 Ω_h |sin(δ/2)|",
+        "Earth's rate less that measured, size",
+        "gravity less the force measured, size",
+        "phase-locked",
+        "encoder",
+        "sensor, after that is taken off",
     ],
     // What it is held to.
-    &["truth", "true pitch", "threshold", "wanted", "best", "stops", "left out", "fit"],
+    &["truth", "true pitch", "threshold", "wanted", "best", "left out", "fit"],
     &["limit (Cramér–Rao)", "the last one ± the limit", "N"],
     // Its standard deviation.
     &["σ", "±1σ", "within 1σ", "σ(t)", "σ of the phase lock", "1σ of pitch and of roll", "B"],
-    &["pitch", "right", "north", "about north of the level frame", "K"],
-    &["roll", "down", "east", "about east of the level frame", "R"],
+    // Pairs: pitch and roll, north and east, what comes first and what comes second.
+    &[
+        "pitch",
+        "right",
+        "north",
+        "about north of the level frame",
+        "p′ = Ω_h (1 − cos δ)",
+        "extrema",
+        "sensor, before",
+        "stops",
+        "K",
+    ],
+    &[
+        "roll",
+        "down",
+        "east",
+        "about east of the level frame",
+        "q′ = Ω_h sin δ",
+        "interpolated",
+        "platform's rate as the axis misalignment shows it",
+        "R",
+    ],
     // What it is off, and what a model leaves.
     &[
         "error",
@@ -83,10 +109,11 @@ fn shared(quantity: &str) -> Option<usize> {
 }
 
 /// What a series is of: a quantity, the bands of its σ, its points that are hardly known, and what the solution makes of it
-/// have one colour. A coefficient of the noise is named by its letter.
+/// have one colour, and so have all stops. A coefficient of the noise is named by its letter.
 fn quantity(name: &str) -> &str {
     let name = match name {
         "limits of 68.3 %" | "fewer than 8 degrees of freedom" => "overlapping Allan deviation",
+        _ if name.starts_with("stop ") => "stops",
         _ => name.strip_prefix("the solution, ").unwrap_or(name),
     };
     if name.contains(", slope ") {

@@ -33,12 +33,10 @@ const PAPERS: [[&str; 2]; 5] = [
 /// The papers that these parts of a page name; nothing where they name none.
 pub(super) fn papers(page: &str) -> String {
     let is_named = |[cited, _]: &&[&str; 2]| page.contains(cited);
-    let paper = |[cited, full]: &[&str; 2]| {
-        format!("<div>{}{}</div>\n", element("dt", cited), element("dd", full))
-    };
+    let paper = |[cited, full]: &[&str; 2]| element("p", &format!("{cited}: {full}"));
     let all: String = PAPERS.iter().filter(is_named).map(paper).collect();
     if all.is_empty() {
         return all;
     }
-    format!("<section>\n<h2>Papers</h2>\n<dl class=\"facts\">\n{all}</dl>\n</section>\n")
+    format!("<section>\n<h2>Papers</h2>\n{all}</section>\n")
 }
