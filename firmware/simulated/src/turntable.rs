@@ -79,8 +79,8 @@ pub struct TurntableScenario {
 }
 
 impl Default for TurntableScenario {
-    /// The default gyro, raised by 0.8°, an index mark from 30° to 40°, at 0.137 Hz for twelve rate-modulated turns and ten each way, on a gear
-    /// that is uneven by 0.2 % once and 0.05 % twice per turn.
+    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve rate-modulated turns and ten each way, on a gear
+    /// that is uneven by 0.2 % once and 0.05 % twice per turn; the index mark is from 30° to 40°.
     fn default() -> Self {
         Self {
             base: Scenario::default(),

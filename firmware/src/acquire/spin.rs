@@ -21,6 +21,7 @@ use super::Source;
 use super::in_step::Group;
 use super::outlet::Outlet;
 use crate::configuration::period;
+use crate::pointing::Decimator;
 use crate::ports::{Code, InStep, Quantity, SpinSensors, Together};
 use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
@@ -37,6 +38,10 @@ const NAMES: [Device; CHANNELS] = [
 /// Places of the accelerometers among them.
 const ACCELEROMETERS: [usize; 2] = [GYROS, GYROS + 1];
 
+/// Conversions of which one shows how far apart the sensors convert, and the part of what it shows that is followed.
+const LOOKED_APART: u32 = 16;
+const FOLLOWED: f32 = 0.125;
+
 /// Conversions for which there is always room, where others wait until the queue has some.
 const SPARE: usize = 8;
 /// Time between two looks whether the queue has room.
@@ -52,6 +57,9 @@ pub struct SpinAcquisition<'a, C, R> {
     length: u64,
     /// Conversions in a microsecond.
     rate: f32,
+    /// By how much each gyro converts earlier than the accelerometers, in half conversions, and when that is looked at.
+    earlier: [f32; GYROS],
+    due: Decimator,
     /// Outlet of samples.
     outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
@@ -74,6 +82,8 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
             configuration,
             length: libm::ceil(1e6 / rate) as u64,
             rate: (1e-6 * rate) as f32,
+            earlier: [0.0; GYROS],
+            due: Decimator::new(LOOKED_APART),
             outlet: Outlet::new(period, period, channels),
             before: None,
             carried: [0; GYROS],
@@ -85,22 +95,29 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> SpinAcquisition<'a, C,
     fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
         let gyros = &self.configuration.gyros;
         let steps = core::array::from_fn(|axis| gyros[axis].steps(codes[axis]));
+        if self.due.is_due() {
+            self.look_apart();
+        }
         let before = self.before.replace(steps).unwrap_or(steps);
-        let earlier: [f32; GYROS] = core::array::from_fn(|axis| self.earlier(axis));
-        let carried = &mut self.carried;
+        let Self { earlier, carried, .. } = self;
         core::array::from_fn(|axis| {
             between([before[axis], steps[axis]], earlier[axis], &mut carried[axis])
         })
     }
 
-    /// By how much a gyro converts earlier than the accelerometers, in half conversions.
-    fn earlier(&self, axis: usize) -> f32 {
-        let after = |index| {
-            let [gyro, force] = [axis, index].map(|index| self.converters.end(index).at.0);
-            force.wrapping_sub(gyro).cast_signed() as i32
-        };
-        let [up, right] = ACCELEROMETERS.map(after);
-        (up + right) as f32 * self.rate
+    /// Follows by how much the gyros convert earlier than the accelerometers: it changes only where the converters
+    /// are begun anew, and stamps are rounded.
+    #[inline(never)]
+    fn look_apart(&mut self) {
+        let part = if self.before.is_none() { 1.0 } else { FOLLOWED };
+        for (axis, earlier) in self.earlier.iter_mut().enumerate() {
+            let after = |index| {
+                let [gyro, force] = [axis, index].map(|index| self.converters.end(index).at.0);
+                force.wrapping_sub(gyro).cast_signed() as i32
+            };
+            let [up, right] = ACCELEROMETERS.map(after);
+            *earlier += part * ((up + right) as f32 * self.rate - *earlier);
+        }
     }
 
     /// Specific forces up and right; [`None`] if one is saturated.

@@ -78,7 +78,8 @@ fn an_azimuth_hardly_depends_on_the_cycles_of_an_instruction() {
         let ((azimuth, sigma), (quick, _)) =
             (azimuth(&executed_by(&usual).report), azimuth(&quick.report));
         let change = distance(azimuth, quick);
-        assert!(change <= 0.3 * sigma, "{carrier}: {change}° at a σ of {sigma}°");
+        // A dwell or a stop that begins some samples earlier has other noise.
+        assert!(change <= 0.5 * sigma, "{carrier}: {change}° at a σ of {sigma}°");
     }
 }
 

@@ -64,6 +64,7 @@ fn a_fault_of_another_platform_is_refused() {
     }
     let without = ["run", "--sway", "0.1", "--no-base-imu", "--fault", "coarse-imu-silent"];
     assert_misuse(&without, "--no-base-imu leaves out");
+    assert_misuse(&["run", "--rate", "20"], "take more, or --hold 0");
     assert_misuse(&["run", "--fault", "list", "--record", "x.csv"], "--record: ");
 }
 
