@@ -40,11 +40,12 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass(extent: Extent
         let found = drift::compare(gyro, runs, &|| ()).expect("there is a plan");
         for row in [&found.planned, &found.one_pass] {
             let precision = &row.precision;
-            // One session in a thousand seems to have a heading that steps. Of four positions, which have one degree
-            // of freedom, more are refused by chance; where σ is 2°, a base that may turn raises more beyond 10°.
+            // One session in a thousand seems to have a heading that steps. Where σ is 2° or more, scatter raises some
+            // beyond 10°: of one degree of freedom and 3.2°, those with χ² above 9.8, 1.7 in a thousand. So many
+            // and four of their standard deviations.
             let is_sure = row.positions > 4 && precision.limit_deg < 1.0;
             assert!(
-                precision.refused <= extent.count(if is_sure { RUNS / 1000 } else { 12 }),
+                precision.refused <= extent.count(if is_sure { RUNS / 1000 } else { 20 }),
                 "{row:?}"
             );
             assert!((precision.ratio - 1.0).abs() <= extent.rms(0.05, runs), "{row:?}");
