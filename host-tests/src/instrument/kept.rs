@@ -26,7 +26,9 @@ pub struct Realignments {
     pub found: Vec<(units::Instant, Azimuth)>,
     /// How often one agreed.
     pub fused: usize,
-    /// When the latest alignment anew was refused, and why; none where none was, and where it is not told.
+    /// When the first alignment was refused, and why; none where it was not, and where it is not told.
+    pub first_refused: Option<String>,
+    /// The same of the latest alignment anew.
     pub refused: Option<String>,
     /// By how many σ the latest one disagreed, so that neither is believed; none where it did not.
     pub disagreement: Option<f64>,

@@ -35,7 +35,7 @@ use thiserror::Error;
 
 use self::kept::Kept;
 use crate::methods::stepwise::Replay;
-use crate::output::degrees;
+use crate::output::{azimuth_error, degrees};
 use crate::recording::Truth;
 use crate::report::Stretch;
 
@@ -72,6 +72,9 @@ pub struct Run<R = Replay, T = ()> {
     pub violations: Vec<String>,
 }
 
+/// Difference of two azimuths, °, below which it is one that was rounded.
+const ROUNDED_DEG: f64 = 1e-9;
+
 impl<T> Run<Replay, T> {
     /// What the session concluded; every run concludes.
     #[must_use]
@@ -94,19 +97,14 @@ impl<R, T> Run<R, T> {
         self.conclusions().count() > 1
     }
 
-    /// Whether an azimuth was found, or kept, before the latest alignment concluded: the base has driven since.
-    fn has_driven(&self) -> bool {
-        let at = self.conclusions().next_back().map_or(0.0, |at| at.as_micros() as f64);
-        let was_kept = self.kept.with_azimuth().any(|(point, _)| point.seconds() * 1e6 < at);
-        was_kept || self.is_realigned()
-    }
-
     /// The true azimuth at the latest alignment's last sample, °, of a base that stood at an azimuth, °,
-    /// until an azimuth was known.
+    /// until it drove.
     #[must_use]
     pub fn azimuth_deg(&self, first_deg: f64) -> f64 {
-        let again = self.found_rad.filter(|_| self.has_driven());
-        again.map_or(first_deg, |azimuth| degrees(azimuth).rem_euclid(360.0))
+        let then = self.found_rad.map(|azimuth| degrees(azimuth).rem_euclid(360.0));
+        // Of a base that has not driven since, they differ by what is rounded.
+        let driven = then.filter(|azimuth| azimuth_error(*azimuth, first_deg).abs() > ROUNDED_DEG);
+        driven.unwrap_or(first_deg)
     }
 
     /// What was kept on a base that stood at an azimuth, °, until the first alignment concluded, and what was true of the

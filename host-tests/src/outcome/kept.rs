@@ -77,7 +77,11 @@ impl Outcome {
         let mut circumstances = self.circumstances;
         circumstances.extend(time.map(|time| ["time".to_owned(), time]));
         let azimuth = last.and_then(Point::azimuth_deg);
-        let unknown = || "the azimuth is not known yet".to_owned();
+        let refused = run.refused.as_ref();
+        let unknown = || match refused {
+            Some(why) => format!("no alignment found it: the latest was refused {why}"),
+            None => "the azimuth is not known yet".to_owned(),
+        };
         let reason = azimuth.is_none().then(|| run.lost.clone().unwrap_or_else(unknown));
         Self {
             azimuth_deg: azimuth.map(|[azimuth, ..]| azimuth),

@@ -45,6 +45,9 @@ pub struct RunDetails {
     /// What the keeper reported at last, where it did.
     #[serde(skip)]
     pub(super) kept: Option<Point>,
+    /// When the latest alignment was refused, and why, where one was.
+    #[serde(skip)]
+    pub(super) refused: Option<String>,
     /// That an azimuth which was kept is not known any more, where it is so.
     #[serde(skip)]
     pub(super) lost: Option<String>,
@@ -171,7 +174,8 @@ impl RunDetails {
             keys: keys
                 .with_found("alignments", of_alignments(&later.found))
                 .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
-            facts: found_anew(&later.found).into_iter().collect(),
+            facts: refused_first(later).into_iter().chain(found_anew(later)).collect(),
+            refused: later.refused.clone().or_else(|| later.first_refused.clone()),
             degradations: lost.iter().cloned().collect(),
             parts: lines
                 .chain(alignments(&later.found).map(Part::from))
@@ -298,9 +302,17 @@ fn aligned_anew(Realignments { fused, refused, .. }: &Realignments) -> Option<St
 }
 
 /// Which of several alignments an azimuth is of.
-fn found_anew(found: &[Found]) -> Option<[String; 2]> {
-    let [_, .., (at, _)] = found else { return None };
+fn found_anew(Realignments { found, first_refused, .. }: &Realignments) -> Option<[String; 2]> {
+    let (at, _) = found.last().filter(|_| found.len() > 1 || first_refused.is_some())?;
     Some(["found".to_owned(), format!("at {:.1} s, by the latest alignment", at.seconds())])
+}
+
+/// Why the first of several alignments was refused.
+fn refused_first(later: &Realignments) -> Option<[String; 2]> {
+    let Realignments { found, first_refused, refused, .. } = later;
+    let is_one_of_several = !found.is_empty() || refused.is_some();
+    let why = first_refused.as_ref().filter(|_| is_one_of_several)?;
+    Some(["first alignment".to_owned(), format!("refused {why}")])
 }
 
 /// What each of several alignments found.
@@ -338,9 +350,13 @@ fn realignments<R, T>(run: &Run<R, T>) -> Realignments {
         match event {
             Event::Navigation(progress) => found.take(progress),
             Event::Alignment(Progress::Concluded(_)) => (is_first, found.refused) = (false, None),
-            Event::Alignment(Progress::Refused(reason)) if !is_first => {
-                let at_s = seconds(*at);
-                found.refused = Some(format!("at {at_s:.1} s: {reason}"));
+            Event::Alignment(Progress::Refused(reason)) => {
+                let why = Some(format!("at {:.1} s: {reason}", seconds(*at)));
+                if core::mem::replace(&mut is_first, false) {
+                    found.first_refused = why;
+                } else {
+                    found.refused = why;
+                }
             }
             _ => {}
         }

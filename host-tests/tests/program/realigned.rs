@@ -52,6 +52,28 @@ fn each_of_several_alignments_stands_in_the_output() {
     }
 }
 
+#[test]
+fn an_azimuth_of_an_alignment_after_one_that_was_refused_stands_beside_its_own_truth() {
+    let run = ["run", "stage", "--pitch=20", "--seconds=60", "--realign", "--hold=600", "--seed=3"];
+    let found = object(&meridian(&[&run[..], &["--json"]].concat()));
+    let [error, sigma] =
+        ["error_deg", "sigma_deg"].map(|key| found[key].as_f64().expect("a number"));
+    assert!(error.abs() < 4.0 * sigma, "{error}° at a σ of {sigma}°");
+    let told = text(&meridian(&run).stdout);
+    assert!(told.contains("first alignment    refused at "), "{told}");
+    assert!(told.contains("by the latest alignment"), "{told}");
+}
+
+#[test]
+fn a_run_of_which_no_alignment_found_an_azimuth_says_why() {
+    let run = ["run", "vehicle", "--drive-seconds=20", "--realign"];
+    let output = meridian(&run);
+    assert_eq!(code(&output), 1);
+    let told = text(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(told.contains("reason no alignment found it: the latest was refused at "), "{told}");
+    assert!(told.contains("first alignment refused at "), "{told}");
+}
+
 /// The words of a page's timeline in the row of this name.
 fn told_in_row(page: &str, name: &str) -> Vec<String> {
     let (_, row) = page.split_once(&format!("<span>{name}</span>")).expect("the row is there");

@@ -20,6 +20,8 @@ use crate::output::{azimuth_error, degrees};
 
 /// Sample rate of all but the spinning body, Hz.
 const RATE_HZ: f64 = 100.0;
+/// The same where the base sways, Hz: a coarse IMU that is read less often gives fewer outputs, which leave more of it.
+const SWAYING_RATE_HZ: f64 = 400.0;
 /// Amplitude of the base's sway where the coarse IMU is what fails, °.
 const SWAY_DEG: f64 = 0.1;
 /// Passes on two frames.
@@ -98,6 +100,7 @@ fn base(fault: Fault, seed: u64) -> Scenario {
     if !matches!(fault, Fault::Chip(Device::Base, _)) {
         return base;
     }
+    let base = Scenario { sample_rate_hz: SWAYING_RATE_HZ, ..base };
     Scenario { sway_deg: SWAY_DEG, has_base_imu: true, coarse: CoarseClass::FINE, ..base }
 }
 
