@@ -9,7 +9,7 @@
 //! An output stands for the sensor's own period, not for the time between two readings: how late it is read
 //! changes with the beat of both rates, and what shakes at that beat would add up to a rotation that there was
 //! not. For the same reason no output may be left out, so the readings are at least [`LEAST_READINGS`] times as
-//! many. The period is estimated over the latest [`MEMORY`] outputs by the gains of a line fit, 4/n for the time
+//! many. The period is estimated over the latest 512 outputs by the gains of a line fit, 4/n for the time
 //! and 6/n² for the period.
 
 use orientation::units::Instant;

@@ -15,6 +15,7 @@ use static_cell::StaticCell;
 const LONGEST: usize = 4096;
 
 /// Carrier, with its scenario.
+#[expect(clippy::large_enum_variant, reason = "there is one, at the beginning")]
 pub enum Job {
     /// A multi-position alignment on a stage.
     Stage(Scenario),

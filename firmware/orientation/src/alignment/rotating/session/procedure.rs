@@ -78,7 +78,7 @@ impl Procedure {
     /// Turns at constant rate in each sense at a speed. Two speeds a < b give the azimuth as (b² B
     /// − a² A)/(b² − a²) of their individual results A and B: with times in proportion to these
     /// weights its noise is least, (b² + a²)/(b² − a²) of that of one speed without a g-sensitivity
-    /// (MET 2018). The time at the faster speed is at most [`LONGEST_SHARE`] times that at the slower
+    /// (MET 2018). The time at the faster speed is at most four times that at the slower
     /// one.
     #[must_use]
     pub fn turns_at(&self, index: usize) -> u32 {
