@@ -210,7 +210,8 @@ fn failed(Failure { reason, warnings, .. }: &Failure, manner: Manner) -> ExitCod
         }
         let output = Output::Object(object);
         let refusal = Some(reason.clone());
-        let nothing = Answer { output, refusal, is_told: true, warnings: warnings.clone() };
+        let (warnings, doubts) = (warnings.clone(), Vec::new());
+        let nothing = Answer { output, refusal, is_told: true, warnings, doubts };
         // The reason goes to standard error all the same.
         let _ = print(&nothing.printed());
     }
@@ -235,7 +236,14 @@ fn end(reason: &str, manner: Manner) {
 
 /// Says what there is to be said beside the result.
 fn warn(warnings: &[String], manner: Manner) {
-    for warning in warnings.iter().filter(|_| manner.warns()) {
+    if manner.warns() {
+        doubt(warnings);
+    }
+}
+
+/// Says why a number may be wrong, however little is to be told.
+fn doubt(warnings: &[String]) {
+    for warning in warnings {
         say(&printable(&format!("warning: {warning}")));
     }
 }
@@ -255,6 +263,7 @@ fn answer(command: &Command, stated: &Stated, manner: Manner) -> Result<bool, Fa
     };
     print(&answer.printed())?;
     warn(&answer.warnings, manner);
+    doubt(&answer.doubts);
     if let Some(reason) = &answer.refusal {
         say_why(reason, answer.is_told);
     }

@@ -147,10 +147,23 @@ impl Rest {
         self.interruption().into_iter().chain(units.into_iter().chain(rest).flatten()).collect()
     }
 
+    /// What says that times or rates may be in another unit, so that every number is wrong.
+    #[must_use]
+    pub fn unit_notes(&self) -> Vec<String> {
+        let times = self.rate_note().filter(|_| self.are_milliseconds());
+        [self.spacing.unit_note(), self.unit_note(), times].into_iter().flatten().collect()
+    }
+
+    /// Whether the header's rate says that the times are in milliseconds.
+    fn are_milliseconds(&self) -> bool {
+        let stated = self.spacing.contradicted_rate_hz;
+        stated.is_some_and(|stated| are_milliseconds(stated, 1.0 / self.spacing.period_s))
+    }
+
     /// That the header's rate is not that of the times.
     fn rate_note(&self) -> Option<String> {
         let (stated, found) = (self.spacing.contradicted_rate_hz?, 1.0 / self.spacing.period_s);
-        let unit = if are_milliseconds(stated, found) {
+        let unit = if self.are_milliseconds() {
             "; t_s was read in s, and is in ms, as it seems: divide it by 1000"
         } else {
             ""

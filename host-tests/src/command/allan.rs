@@ -13,6 +13,7 @@ use host::output::printable;
 use host::output::progress::Progress;
 use host::planning::suggestion;
 use host::recording::{self, RestRows, Warning};
+use host::report::Verbosity;
 use orientation::noise::fit::FitError;
 
 use super::files::Written;
@@ -41,7 +42,7 @@ pub fn run(options: &AllanOptions, manner: Manner) -> Result<Answer, Failure> {
     let page = files::opened("the report", options.report.as_ref())?;
     let (name, shown) = (source.name(), source.shown());
     let mut warnings = Vec::new();
-    let progress = Progress::new(manner, "reading");
+    let progress = Progress::of_reading(manner);
     interrupt::end_input();
     let rest = read(&source, options.column.as_deref(), &progress, &mut warnings);
     progress.finish();
@@ -88,7 +89,11 @@ fn analyse(
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(name, rest, reason));
     let refusal = rest.interruption().or(refusal);
+    // Else the text holds all notes, or the object does.
+    let is_short = manner.verbosity == Verbosity::Quiet && !manner.as_json;
+    let doubts = if is_short && found.is_some() { shown.doubts() } else { Vec::new() };
     let answer = Answer::reported(refusal, manner, &shown.object(), || shown.report())?;
+    let answer = Answer { doubts, ..answer };
     Ok(answer.with_page(page, || shown.report()))
 }
 

@@ -44,6 +44,8 @@ pub struct Answer {
     pub is_told: bool,
     /// What there is to be said beside that: a line each.
     pub warnings: Vec<String>,
+    /// Why a number may be wrong, where the output does not say it: a quiet command says it, too.
+    pub doubts: Vec<String>,
 }
 
 /// What goes to standard output.
@@ -109,7 +111,13 @@ impl Answer {
         } else {
             Output::Text(text())
         };
-        let answer = Self { output, refusal: None, is_told: false, warnings: Vec::new() };
+        let answer = Self {
+            output,
+            refusal: None,
+            is_told: false,
+            warnings: Vec::new(),
+            doubts: Vec::new(),
+        };
         Ok(match refusal {
             Some(reason) => answer.refused(reason),
             None => answer,

@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
+use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::remembered::Remembered;
-use orientation::alignment::{Azimuth, Progress};
+use orientation::alignment::{Azimuth, Progress, stepwise};
 use orientation::attitude::Report;
 use orientation::units;
 use serde::Serialize;
@@ -18,7 +19,9 @@ use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point, Realignments};
 use crate::instrument::replay::Done;
 use crate::interrupt;
-use crate::output::{azimuth as in_circle, counted, degrees, positive_zero, seconds, signed};
+use crate::output::{
+    azimuth as in_circle, counted, degrees, in_number, positive_zero, seconds, signed,
+};
 use crate::report::{Lane, Lines, Part, Stretch, Table};
 
 /// What only a simulated run has.
@@ -27,9 +30,12 @@ pub struct RunDetails {
     /// Further keys of the outcome.
     #[serde(flatten)]
     keys: Keys,
-    /// Whether the board reported that something is wrong.
+    /// What the board reported that is wrong, in words, where it did.
     #[serde(skip)]
-    reports_wrong: bool,
+    reported: Option<String>,
+    /// What of that disturbed a measurement which the board then repeated.
+    #[serde(skip)]
+    repeated: Option<String>,
     /// What is said first of the result: label and value.
     #[serde(skip)]
     pub(super) facts: Vec<[String; 2]>,
@@ -116,25 +122,26 @@ impl RunDetails {
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
         let this = Self::with(keys, Some(board), (&run.kept, &run.earlier), &realignments(run));
-        let degradations = this.degradations.into_iter().chain(faults(&run.health)).collect();
+        let uncounted = in_short(&run.events, is_uncounted).map(on_the_way);
+        let told = [faults(&run.health), uncounted].into_iter().flatten();
+        let degradations = this.degradations.into_iter().chain(told).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
         let cut_short = this.interruption.clone().filter(|_| run.is_cut_short);
-        let reports_wrong = run.events.iter().any(|(_, event)| notice::is_wrong(event));
-        Self { reports_wrong, degradations, lanes, cut_short, ..this }
+        let reported = in_short(&run.events, notice::is_wrong);
+        let repeated = in_short(&run.events, is_repeated);
+        Self { reported, repeated, degradations, lanes, cut_short, ..this }
     }
 
-    /// With what was made to go wrong, by its name, and whether the board reported anything wrong.
+    /// With what was made to go wrong, by its name, and what the board reported; what it mended by measuring again takes from
+    /// the result, since it was no chance.
     #[must_use]
     pub fn made_wrong(mut self, fault: Option<&str>) -> Self {
         let Some(fault) = fault else { return self };
         self.keys = self.keys.with("fault", fault);
-        let noticed = if self.reports_wrong {
-            "reported that something is wrong"
-        } else {
-            "reported nothing wrong"
-        };
-        self.facts
-            .push(["fault".to_owned(), format!("{fault}, as asked for; the board {noticed}")]);
+        let reported = self.reported.as_deref().unwrap_or("nothing wrong");
+        let words = format!("{fault}, as asked for; the board reported {reported}");
+        self.facts.push(["fault".to_owned(), words]);
+        self.degradations.extend(self.repeated.take().map(on_the_way));
         self
     }
 
@@ -170,7 +177,8 @@ impl RunDetails {
         let board = board.map(|board| Part::from(board).detail());
         let lost = last_kept.filter(|last| last.report.azimuth.is_none()).and_then(|_| lost(kept));
         Self {
-            reports_wrong: false,
+            reported: None,
+            repeated: None,
             keys: keys
                 .with_found("alignments", of_alignments(&later.found))
                 .with_found("kept", last_kept.map(|last| of_kept(kept, &last, later.fused))),
@@ -208,6 +216,41 @@ fn faults(health: &Health) -> Option<String> {
     let there = all.into_iter().filter(|(count, _)| *count > 0);
     let words: Vec<String> = there.map(|(count, what)| counted(count as usize, what)).collect();
     (!words.is_empty()).then(|| format!("faults on the way: {}", words.join(", ")))
+}
+
+/// The first event of a kind in its own words, and how many more there are; nothing where there is none.
+fn in_short(events: &[(Instant, Event)], is_meant: fn(&Event) -> bool) -> Option<String> {
+    let mut meant = events.iter().map(|(_, event)| event).filter(|event| is_meant(event));
+    let first = in_number(&meant.next()?.to_string());
+    Some(match meant.count() {
+        0 => format!("\"{first}\""),
+        more => format!("\"{first}\" and {more} more"),
+    })
+}
+
+/// What was reported, as something that takes from a result.
+fn on_the_way(reported: String) -> String {
+    format!("reported on the way: {reported}")
+}
+
+/// Whether an event reports a device or the memory which did wrong, and is in no count of the board's health.
+fn is_uncounted(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::Clipped(_)
+            | Event::Corrected(..)
+            | Event::Blocked(_)
+            | Event::CurrentOff(_)
+            | Event::CalibrationUnreadable(_)
+            | Event::CalibrationNotSaved(_)
+            | Event::HeadingNotKept(_)
+            | Event::LinkSilent
+    )
+}
+
+/// Whether an event reports a disturbed measurement that is taken again.
+fn is_repeated(event: &Event) -> bool {
+    matches!(event, Event::Alignment(Progress::Stepwise(stepwise::Progress::Repeated(..))))
 }
 
 /// How long an azimuth was kept until it was last known, s, and its 1σ then, °.

@@ -142,17 +142,28 @@ impl Shown<'_> {
     pub(crate) fn notes(&self) -> Vec<String> {
         let fit = self.analysis.as_ref().ok().map(|analysis| &analysis.fit);
         let seconds = self.rest.samples as f64 * self.rest.spacing.period_s;
-        let misfit = fit.filter(|fit| fit.chi_square > MISFIT * fit.degrees as f64).map(|_| {
-            "the Allan variance does not follow the noise model: something else moves the rate, and the \
-             coefficients say little"
-                .to_owned()
-        });
         let hidden = fit.filter(|fit| matches!(fit.estimates, [.., Estimate::Found { .. }]));
         let hidden = hidden.and_then(|fit| fit.hidden_slope(Seconds(seconds))).map(|slope| {
             let slope = slope.0 / DEGREE_PER_HOUR * 3600.0;
             format!("a random walk that is not observable may hide beside the ramp: ± {slope:.3} °/h² then")
         });
-        self.rest.notes().into_iter().chain(misfit).chain(hidden).collect()
+        self.rest.notes().into_iter().chain(self.misfit()).chain(hidden).collect()
+    }
+
+    /// Why the coefficients may be wrong.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        self.rest.unit_notes().into_iter().chain(self.misfit()).collect()
+    }
+
+    /// That the noise model does not fit.
+    fn misfit(&self) -> Option<String> {
+        let fit = &self.analysis.as_ref().ok()?.fit;
+        (fit.chi_square > MISFIT * fit.degrees as f64).then(|| {
+            "the Allan variance does not follow the noise model: something else moves the rate, and the \
+             coefficients say little"
+                .to_owned()
+        })
     }
 
     /// How much there is of it.

@@ -1,4 +1,5 @@
-//! Progress on standard error, with the time that is left: a bar on a terminal, elsewhere a dozen lines.
+//! Progress on standard error, with the time that is left: a bar on a terminal, elsewhere a dozen lines, and of what is read
+//! or done in pieces only while it is long.
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,6 +16,10 @@ use crate::work::Follower;
 
 /// Lines that a whole task may print where there is no terminal.
 const LINES: u64 = 12;
+/// A task that is shorter on the whole needs no lines.
+const LONG: Duration = Duration::from_secs(5);
+/// Least time between two lines.
+const APART: Duration = Duration::from_secs(3);
 /// How often the bar is drawn while nothing comes.
 const REDRAWN: Duration = Duration::from_millis(500);
 /// What the steps of a session are called.
@@ -32,13 +37,31 @@ pub struct Progress {
     /// Whether lines take the place of a bar, where there is no terminal.
     prints_lines: bool,
     printed: AtomicU64,
+    /// Whether lines are for long tasks alone, which a simulated run's are not: they tell its own time, too.
+    only_if_long: bool,
+    /// When the next line may be printed, ms after the beginning.
+    next: AtomicU64,
+}
+
+/// Whether a line is due of a task that has taken so long and has so much left: where the whole is long, and the line before
+/// it was not just now.
+#[must_use]
+pub fn is_due(elapsed: Duration, left: Option<Duration>, next: Duration) -> bool {
+    elapsed >= next && left.is_some_and(|left| elapsed + left >= LONG)
 }
 
 impl Progress {
     /// Progress of a task of `length` steps, shown as a command is asked to; `what` names them.
     #[must_use]
     pub fn of_steps(manner: Manner, length: u64, what: &'static str) -> Self {
-        Self::beginning(manner, length, what, counted(what, 0, length))
+        let this = Self::beginning(manner, length, what, counted(what, 0, length));
+        Self { only_if_long: true, ..this }
+    }
+
+    /// Progress of what is read, and of what is found in that.
+    #[must_use]
+    pub fn of_reading(manner: Manner) -> Self {
+        Self { only_if_long: true, ..Self::new(manner, "reading") }
     }
 
     /// Progress of a task of which it is not known yet what will be counted; `words` say what it begins with.
@@ -64,7 +87,8 @@ impl Progress {
             bar.set_message(words);
             bar.enable_steady_tick(REDRAWN);
         }
-        Self { bar, what, prints_lines, printed: AtomicU64::new(0) }
+        let [printed, next] = [0, 0].map(AtomicU64::new);
+        Self { bar, what, prints_lines, printed, only_if_long: false, next }
     }
 
     /// One more step is done.
@@ -91,6 +115,7 @@ impl Progress {
     pub fn begin(&self, words: &'static str) {
         self.bar.reset();
         self.printed.store(0, Ordering::Relaxed);
+        self.next.store(0, Ordering::Relaxed);
         if !self.bar.is_hidden() {
             self.bar.set_message(words);
         }
@@ -126,12 +151,28 @@ impl Progress {
     fn print(&self, words: &str, more: impl FnOnce() -> String) {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
         let part = 1 + done * LINES / all;
-        if self.printed.fetch_max(part, Ordering::Relaxed) < part {
-            let left = left(self.bar.elapsed(), done, all);
+        let left = left(self.bar.elapsed(), done, all);
+        let is_further = self.printed.load(Ordering::Relaxed) < part;
+        if is_further && self.is_due(left) && self.printed.fetch_max(part, Ordering::Relaxed) < part
+        {
             let left = left.map(|left| in_words(left, "left")).unwrap_or_default();
             let line = format!("{words}, {}, {left}{}", percent(done, all), more());
             say(line.trim_end());
         }
+    }
+
+    /// Whether a line may be printed now, and none again so soon.
+    fn is_due(&self, left: Option<Duration>) -> bool {
+        if !self.only_if_long {
+            return true;
+        }
+        let elapsed = self.bar.elapsed();
+        let next = Duration::from_millis(self.next.load(Ordering::Relaxed));
+        let due = is_due(elapsed, left, next);
+        if due {
+            self.next.store((elapsed + APART).as_millis() as u64, Ordering::Relaxed);
+        }
+        due
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use host::output::azimuth_error;
 use host::report::{
     Axis, Figure, Grade, Kind, Lane, Note, Part, Point, Report, Rose, Series, Share, Shares,
     Stretch, Style, Summary, Table, Timeline,
@@ -339,6 +340,39 @@ fn a_wedge_is_drawn_wider_by_a_round_number_and_never_over_a_quarter_turn() {
         let half: f64 = 3.0 * sigma_deg * times;
         assert!(half <= 40.0 || times == 1.0, "{sigma_deg}: {times}");
         assert!(half >= 5.0, "{sigma_deg}: {times} is too little to be seen");
+    }
+}
+
+/// The direction, °, in which a page with this rose draws the truth, and the words below the rose.
+fn drawn_truth(rose: Rose) -> (f64, String) {
+    let summary = Summary { rose: Some(rose), ..Summary::default() };
+    let text = written("truth.html", &Report::new("A", []).headed(summary));
+    let between = |from: &str, to: &str| {
+        let (_, behind) = text.split_once(from).expect("it begins");
+        behind.split_once(to).expect("it ends").0.to_owned()
+    };
+    let line = between("class=\"truth\" d=\"M", "\"");
+    let (_, end) = line.split_once('L').expect("a line");
+    let (x, y) = end.split_once(' ').expect("a point");
+    let [x, y] = [x, y].map(|number| number.parse::<f64>().expect("a number"));
+    (x.atan2(-y).to_degrees().rem_euclid(360.0), between("<figcaption>", "</figcaption>"))
+}
+
+#[test]
+fn a_truth_is_drawn_as_far_off_as_the_words_say_or_where_it_is() {
+    let cases = [
+        (0.04, 213.6, 213.8, "the truth, 200 times as far off"),
+        (0.04, 33.3, 211.4, "the truth, where it is"),
+        (0.04, 350.0, 20.0, "the truth, where it is"),
+        (20.0, 33.3, 211.4, "the truth"),
+    ];
+    for (sigma_deg, azimuth_deg, truth_deg, ending) in cases {
+        let rose = Rose { azimuth_deg, sigma_deg, limit_deg: None, truth_deg: Some(truth_deg) };
+        let (drawn_deg, words) = drawn_truth(rose);
+        let times = if ending.contains("times") { 200.0 } else { 1.0 };
+        let expected_deg = azimuth_deg + times * azimuth_error(truth_deg, azimuth_deg);
+        let off = azimuth_error(drawn_deg, expected_deg).abs();
+        assert!(off < 0.1 && words.ends_with(ending), "{drawn_deg}° of {expected_deg}°: {words}");
     }
 }
 

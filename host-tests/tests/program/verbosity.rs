@@ -1,6 +1,10 @@
 //! How much is told: progress without being asked, the log where it is asked for, errors alone where that is.
 
-use crate::support::files::stored;
+use std::time::Duration;
+
+use host::output::progress::is_due;
+
+use crate::support::files::{Scratch, stored};
 use crate::support::program::{assert_misuse, code, meridian, object, text};
 
 /// Runs and replays with a result.
@@ -118,4 +122,34 @@ fn what_every_run_is_given_is_no_assumption_of_its_text_but_one_of_its_object() 
     assert!(!told.contains("What was assumed"), "{told}");
     let assumed = object(&meridian(&[&run[..], &["--json"]].concat()))["assumed"].clone();
     assert_eq!(assumed[0], "what the board was given about place and instrument");
+}
+
+#[test]
+fn a_quiet_noise_analysis_still_says_that_the_unit_may_be_wrong() {
+    let sound = meridian(&["allan", &stored("static-gyro-1h"), "-q"]);
+    assert_eq!((code(&sound), text(&sound.stderr)), (0, String::new()));
+    let scratch = Scratch::new("quiet-units");
+    let rows = (0..2000_u32).map(|row| {
+        let rate = 1.0 + 1e-6 * f64::from(row.wrapping_mul(2_654_435_761) >> 16);
+        format!("{:.1},{rate:.6e}\n", f64::from(row) / 10.0)
+    });
+    let content = "# kind: static\nt_s,g_rad_s\n".to_owned() + &rows.collect::<String>();
+    let doubtful = meridian(&["allan", &scratch.with("degrees.csv", content), "-q"]);
+    let said = text(&doubtful.stderr);
+    assert!(
+        said.starts_with("warning: g_rad_s was read in rad/s, as every rate is, but "),
+        "{said}"
+    );
+}
+
+#[test]
+fn short_work_on_recordings_prints_no_progress_and_long_work_a_line_now_and_then() {
+    let stage = stored("stepwise-circle");
+    let output = meridian(&["replay", &stage, &stored("stepwise-nudged")]);
+    assert_eq!((code(&output), text(&output.stderr)), (0, String::new()));
+    let seconds = Duration::from_secs_f64;
+    assert!(!is_due(seconds(0.1), Some(seconds(0.7)), seconds(0.0)));
+    assert!(is_due(seconds(0.1), Some(seconds(60.0)), seconds(0.0)));
+    assert!(!is_due(seconds(2.0), Some(seconds(60.0)), seconds(3.1)));
+    assert!(!is_due(seconds(2.0), None, seconds(0.0)));
 }

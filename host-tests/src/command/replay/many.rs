@@ -216,7 +216,13 @@ impl Row {
     fn failed(source: &Source, Failure { reason, warnings, .. }: Failure) -> Self {
         let nothing = Self::of(&Outcome::default());
         let object = Output::Object(json!({ "file": source.name() }));
-        let answer = Answer { output: object, refusal: Some(reason), is_told: false, warnings };
+        let answer = Answer {
+            output: object,
+            refusal: Some(reason),
+            is_told: false,
+            warnings,
+            doubts: Vec::new(),
+        };
         Self {
             found: "failed".to_owned(),
             seconds: None,

@@ -128,7 +128,7 @@ fn run_one(one: &One<'_>, source: &Source, manner: Manner) -> Result<Answer, Fai
     files::check(source.path(), &written).map_err(Failure::misuse)?;
     let page = files::opened("the report", options.report.as_ref())?;
     let attitude = files::opened("the attitude", options.attitude_out.as_ref())?;
-    let progress = Progress::new(manner, "reading");
+    let progress = Progress::of_reading(manner);
     interrupt::end_input();
     let done = One { progress: Some(&progress), ..*one }.replay(source);
     progress.finish();

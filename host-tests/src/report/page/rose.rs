@@ -14,7 +14,7 @@ const WEDGE: [f64; 2] = [18.0, 108.0];
 const WIDE: f64 = 40.0;
 /// Narrower than this it is drawn wider than it is.
 const NARROW: f64 = 5.0;
-/// How far aside of the azimuth the truth and the limit are drawn at most, °.
+/// How far aside of the azimuth anything is drawn at most that is magnified, °.
 const ASIDE: f64 = 85.0;
 
 /// The rose with its words.
@@ -28,7 +28,7 @@ pub(super) fn rose(rose: &Rose) -> String {
     };
     let limits =
         rose.limit_deg.map(|limit| ray("limit", aside(-limit)) + &ray("limit", aside(limit)));
-    let truth = rose.truth_deg.map(|truth| ray("truth", aside(azimuth_error(truth, azimuth))));
+    let truth = Truth::of(rose, times);
     let label = escaped(&format!("azimuth {azimuth:.2}°"));
     let mut svg = format!(
         "<svg class=\"rose\" viewBox=\"-150 -150 300 300\" role=\"img\" aria-label=\"{label}\">\n"
@@ -37,19 +37,45 @@ pub(super) fn rose(rose: &Rose) -> String {
     svg += &wedge("three", 3.0);
     svg += &wedge("one", 1.0);
     svg.extend(limits);
-    svg.extend(truth);
+    svg.extend(truth.as_ref().map(|truth| ray("truth", truth.drawn_deg)));
     svg += &ray("needle", azimuth);
     format!(
         "<figure class=\"compass\">{svg}<circle class=\"hub\" r=\"4\"/>\n</svg>\n{}</figure>\n",
-        words(rose, times)
+        words(rose, times, truth.as_ref())
     )
 }
 
+/// Where the truth is drawn.
+struct Truth {
+    drawn_deg: f64,
+    /// How many times as far off the azimuth as it is.
+    times: f64,
+}
+
+impl Truth {
+    /// The truth as many times as far off as a wedge is wide, or where it is if that would be beyond what can be told.
+    fn of(rose: &Rose, times: f64) -> Option<Self> {
+        let off = azimuth_error(rose.truth_deg?, rose.azimuth_deg);
+        let times = if times * off.abs() <= ASIDE { times } else { 1.0 };
+        Some(Self { drawn_deg: rose.azimuth_deg + times * off, times })
+    }
+
+    /// How it is drawn beside a wedge that is so many times as wide as it is.
+    fn words(&self, wide: f64) -> String {
+        let how = match self.times {
+            times if times > 1.0 => format!(", {times} times as far off"),
+            _ if wide > 1.0 => ", where it is".to_owned(),
+            _ => String::new(),
+        };
+        format!("; dashed: the truth{how}")
+    }
+}
+
 /// What is drawn, in words.
-fn words(rose: &Rose, times: f64) -> String {
+fn words(rose: &Rose, times: f64, truth: Option<&Truth>) -> String {
     let scale = if times > 1.0 { format!(", drawn {times} times as wide") } else { String::new() };
     let limit = rose.limit_deg.map_or("", |_| "; dotted: the limit of 1σ");
-    let truth = rose.truth_deg.map_or("", |_| "; dashed: the truth");
+    let truth = truth.map(|truth| truth.words(times)).unwrap_or_default();
     format!("<figcaption>±1σ and ±3σ{scale}{limit}{truth}</figcaption>\n")
 }
 

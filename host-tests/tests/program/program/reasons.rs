@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::support::files::{Scratch, stored, unpacked};
-use crate::support::program::{code, meridian, object, reason, text, words};
+use crate::support::program::{code, meridian, object, page, reason, text, words};
 
 use super::{mapped, recorded, refused, scaled};
 
@@ -195,14 +195,24 @@ fn two_positions_are_refused_with_the_option_that_tells_their_azimuths_apart() {
 }
 
 #[test]
-fn a_run_says_what_was_made_to_go_wrong_and_whether_the_board_said_so() {
-    for (fault, noticed) in [("overload-once", "nothing wrong"), ("gyro-silent-once", "is wrong")] {
-        let run = ["run", "--fault", fault];
+fn a_run_says_what_was_made_to_go_wrong_and_what_the_board_said_of_it() {
+    let gyro = "\"gyro: at the limit of its range\"";
+    for (fault, reported) in [("overload-once", "nothing wrong"), ("saturation-once", gyro)] {
+        let run = ["run", "turntable", "--fault", fault];
         let told = words(&text(&meridian(&run).stdout));
-        let line = format!("fault {fault}, as asked for; the board reported");
-        assert!(told.contains(&line) && told.contains(noticed), "{told}");
+        let line = format!("fault {fault}, as asked for; the board reported {reported}");
+        assert!(told.contains(&line), "{told}");
         let object = object(&meridian(&[&run[..], &["--json"]].concat()));
         assert_eq!(object["fault"], fault);
     }
     assert!(object(&meridian(&["run", "--json"])).get("fault").is_none());
+}
+
+#[test]
+fn what_a_board_reported_and_mended_takes_from_the_badge() {
+    for (fault, badge) in [("overload-once", "found"), ("saturation-once", "degraded")] {
+        let (_, page) = page(&["run", "turntable", "--fault", fault]);
+        assert!(page.contains(&format!("<span class=\"badge {badge}\">")), "{fault}");
+        assert_eq!(page.contains("reported on the way: "), badge == "degraded", "{fault}");
+    }
 }
