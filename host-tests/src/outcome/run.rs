@@ -122,7 +122,7 @@ impl RunDetails {
         let keys = keys.with_all(Some(&beside.keys));
         let board = board(run, rate_hz, wall.as_secs_f64(), beside);
         let this = Self::with(keys, Some(board), (&run.kept, &run.earlier), &realignments(run));
-        let uncounted = in_short(&run.events, is_uncounted).map(on_the_way);
+        let uncounted = in_short(&run.events, is_uncounted).as_deref().map(on_the_way);
         let told = [faults(&run.health), uncounted].into_iter().flatten();
         let degradations = this.degradations.into_iter().chain(told).collect();
         let lanes = [this.lanes, figures::faults(&run.events)].concat();
@@ -141,7 +141,7 @@ impl RunDetails {
         let reported = self.reported.as_deref().unwrap_or("nothing wrong");
         let words = format!("{fault}, as asked for; the board reported {reported}");
         self.facts.push(["fault".to_owned(), words]);
-        self.degradations.extend(self.repeated.take().map(on_the_way));
+        self.degradations.extend(self.repeated.as_deref().map(on_the_way));
         self
     }
 
@@ -229,7 +229,7 @@ fn in_short(events: &[(Instant, Event)], is_meant: fn(&Event) -> bool) -> Option
 }
 
 /// What was reported, as something that takes from a result.
-fn on_the_way(reported: String) -> String {
+fn on_the_way(reported: &str) -> String {
     format!("reported on the way: {reported}")
 }
 
