@@ -52,7 +52,9 @@ const FEW: usize = 5;
 pub fn of_stopping(of: &Question, session: &Session, refusal: &Refusal) -> Option<Cause> {
     let Question { header, body, asked } = *of;
     let proven = stuck::of_stage(header, body).or_else(|| keys::impossible(body));
-    if proven.is_some() {
+    // Of a half circle that contradicts the dwells the refusal says all: columns that are mirrored would fit it.
+    let is_told = matches!(refusal, Refusal::Stepwise(Stepwise::NotInHalf));
+    if proven.is_some() || is_told {
         return proven.map(Cause::Shown);
     }
     let passes = |body: &Body| {

@@ -73,10 +73,12 @@ impl Outcome {
         // The reason tells it.
         run.degradations.retain(|remark| Some(remark) != run.lost.as_ref());
         let last = run.kept.as_ref();
-        let time = last.map(|last| format!("kept for {} s", fixed(last.report.seconds.0, 1)));
+        let azimuth = last.and_then(Point::azimuth_deg);
+        // For how long one was kept that is lost, the reason tells.
+        let since = last.filter(|_| azimuth.is_some()).map(|last| last.report.seconds.0);
+        let time = since.map(|seconds| format!("kept for {} s", fixed(seconds, 1)));
         let mut circumstances = self.circumstances;
         circumstances.extend(time.map(|time| ["time".to_owned(), time]));
-        let azimuth = last.and_then(Point::azimuth_deg);
         let refused = run.refused.as_ref();
         let unknown = || match refused {
             Some(why) => format!("no alignment found it: the latest was refused {why}"),

@@ -240,7 +240,6 @@ fn is_uncounted(event: &Event) -> bool {
         Event::Clipped(_)
             | Event::Corrected(..)
             | Event::Blocked(_)
-            | Event::CurrentOff(_)
             | Event::CalibrationUnreadable(_)
             | Event::CalibrationNotSaved(_)
             | Event::HeadingNotKept(_)

@@ -64,6 +64,12 @@ fn of_halves(mut object: Value) -> Value {
     let of_the_source = ["seed", "file", "simulated_seconds", "health", "fault", "recalled"];
     let of_the_mechanism = ["stored", "truth_off_vertical_deg"];
     keys.retain(|key, _| !of_the_source.iter().chain(&of_the_mechanism).any(|other| key == other));
+    // What devices reported is no input.
+    if let Some(noted) = keys.get_mut("noted").and_then(Value::as_array_mut) {
+        let of_a_device = |words: &str| words.starts_with("reported on the way: ");
+        noted.retain(|words| !words.as_str().is_some_and(of_a_device));
+    }
+    keys.retain(|key, value| key != "noted" || value.as_array().is_none_or(|all| !all.is_empty()));
     object
 }
 

@@ -330,3 +330,18 @@ fn only_a_vehicle_is_sent_to_the_method_that_needs_no_latitude() {
     let why = reason(&meridian(&["replay", &stored("imu-broad-06")]));
     assert!(why.contains("--method vertical gives pitch and roll without it"), "{why}");
 }
+
+#[test]
+fn a_half_of_the_circle_that_the_dwells_contradict_is_the_cause_and_not_the_way_an_angle_is_counted()
+ {
+    for name in ["circle", "mems", "bumped", "nudged", "paper-1", "paper-2", "paper-3"] {
+        let path = stored(&format!("stepwise-{name}"));
+        let outputs = ["east", "west"].map(|half| meridian(&["replay", &path, "--half", half]));
+        let refused: Vec<_> = outputs.iter().filter(|output| code(output) != 0).collect();
+        assert_eq!(refused.len(), 1, "{name}");
+        assert!(
+            text(&refused[0].stdout).contains("reason             no azimuth of the stated half"),
+            "{name}"
+        );
+    }
+}
