@@ -68,8 +68,8 @@ pub struct TurntableConfiguration {
     pub index: [f64; 2],
     /// Largest permitted change of the difference between motor and encoder from one turn to the
     /// next, and of encoder and index, rad: backlash, the residual of the encoder's calibration, and
-    /// the time between the two readings. This check finds coarse slips only; slips as small as the azimuth's σ are found by
-    /// the session from the turns themselves.
+    /// the time between the two readings. This check finds coarse slips only; slips as small as the azimuth's σ
+    /// are found by the session from the turns themselves.
     pub agreement: f64,
     /// Time for vibrations to decay after the motor has stopped, before the encoder's angle is
     /// used.
