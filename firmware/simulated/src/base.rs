@@ -45,7 +45,7 @@ const LEVER: [f64; 3] = [0.1, 0.0, -0.4];
 /// What the board takes for the noise of the sensors over what their data sheets call typical: the
 /// oscillator is off by some per cent, and as the axis turns its angle error shares
 /// less with that of the dwell before than the whitening believes (4 % of σ on a circle of 24).
-const STATED: f64 = 1.2;
+const STATED: f64 = 1.05;
 
 /// A base IMU and the base under it.
 pub type Rig<'a> = Single<SimulatedImu, Base<'a>>;
@@ -104,19 +104,16 @@ fn output(scenario: &Scenario) -> OutputRate {
     OUTPUTS.into_iter().find(is_read).unwrap_or(OutputRate::Hz12)
 }
 
-/// What the board is given: the class, and the times of its readings. An output is a mean over its period, waits
-/// for half the time between two readings on average, and is held for a period.
+/// What the board is given: the class, and the times of its readings.
 fn sensors(scenario: &Scenario) -> CoarseSensors {
     let CoarseClass { rate_mdps_sqrt_hz, force_ug_sqrt_hz } = scenario.coarse;
-    let period = 1.0 / f64::from(output(scenario).hertz());
-    let read = f64::from(divider(scenario)) / scenario.sample_rate_hz;
-    let held = 0.5 * (period - 1.0 / scenario.sample_rate_hz);
+    let sample = 1.0 / scenario.sample_rate_hz;
+    let read = f64::from(divider(scenario)) * sample;
     CoarseSensors {
         mismatch: SCALE as f32,
-        delay: (0.5 * (period + read) + held) as f32,
-        delay_sigma: (read / libm::sqrt(12.0)) as f32,
         lever: 0.4,
         ..CoarseSensors::of_densities(rate_mdps_sqrt_hz * STATED, force_ug_sqrt_hz * STATED)
+            .read_in_periods(period(scenario), read, sample)
     }
 }
 

@@ -177,9 +177,9 @@ fn dwelling(schedule: Schedule, clocks: Timebase) -> Procedure {
 pub const BASE_DIVIDER: u32 = if cfg!(feature = "sps2400") { 12 } else { 2 };
 /// Output rate of the LSM6DSL.
 pub const BASE_OUTPUT: BaseRate = BaseRate::Hz104;
-/// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a fifth for
-/// its oscillator and for errors that successive dwells share.
-const BASE_NOISE: [f64; 2] = [1.2 * 4.0, 1.2 * 90.0];
+/// Noise densities of the LSM6DSL, m°/s/√Hz and µg/√Hz: those of its data sheet, raised by a twentieth
+/// for its oscillator and for errors that successive dwells share.
+const BASE_NOISE: [f64; 2] = [1.05 * 4.0, 1.05 * 90.0];
 /// 1σ of the LSM6DSL's rates at rest, °/s, of its scale, relative, and of its accelerometers' biases,
 /// m/s²: half of the zero-g level of ±40 mg (data sheet, `LA_TyOff`), since nothing calibrates them
 /// before they are compared with the ADXL355.
@@ -192,19 +192,15 @@ fn base_period() -> f64 {
     1.0 / f64::from(BASE_OUTPUT.hertz())
 }
 
-/// Properties of the LSM6DSL, for the compensation of sway. An output is a mean over its period, waits for half
-/// the time between two readings on average, and is held for a period.
+/// Properties of the LSM6DSL, for the compensation of sway.
 pub fn base_sensors() -> CoarseSensors {
     let [rate, force] = BASE_NOISE;
     let sample = 1.0 / CONVERTER.rate.hertz();
-    let (output, read) = (base_period(), f64::from(BASE_DIVIDER) * sample);
-    let held = 0.5 * (output - sample);
+    let read = f64::from(BASE_DIVIDER) * sample;
     CoarseSensors {
         mismatch: BASE_SIGMAS.1 as f32,
-        delay: (0.5 * (output + read) + held) as f32,
-        delay_sigma: (0.29 * read) as f32,
         lever: BASE_LEVER as f32,
-        ..CoarseSensors::of_densities(rate, force)
+        ..CoarseSensors::of_densities(rate, force).read_in_periods(base_period(), read, sample)
     }
 }
 

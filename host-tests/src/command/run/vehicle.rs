@@ -29,8 +29,8 @@ pub struct VehicleOptions {
     /// Seconds for which the board levels at each stop (60).
     #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
     stop_seconds: Option<f64>,
-    /// Seconds of driving from stop to stop (600).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds(10.0..=3600.0), help_heading = COURSE)]
+    /// Seconds of driving from stop to stop (600), at least 30: a drive has six turns.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds(30.0..=3600.0), help_heading = COURSE)]
     drive_seconds: Option<f64>,
     /// The board is not given how far it has come.
     #[arg(long, help_heading = COURSE)]

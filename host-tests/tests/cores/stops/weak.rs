@@ -13,6 +13,9 @@ use super::world::{Day, Outcome};
 /// Relative 1σ of the gyros' scale factors.
 const SCALE_SIGMA: f64 = 5e-4;
 
+/// What the last iteration may still change of σ: it ends where the estimates change by half a milliradian.
+const SETTLED: f64 = 1.001;
+
 /// Stops of so many seconds, with so many of driving between them.
 #[derive(Clone, Copy)]
 struct Way {
@@ -54,7 +57,8 @@ fn is_too_noisy(outcome: &Outcome) -> bool {
     matches!(outcome.conclusion.verdict, Err(Refusal::BudgetNotMet { source: Source::Noise, .. }))
 }
 
-/// All are found, but for some that are too noisy; none is wrong by more than 5 σ, nor are all together.
+/// All are found, but for some that are too noisy; none is wrong by more than 5 σ, nor are all together, and
+/// no σ is below its limit.
 #[track_caller]
 fn assert_honest(name: &str, outcomes: &[Outcome], too_noisy: usize) {
     let (noisy, found): (Vec<_>, Vec<_>) = outcomes.iter().partition(|day| is_too_noisy(day));
@@ -65,6 +69,10 @@ fn assert_honest(name: &str, outcomes: &[Outcome], too_noisy: usize) {
     println!("{name}: {start:.3} σ at the start, {end:.3} at the end, {most:.2} at most");
     assert!([start, end].iter().all(|ratio| (0.8..1.3).contains(ratio)), "{name}: {start}, {end}");
     assert!(most < 5.0, "{name}: {most} σ");
+    for found in outcomes.iter().filter_map(|day| day.conclusion.found.as_ref()) {
+        let (limit, sigma) = (found.limit.0, found.azimuth.sigma.0);
+        assert!(limit < SETTLED * sigma, "{name}: a limit of {limit} rad, and a σ of {sigma} rad");
+    }
 }
 
 #[test]

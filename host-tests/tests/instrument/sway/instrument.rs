@@ -93,8 +93,7 @@ fn a_subtracted_sway_leaves_an_azimuth_with_its_true_sigma(extent: Extent) {
         .collect();
     assert!(outcomes.len() + 1 >= runs, "{} of {runs} were answered", outcomes.len());
     let ratio = rms(outcomes.iter().map(|[error, sigma]| error / sigma));
-    // What is stated of the coarse gyros' noise counts outputs as lost, of which none is: σ is rather too large.
-    let [least, most] = [0.3, 0.25].map(|whole| extent.rms(whole, runs));
+    let [least, most] = [0.2, 0.25].map(|whole| extent.rms(whole, runs));
     assert!((1.0 - least..=1.0 + most).contains(&ratio), "{ratio}");
     for [error, sigma] in &outcomes {
         assert!(error.abs() < 5.0 * sigma, "{error}° of {sigma}°");

@@ -41,7 +41,7 @@ const NUMBERS: [(&str, &[&str]); 23] = [
     ("run turntable --speeds", &["0", "-0.1", "0.1,0.1", "0.1,0.2,0.3", "1"]),
     ("run turntable --modulated-turns", &["-1", "3", "1001"]),
     ("run vehicle --stops", &["1", "9", "-2", "two"]),
-    ("run vehicle --drive-seconds", &["9", "3601", "-60"]),
+    ("run vehicle --drive-seconds", &["29", "3601", "-60"]),
     ("run spin --flight-seconds", &["0", "61", "-1"]),
     ("run spin --turns-per-second", &["19", "106", "-100"]),
     ("plan --latitude 48 --sigma 1 --arw", &["-1", "nan", "1e7", "much"]),

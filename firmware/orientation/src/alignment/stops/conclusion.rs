@@ -258,12 +258,10 @@ impl Found {
         let (plain, frame) = Plain::of(setting, path);
         let mut solution = Solution::new(frame);
         solution.run(setting, path, Belief::Ideal);
-        // The uncertainty of the azimuth hardly depends on the azimuth itself.
-        let end = End::of(path, &solution);
-        let limit = Radians(libm::sqrt(solution.filter.variance(&end.row(path))));
-        let unchecked = azimuth_of(&end.attitude);
+        let unchecked = azimuth_of(&End::of(path, &solution).attitude);
         solution.settle(setting, path);
-        Self { limit, unchecked, ..Self::shown(setting, path, &plain, &solution) }
+        let shown = Self::shown(setting, path, &plain, &solution);
+        Self { limit: limit(setting, path, solution), unchecked, ..shown }
     }
 
     /// Result without its limit.
@@ -299,6 +297,15 @@ impl Found {
             blocks: path.blocks.list.len() as u32,
         }
     }
+}
+
+/// Cramér–Rao bound of the azimuth at the end about the estimates of a solution, with the prior 1σ of the biases
+/// as stated: far from the truth it would be that of other unknowns than σ.
+fn limit(setting: &Setting, path: &Path, mut solution: Solution) -> Radians {
+    solution.widening = 1.0;
+    solution.run(setting, path, Belief::Ideal);
+    let row = End::of(path, &solution).row(path);
+    Radians(libm::sqrt(solution.filter.variance(&row)))
 }
 
 /// Attitude and place at the end of the path.

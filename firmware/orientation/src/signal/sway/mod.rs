@@ -64,6 +64,9 @@ const LONGEST_STEP: f32 = 0.1;
 /// leaves: it then removes at least nine tenths of the variance.
 const LARGE: f32 = 3.0;
 
+/// Standard deviation of a uniform distribution over its width, 1/√12.
+const UNIFORM: f64 = 0.288_675_134_594_812_9;
+
 /// Stated properties of the coarse sensors and of their place on the base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoarseSensors {
@@ -97,6 +100,17 @@ impl CoarseSensors {
             memory: 20.0,
             ..Self::default()
         }
+    }
+
+    /// The same sensors with an output once in a period, read once in the period `read` and held between,
+    /// while the precise gyro has a sample once in the period `sample`; all s.
+    ///
+    /// An output is a mean over its period, waits for half a reading on average, and is held for half a period
+    /// less half a sample.
+    #[must_use]
+    pub fn read_in_periods(self, output: f64, read: f64, sample: f64) -> Self {
+        let delay = 0.5 * (output + read) + 0.5 * (output - sample);
+        Self { delay: delay as f32, delay_sigma: (UNIFORM * read) as f32, ..self }
     }
 
     /// Variance of the angle error that is independent of the sway, rad²: (N²τ + a²/τ)/2.

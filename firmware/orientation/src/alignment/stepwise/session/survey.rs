@@ -158,8 +158,10 @@ impl Session {
         let rate = self.setting.site.latitude.horizontal_rate().0;
         let (plan, allowed) = match self.procedure.stop {
             StopRule::Accuracy { seconds } => {
-                let wanted = RESERVE * self.setting.site.required_sigma.0 * rate;
-                (for_sigma(&conditions, RadiansPerSecond(wanted), seconds), seconds)
+                let required = self.setting.site.required_sigma.0 * rate;
+                let within = |sigma| for_sigma(&conditions, RadiansPerSecond(sigma), seconds);
+                // What only just can be reached has no reserve.
+                (within(RESERVE * required).or_else(|_| within(required)), seconds)
             }
             _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
         };
