@@ -86,7 +86,7 @@ pub struct Outcome {
     /// Name of the method on the command line.
     pub method: &'static str,
     /// `ok`, `refused` or `interrupted`; `failed` on the command line where a file could not be written.
-    pub status: &'static str,
+    pub status: Grade,
     /// Why the result is refused, or where it was interrupted; not with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -223,7 +223,7 @@ impl FitDetails {
 impl Outcome {
     /// An outcome of a method, with nothing found yet.
     pub fn new(method: &'static str, details: Keys, parts: Vec<ReportPart>) -> Self {
-        Self { schema: SCHEMA, method, status: "refused", details, parts, ..Self::default() }
+        Self { schema: SCHEMA, method, status: Grade::Refused, details, parts, ..Self::default() }
     }
 
     /// The outcome of a session that was not given its end.
@@ -262,8 +262,7 @@ impl Outcome {
 
     /// The outcome with its status: refused where there is a reason.
     pub fn settled(self, reason: Option<String>) -> Self {
-        let grade = if reason.is_none() { Grade::Found } else { Grade::Refused };
-        let status = grade.status();
+        let status = if reason.is_none() { Grade::Found } else { Grade::Refused };
         // A sum of nothing is −0.
         Self { status, reason, seconds: self.seconds + 0.0, ..self }
     }
@@ -271,7 +270,7 @@ impl Outcome {
     /// The outcome of what was interrupted while it measured, as the reason says. A result of a part of what was to be
     /// measured is none, but its 1σ is told; what goes on from sample to sample stands as it was at the last one.
     pub fn cut_short(self, why: String) -> Self {
-        let status = Grade::Interrupted.status();
+        let status = Grade::Interrupted;
         match (&self.fit, &self.reason) {
             (None, None) => return self.interrupted(&why),
             (None, Some(reason)) => {
@@ -294,7 +293,7 @@ impl Outcome {
         match self.reason {
             Some(reason) => Self { reason: Some(format!("{reason}; {why}")), ..self },
             None => Self {
-                status: Grade::Interrupted.status(),
+                status: Grade::Interrupted,
                 reason: Some(format!("{why}: {SO_FAR}")),
                 ..self
             },
@@ -325,7 +324,7 @@ impl Outcome {
         match (self.reason.is_none(), is_clean) {
             (true, true) => Grade::Found,
             (true, false) => Grade::Degraded,
-            (false, _) if self.status == Grade::Interrupted.status() => Grade::Interrupted,
+            (false, _) if self.status == Grade::Interrupted => Grade::Interrupted,
             (false, _) => Grade::Refused,
         }
     }

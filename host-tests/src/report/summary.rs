@@ -1,5 +1,7 @@
 //! What a report says first: what was found, how good it is, and why where there is nothing.
 
+use serde::{Serialize, Serializer};
+
 /// The head of a report.
 #[must_use]
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,6 +54,12 @@ impl Grade {
             Self::Found | Self::Degraded => "ok",
             Self::Refused | Self::Interrupted => self.word(),
         }
+    }
+}
+
+impl Serialize for Grade {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.status())
     }
 }
 

@@ -233,7 +233,7 @@ impl Row {
 
 /// What was found, in words: an azimuth, a level, or a roll.
 fn found(outcome: &Outcome) -> String {
-    let Some(sigma) = outcome.sigma_deg else { return outcome.status.to_owned() };
+    let Some(sigma) = outcome.sigma_deg else { return outcome.status.status().to_owned() };
     match (outcome.azimuth_deg, outcome.pitch_deg.zip(outcome.roll_deg)) {
         (Some(azimuth), _) => format!("{}° ± {sigma:.4}°", in_circle(azimuth, 4)),
         (None, Some((pitch, roll))) => {

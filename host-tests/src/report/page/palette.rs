@@ -38,7 +38,6 @@ const QUANTITIES: [&[&str]; 8] = [
         "p′ = Ω_h (1 − cos δ)",
         "extrema",
         "sensor, before",
-        "stops",
         "K",
     ],
     &[
@@ -49,6 +48,7 @@ const QUANTITIES: [&[&str]; 8] = [
         "q′ = Ω_h sin δ",
         "interpolated",
         "platform's rate as the axis misalignment shows it",
+        "stops",
         "R",
     ],
     // What it is off, and what a model leaves.

@@ -14,14 +14,16 @@ const WEDGE: [f64; 2] = [18.0, 108.0];
 const WIDE: f64 = 40.0;
 /// Narrower than this it is drawn wider than it is.
 const NARROW: f64 = 5.0;
-/// How far aside of the azimuth anything is drawn at most that is magnified, °.
+/// How far aside of the azimuth the truth is drawn at most where it is magnified, °.
 const ASIDE: f64 = 85.0;
+/// How far a wedge reaches at most, °: an arc that ended where it began would not be drawn.
+const ROUND: f64 = 179.9;
 
 /// The rose with its words.
 pub(super) fn rose(rose: &Rose) -> String {
     let times = magnification(3.0 * rose.sigma_deg);
     let azimuth = rose.azimuth_deg;
-    let aside = |off: f64| azimuth + (times * off).clamp(-ASIDE, ASIDE);
+    let aside = |off: f64| azimuth + (times * off).clamp(-ROUND, ROUND);
     let wedge = |class: &str, sigmas: f64| {
         let half = sigmas * rose.sigma_deg;
         sector(class, [aside(-half), aside(half)])
