@@ -15,6 +15,9 @@ use crate::report::{
     Axis, Columns, Figure, Kind, Lane, Lines, Part, Point, Series, Stretch, Style, Timeline,
 };
 
+/// What the biases hold beside themselves while north is not known.
+const EARTH_RATE_WITHIN: &str = ", with the Earth's level rate";
+
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (last, is_found) = (&self.last, self.refusal.is_none());
@@ -99,7 +102,7 @@ impl Replay {
                 "turned",
                 format!("{}° about the vertical since the beginning", signed(turned, 4)),
             )
-            .with("gyro biases", of_biases(biases_dph, 1))
+            .with("gyro biases", of_biases(biases_dph, 1) + EARTH_RATE_WITHIN)
             .with_found("  beyond", last.is_bias_beyond_stated.then_some(beyond))
             .with("state at the end", last.state.to_string())
     }
@@ -184,5 +187,9 @@ fn biases(moments: &[Moment]) -> Figure {
             Series::of(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
         ]
     });
-    Figure::over_time("Biases of the gyros as they were learnt", ["bias", "°/h"], series)
+    Figure::over_time(
+        "Biases of the gyros with the Earth's level rate, as they were learnt",
+        ["bias", "°/h"],
+        series,
+    )
 }

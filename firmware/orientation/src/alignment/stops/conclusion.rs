@@ -62,6 +62,9 @@ const SWAYS: f64 = -0.3;
 const MANY: usize = 16;
 /// Reciprocal of the greatest part of the blocks that may be excluded.
 const LEFT_OUT: u32 = 4;
+/// Correction of the first estimates from which the limit is that about the last ones, rad: it differs by some
+/// thousandths from there.
+const FAR: f64 = 0.01;
 /// Part of a bias's prior 1σ below which the bias counts as observed.
 const OBSERVED: f64 = 0.5;
 
@@ -259,9 +262,12 @@ impl Found {
         let mut solution = Solution::new(frame);
         solution.run(setting, path, Belief::Ideal);
         let unchecked = azimuth_of(&End::of(path, &solution).attitude);
+        let limit = limit(path, &solution);
+        let is_far = solution.correction(path) > FAR;
         solution.settle(setting, path);
         let shown = Self::shown(setting, path, &plain, &solution);
-        Self { limit: limit(setting, path, solution), unchecked, ..shown }
+        let limit = if is_far { limit_anew(setting, path, solution) } else { limit };
+        Self { limit, unchecked, ..shown }
     }
 
     /// Result without its limit.
@@ -299,13 +305,18 @@ impl Found {
     }
 }
 
-/// Cramér–Rao bound of the azimuth at the end about the estimates of a solution, with the prior 1σ of the biases
-/// as stated: far from the truth it would be that of other unknowns than σ.
-fn limit(setting: &Setting, path: &Path, mut solution: Solution) -> Radians {
+/// Cramér–Rao bound of the azimuth at the end, after a run with nothing but the stated noise.
+fn limit(path: &Path, solution: &Solution) -> Radians {
+    Radians(libm::sqrt(solution.filter.variance(&End::of(path, solution).row(path))))
+}
+
+/// That bound about the estimates of a solution, with the prior 1σ of the biases as stated: about estimates that are
+/// far from them σ could be below it.
+#[inline(never)]
+fn limit_anew(setting: &Setting, path: &Path, mut solution: Solution) -> Radians {
     solution.widening = 1.0;
     solution.run(setting, path, Belief::Ideal);
-    let row = End::of(path, &solution).row(path);
-    Radians(libm::sqrt(solution.filter.variance(&row)))
+    limit(path, &solution)
 }
 
 /// Attitude and place at the end of the path.

@@ -267,7 +267,7 @@ impl Solution {
 
     /// How far the estimates are from those about which the filter is linear, rad: the rotation at the start, or by the
     /// biases until now.
-    fn correction(&self, path: &Path) -> f64 {
+    pub(crate) fn correction(&self, path: &Path) -> f64 {
         let more = difference(&self.filter.three(BIAS), &self.drift.biases);
         length(&self.filter.three(START)).max(length(&more) * (path.now - path.start))
     }
