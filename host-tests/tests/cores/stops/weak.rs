@@ -13,9 +13,6 @@ use super::world::{Day, Outcome};
 /// Relative 1σ of the gyros' scale factors.
 const SCALE_SIGMA: f64 = 5e-4;
 
-/// What the last iteration may still change of σ: it ends where the estimates change by half a milliradian.
-const SETTLED: f64 = 1.001;
-
 /// Stops of so many seconds, with so many of driving between them.
 #[derive(Clone, Copy)]
 struct Way {
@@ -57,8 +54,7 @@ fn is_too_noisy(outcome: &Outcome) -> bool {
     matches!(outcome.conclusion.verdict, Err(Refusal::BudgetNotMet { source: Source::Noise, .. }))
 }
 
-/// All are found, but for some that are too noisy; none is wrong by more than 5 σ, nor are all together, and
-/// no σ is below its limit.
+/// All are found, but for some that are too noisy; none is wrong by more than 5 σ, nor are all together.
 #[track_caller]
 fn assert_honest(name: &str, outcomes: &[Outcome], too_noisy: usize) {
     let (noisy, found): (Vec<_>, Vec<_>) = outcomes.iter().partition(|day| is_too_noisy(day));
@@ -69,18 +65,20 @@ fn assert_honest(name: &str, outcomes: &[Outcome], too_noisy: usize) {
     println!("{name}: {start:.3} σ at the start, {end:.3} at the end, {most:.2} at most");
     assert!([start, end].iter().all(|ratio| (0.8..1.3).contains(ratio)), "{name}: {start}, {end}");
     assert!(most < 5.0, "{name}: {most} σ");
-    for found in outcomes.iter().filter_map(|day| day.conclusion.found.as_ref()) {
-        let (limit, sigma) = (found.limit.0, found.azimuth.sigma.0);
-        assert!(limit < SETTLED * sigma, "{name}: a limit of {limit} rad, and a σ of {sigma} rad");
-    }
 }
 
 #[test]
 fn biases_that_turn_the_frame_by_tens_of_degrees_leave_errors_that_sigma_covers() {
     let way = Way { stops: 3, stop_s: 60.0, drive_s: 600.0 };
-    assert_honest("three stops", &days(way, TACTICAL, 60), 0);
-    let way = Way { stops: 2, ..way };
-    assert_honest("two stops", &days(way, TACTICAL, 40), 2);
+    let three = days(way, TACTICAL, 60);
+    assert_honest("three stops", &three, 0);
+    let two = days(Way { stops: 2, ..way }, TACTICAL, 40);
+    assert_honest("two stops", &two, 2);
+    for found in three.iter().chain(&two).filter_map(|day| day.conclusion.found) {
+        let (limit, sigma) = (found.limit.0, found.azimuth.sigma.0);
+        // A limit that is σ itself was cut down to it.
+        assert!(limit < sigma, "a limit of {limit} rad for a σ of {sigma} rad");
+    }
 }
 
 #[test]

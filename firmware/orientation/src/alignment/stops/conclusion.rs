@@ -62,9 +62,9 @@ const SWAYS: f64 = -0.3;
 const MANY: usize = 16;
 /// Reciprocal of the greatest part of the blocks that may be excluded.
 const LEFT_OUT: u32 = 4;
-/// Correction of the first estimates from which the limit is that about the last ones, rad: it differs by some
-/// thousandths from there.
-const FAR: f64 = 0.01;
+/// Correction of the first estimates from which the limit is that about the last ones, rad: below it both differ by
+/// some thousandths, and a further run costs half a conclusion.
+const FAR: f64 = 0.05;
 /// Part of a bias's prior 1σ below which the bias counts as observed.
 const OBSERVED: f64 = 0.5;
 
@@ -267,7 +267,8 @@ impl Found {
         solution.settle(setting, path);
         let shown = Self::shown(setting, path, &plain, &solution);
         let limit = if is_far { limit_anew(setting, path, solution) } else { limit };
-        Self { limit, unchecked, ..shown }
+        // σ allows for more than the limit does.
+        Self { limit: Radians(limit.0.min(shown.azimuth.sigma.0)), unchecked, ..shown }
     }
 
     /// Result without its limit.
