@@ -1,10 +1,17 @@
 //! Ctrl-C: it ends the program at once, or only asks work that heeds it to come to an end; a second one ends the program.
+//! What signals twice at once, as some shells and wrappers do, asks once.
 //!
 //! Many pieces of work end after the piece that runs ([`heed`]). A single one ends as if its input ended there: no further
 //! row is read, and the simulated world stands still ([`end_input`]); what came of it so far is then shown.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
+use std::time::{Duration, Instant};
+
+/// Within this time of the first one a further Ctrl-C is no second one.
+const ONCE: Duration = Duration::from_millis(500);
+/// When an end was first asked for.
+static FIRST: OnceLock<Instant> = OnceLock::new();
 
 /// Whether an end was asked for.
 static IS_ASKED: AtomicBool = AtomicBool::new(false);
@@ -23,7 +30,8 @@ static HOW_FAR: Mutex<String> = Mutex::new(String::new());
 /// The system does not let it.
 pub fn listen(end: impl Fn(&str) + Send + 'static) -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(move || {
-        let is_second = IS_ASKED.swap(true, Ordering::Relaxed);
+        let is_second = FIRST.get_or_init(Instant::now).elapsed() > ONCE;
+        IS_ASKED.store(true, Ordering::Relaxed);
         if is_second || !IS_HEEDED.load(Ordering::Relaxed) {
             end(&reason());
         }

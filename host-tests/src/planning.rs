@@ -82,13 +82,13 @@ pub struct Optimum {
 /// A schedule with what it gives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planned {
-    /// Burov's schedule, at the top of the object; none where his model cannot reach what is wanted.
+    /// The project's own, the answer, at the top of the object.
     #[serde(flatten)]
+    pub optimum: Optimum,
+    /// Burov's schedule; none where his model cannot reach what is wanted.
     pub burov: Option<OfBurov>,
     /// The least 1σ of a full azimuth that his model reaches in a day, °, where it cannot.
     pub burov_least_sigma_deg: Option<f64>,
-    /// The project's own.
-    pub optimum: Optimum,
     /// One pass of 0, 180, 90, 270° in the same time as the optimum, 1σ of a full azimuth, °.
     pub one_pass_sigma_deg: Option<f64>,
 }

@@ -65,9 +65,10 @@ impl Scenario {
             }
     }
 
-    /// Where the base goes after an alignment that takes so many seconds.
+    /// Where the base goes after an alignment that takes so many seconds; none comes before an azimuth from outside.
     pub fn day(&self, alignment_s: f64) -> Day {
-        let seconds = f64::from(self.hold.standing_s) + alignment_s;
+        let first_s = if self.hold.handover.is_some() { 0.0 } else { alignment_s };
+        let seconds = f64::from(self.hold.standing_s) + first_s;
         let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
         let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
         let mut day = Day::standing(latitude_deg, azimuth_deg, stop);

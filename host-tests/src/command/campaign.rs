@@ -7,7 +7,7 @@ use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::interrupt;
 use host::output::manner::Manner;
 use host::output::progress::Progress;
-use host::report::Grade;
+use host::report::{Grade, Summary};
 use simulated::fault::Platform;
 
 use super::files::Written;
@@ -85,7 +85,10 @@ pub fn run(options: &CampaignOptions, manner: Manner) -> Result<Answer, Failure>
     interrupt::heed();
     let Done { mut object, mut report, refusal } = (campaign.run)(&asked, &progress)?;
     progress.finish();
-    report.subtitle.splice(0..0, interrupted());
+    if let Some(why) = interrupted() {
+        let grade = Grade::Interrupted;
+        report.summary = Some(Summary { grade, reasons: vec![why], ..Summary::default() });
+    }
     let refusal = interrupted().or(refusal.map(str::to_owned));
     object["campaign"] = campaign.name.into();
     object["status"] = match (&refusal, interrupted()) {

@@ -103,6 +103,11 @@ pub fn check(recording: Option<&Path>, outputs: &[Written]) -> Result<(), String
     Ok(())
 }
 
+/// Whether two paths are those of one file.
+pub fn are_one(one: &Path, other: &Path) -> bool {
+    Identity::of(one).is_some_and(|place| Identity::of(other).as_ref() == Some(&place))
+}
+
 /// What makes a file the same under all its names.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {

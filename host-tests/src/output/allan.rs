@@ -129,12 +129,13 @@ impl Shown<'_> {
         }
     }
 
-    /// What came of it; what is left out, or not believed, takes from no coefficient.
+    /// What came of it; a doubt takes from the coefficients, what is left out does not.
     fn grade(&self) -> Grade {
         match (self.analysis.is_ok(), self.rest.interruption()) {
             (_, Some(_)) => Grade::Interrupted,
             (false, None) => Grade::Refused,
-            (true, None) => Grade::Found,
+            (true, None) if self.doubts().is_empty() => Grade::Found,
+            (true, None) => Grade::Degraded,
         }
     }
 

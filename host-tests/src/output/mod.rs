@@ -64,6 +64,9 @@ pub fn azimuth(degrees: f64, places: usize) -> String {
 /// A number above zero with so many digits that count, and without an exponent.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     fixed(value, places(value.abs().max(1e-12), digits).max(0.0) as usize)
 }
 

@@ -1,4 +1,4 @@
-//! How an azimuth came to stand, with its σ against the limit.
+//! How an azimuth converged, with its σ against the limit.
 
 use orientation::units::Radians;
 
@@ -52,13 +52,13 @@ fn azimuths(what: &str, all: &[Milestone], last: &Milestone, truth_deg: Option<f
     let mut series = vec![
         Series::new("±1σ", Style::Band, band),
         Series::new("what is known by then", Style::LineAndPoints, curve),
-        Series::new("the last one ± the limit", Style::Dotted, limits),
+        Series::new("the final one ± the limit", Style::Dotted, limits),
     ];
     series
         .extend(truth_deg.map(|truth| {
             Series::new("truth", Style::Dashed, ends.map(|time| (time, near(truth))))
         }));
-    Figure::over_time(format!("{what} as it came to stand"), ["azimuth", "°"], series)
+    Figure::over_time(format!("{what} as it converged"), ["azimuth", "°"], series)
 }
 
 fn sigmas(all: &[Milestone]) -> Figure {

@@ -275,23 +275,21 @@ fn a_campaign_prints_its_tables_as_text_and_as_json() {
 }
 
 #[test]
-fn a_plan_gives_burovs_positions_and_the_optimum_beside_them() {
+fn a_plan_gives_the_optimum_and_burovs_positions_beside_it() {
     let gyro = ["plan", "--arw", "0.001", "--ramp", "0.127", "--latitude", "0", "--json"];
     let output = meridian(&[&gyro[..], &["--seconds", "300"]].concat());
     assert_eq!(code(&output), 0);
     let plan = object(&output);
-    assert_eq!(plan["positions"], 11);
-    let error = plan["rate_error_deg_h"].as_f64().expect("a number");
+    let burov = &plan["burov"];
+    assert_eq!(burov["positions"], 11);
+    let error = burov["rate_error_deg_h"].as_f64().expect("a number");
     assert!((error / 3.650_503_146_508_27e-3 - 1.0).abs() < 1e-6);
-    let optimum = &plan["optimum"];
-    assert!(
-        optimum["sigma_deg"].as_f64().expect("a number")
-            < plan["sigma_deg"].as_f64().expect("a number")
-    );
+    let [own, of_burov] =
+        [&plan, burov].map(|schedule| schedule["sigma_deg"].as_f64().expect("a number"));
+    assert!(own < of_burov);
     // The inverse question, for what this time gives.
-    let sigma = optimum["sigma_deg"].to_string();
-    let inverse = object(&meridian(&[&gyro[..], &["--sigma", &sigma]].concat()));
-    let seconds = inverse["optimum"]["seconds"].as_f64().expect("a number");
+    let inverse = object(&meridian(&[&gyro[..], &["--sigma", &own.to_string()]].concat()));
+    let seconds = inverse["seconds"].as_f64().expect("a number");
     assert!((295.0..=303.0).contains(&seconds), "{seconds}");
 }
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::support::files::{Scratch, stored, unpacked};
 use crate::support::program::{code, command, meridian, object, reason, text};
 
-/// What a program that was interrupted ended with: exit code, standard output, and what came to standard error after
+/// What a program that was interrupted ended with: exit code, standard output, and what convergedard error after
 /// that.
 type Ended = (Option<i32>, String, String);
 
@@ -283,18 +283,29 @@ fn a_page_of_what_was_interrupted_is_drawn() {
 }
 
 #[test]
-fn a_second_interruption_ends_at_once_and_leaves_what_was_there_and_nothing_beside_it() {
+fn what_waits_for_its_input_ends_at_once_and_leaves_what_was_there_and_nothing_beside_it() {
     let scratch = Scratch::new("interrupted");
     let there = scratch.with("page.html", "before");
-    // It waits for its input, and so for the end of what it does.
     let mut child = started(&["replay", "-", "--report", &there]);
     sleep(Duration::from_millis(500));
-    for _ in 0..2 {
-        interrupt(&child);
-        sleep(Duration::from_millis(100));
-    }
+    interrupt(&child);
+    sleep(Duration::from_millis(500));
     let ended = child.try_wait().expect("it is ours");
     assert_eq!(ended.and_then(|status| status.code()), Some(1));
     assert_eq!(scratch.read("page.html"), "before");
     assert_eq!(std::fs::read_dir(scratch.folder()).expect("it is there").count(), 1);
+}
+
+#[test]
+fn a_pair_of_interruptions_counts_as_one() {
+    let child = started(&["campaign", "sokolov", "--runs", "100000"]);
+    sleep(Duration::from_millis(1000));
+    for _ in 0..2 {
+        interrupt(&child);
+        sleep(Duration::from_millis(1));
+    }
+    let output = child.wait_with_output().expect("it ends");
+    let (printed, said) = (text(&output.stdout), text(&output.stderr));
+    assert!(printed.contains("Interrupted") || printed.contains("reason"), "{printed}");
+    assert!(said.trim_end().ends_with("the tables rest on the runs that were done"), "{said}");
 }

@@ -238,6 +238,28 @@ fn pages_and_attitudes_of_several_recordings_go_into_a_folder() {
     assert_misuse(&twice, "two recordings would have the file imu-broad-06");
 }
 
+#[test]
+fn what_is_written_for_several_recordings_is_none_of_them() {
+    let scratch = Scratch::new("themselves");
+    let [plain, compressed] = ["plain", "compressed"].map(|name| scratch.path(name));
+    for folder in [&plain, &compressed] {
+        fs::create_dir(folder).expect("it is made");
+    }
+    let (there, linked) = (format!("{plain}/imu-broad-06.csv"), scratch.path("linked.csv"));
+    fs::write(&there, "before").expect("it is written");
+    fs::hard_link(&there, &linked).expect("it is linked");
+    let stored = stored("imu-broad-06");
+    fs::copy(&stored, format!("{compressed}/imu-broad-06.csv.gz")).expect("it is copied");
+    let options = ["--method", "vertical", "--attitude-out"];
+    for read in [&[plain.as_str()][..], &[&stored, &linked]] {
+        let arguments = [&["replay"], read, &options, &[&plain]].concat();
+        assert_misuse(&arguments, "is one of the recordings itself");
+    }
+    assert_eq!(fs::read_to_string(&there).expect("it is text"), "before");
+    let beside = meridian(&[&["replay", &compressed][..], &options, &[&compressed]].concat());
+    assert_eq!(code(&beside), 0, "{}", reason(&beside));
+}
+
 /// A command makes the same of standard input as of the file.
 #[track_caller]
 fn assert_taken_as_the_file(command: &str, path: &str) {

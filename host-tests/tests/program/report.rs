@@ -392,7 +392,7 @@ fn a_quantity_has_its_colour_on_every_page_whatever_else_is_drawn_before_it() {
         &["kept ±1σ", "kept", "truth"][..],
         &["something", "σ", "limit (Cramér–Rao)", "truth"],
         &["a", "b", "c", "pitch", "roll", "±1σ", "kept"],
-        &["error", "truth", "what is known by then", "the last one ± the limit"],
+        &["error", "truth", "what is known by then", "the final one ± the limit"],
     ];
     let all: Vec<_> = pages.into_iter().flat_map(colours).collect();
     let of = |name: &str| -> Vec<&str> {
@@ -405,7 +405,7 @@ fn a_quantity_has_its_colour_on_every_page_whatever_else_is_drawn_before_it() {
         ["kept", "kept ±1σ"],
         ["kept", "what is known by then"],
         ["σ", "±1σ"],
-        ["limit (Cramér–Rao)", "the last one ± the limit"],
+        ["limit (Cramér–Rao)", "the final one ± the limit"],
     ] {
         assert_eq!(of(one)[0], of(other)[0], "{one} and {other}");
     }

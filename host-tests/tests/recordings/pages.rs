@@ -53,7 +53,7 @@ fn the_fitted_curve_lies_within_the_error_bars_of_the_dwells_on_every_recording_
         assert_well_formed(&page);
         let fit = figure(&page, "Mean rate of each dwell");
         let (curve, dwells) = (series(&fit, "the whole model"), series(&fit, "dwells"));
-        let residuals = series(&figure(&page, "What the fit leaves"), "measured less");
+        let residuals = series(&figure(&page, "Residuals of the fit"), "measured less");
         assert_eq!(dwells.len(), residuals.len(), "{name}");
         for (dwell, residual) in dwells.iter().zip(&residuals) {
             let sigma = 0.5 * (residual[3] - residual[2]);
@@ -88,7 +88,7 @@ fn the_table_of_the_dwells_has_what_the_figure_shows_of_them() {
         let (_, page) = page(&["replay", &stored(name)]);
         let [left, sigmas] =
             ["unexplained, °/h", "1σ, °/h"].map(|heading| column(&page, "Dwells", heading));
-        let drawn = series(&figure(&page, "What the fit leaves"), "measured less");
+        let drawn = series(&figure(&page, "Residuals of the fit"), "measured less");
         let told = left.iter().zip(&sigmas).filter(|(left, _)| *left != "-");
         assert_eq!(told.clone().count(), drawn.len(), "{name}");
         for ((left, sigma), point) in told.zip(&drawn) {
@@ -146,7 +146,7 @@ fn the_way_of_a_stage_is_broken_where_it_goes_round_however_often_it_goes_to_and
 fn the_pages_of_simulated_runs_show_fits_within_error_bars_too() {
     for carrier in ["stage", "two-frame"] {
         let (_, page) = page(&["run", carrier, "--seed", "3", "--hold", "0"]);
-        let residuals = series(&figure(&page, "What the fit leaves"), "measured less");
+        let residuals = series(&figure(&page, "Residuals of the fit"), "measured less");
         assert_normal(carrier, &normalised(&residuals), 4);
     }
     let (_, turntable) = page(&["run", "turntable", "--seed", "3", "--hold", "0"]);
@@ -192,7 +192,7 @@ fn the_azimuth_comes_to_stand_at_the_result_with_its_sigma_over_the_limit() {
         let azimuths = figures(&page)
             .into_iter()
             .find(|figure| {
-                figure["title"].as_str().is_some_and(|it| it.contains("as it came to stand"))
+                figure["title"].as_str().is_some_and(|it| it.contains("as it converged"))
             })
             .expect("it is drawn");
         let last = series(&azimuths, "what is known").last().cloned().expect("a point");

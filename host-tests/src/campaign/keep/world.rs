@@ -62,7 +62,7 @@ pub enum Pair {
 impl fmt::Display for Mount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Strapdown => "three of them",
+            Self::Strapdown => "three gyros",
             Self::TwoFrame(Pair::Tactical) => "vertical, with a tactical pair",
             Self::TwoFrame(Pair::Coarse) => "vertical, with a coarse pair",
         })

@@ -18,7 +18,14 @@ use serde_json::{Value, json};
 
 use super::one::One;
 use crate::command::source::Source;
-use crate::command::{Answer, Failure, Output};
+use crate::command::{Answer, Failure, Output, files};
+
+/// How the name of a page ends.
+const PAGE: &str = ".html";
+/// How the name of an attitude ends.
+const ATTITUDE: &str = ".csv";
+/// The option that names the folder of the attitudes.
+const ATTITUDES: &str = "--attitude-out";
 
 /// A row of the table, and its object.
 struct Row {
@@ -47,11 +54,11 @@ impl Folders {
         [pages, attitudes]: [Option<&PathBuf>; 2],
         sources: &[Source],
     ) -> Result<Self, Failure> {
-        let named =
-            [("--report", "the pages", pages), ("--attitude-out", "the attitudes", attitudes)];
+        let named = [("--report", "the pages", pages), (ATTITUDES, "the attitudes", attitudes)];
         for (option, what, folder) in named {
             let Some(folder) = folder else { continue };
             check(option, folder, sources).map_err(Failure::misuse)?;
+            spare(option, folder, sources).map_err(Failure::misuse)?;
             fs::create_dir_all(folder)
                 .map_err(|error| refused::unwritten(what, &folder.join("."), &error))?;
         }
@@ -70,7 +77,7 @@ impl Folders {
             let path = folder.as_ref().map(|folder| folder.join(stem(source) + end));
             path.map(|path| NewFile::open(what, &path)).transpose()
         };
-        Ok([file(pages, "the report", ".html")?, file(attitudes, "the attitude", ".csv")?])
+        Ok([file(pages, "the report", PAGE)?, file(attitudes, "the attitude", ATTITUDE)?])
     }
 }
 
@@ -90,6 +97,19 @@ fn check(option: &str, folder: &Path, sources: &[Source]) -> Result<(), String> 
         )),
         None => Ok(()),
     }
+}
+
+/// Refuses a folder in which one of the recordings has the name of what is written.
+fn spare(option: &str, folder: &Path, sources: &[Source]) -> Result<(), String> {
+    let end = if option == ATTITUDES { ATTITUDE } else { PAGE };
+    let mut written = sources.iter().map(|source| folder.join(stem(source) + end));
+    let is_read = |path: &PathBuf| {
+        sources.iter().filter_map(Source::path).any(|read| files::are_one(path, read))
+    };
+    written.find(is_read).map_or(Ok(()), |path| {
+        let shown = path.display();
+        Err(format!("{option}: {shown} is one of the recordings itself; name another folder"))
+    })
 }
 
 /// The name of a recording without its endings.

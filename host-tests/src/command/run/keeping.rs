@@ -11,6 +11,8 @@ use crate::command::stated::{self, Stated};
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
 const REALIGNING: f64 = 1800.0;
+/// How long it goes on after another alignment than the usual one, s: that may end long before the vehicle sets off.
+const LONGER: f64 = 180.0;
 /// From power-on until the vehicle sets off, beside the time of a usual alignment, s: room for one dwell that is measured
 /// again.
 const STANDING: f32 = 10.0;
@@ -29,8 +31,9 @@ pub fn lasting(hold: &Hold, alignment_s: f64) -> f64 {
 /// What is asked of keeping.
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {
-    /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
-    /// with --realign 1800; 0 with --fault, and where an accuracy is asked for).
+    /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60; 180
+    /// after another than the usual alignment; 1800 with --realign; 0 with --fault or --flash, and where an accuracy is
+    /// asked for).
     #[arg(long, value_name = "SECONDS", value_parser = seconds(0.0..=14_400.0), help_heading = KEEPING)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
@@ -61,9 +64,13 @@ impl KeepingOptions {
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to. After a usual alignment,
     /// which lasts as long as is known, the vehicle soon sets off.
     pub fn hold(&self, is_plain: bool, is_usual: bool) -> Hold {
-        let usual = if self.realign { REALIGNING } else { USUAL };
-        let usual = if is_plain { 0.0 } else { usual };
         let is_known = is_usual && !self.realign && self.handover.is_none();
+        let usual = match (is_plain, self.realign) {
+            (true, _) => 0.0,
+            (false, true) => REALIGNING,
+            (false, false) if is_known => USUAL,
+            (false, false) => LONGER,
+        };
         let plain = Hold::of(self.hold.unwrap_or(usual));
         Hold {
             standing_s: if is_known { STANDING } else { plain.standing_s },

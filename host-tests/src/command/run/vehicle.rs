@@ -45,7 +45,7 @@ impl VehicleOptions {
     fn scenario(&self) -> VehicleScenario {
         let usual = VehicleScenario::default();
         let sample_rate_hz = self.place.rate.unwrap_or(usual.base.sample_rate_hz);
-        let hold = self.keeping.hold(self.common.fault.is_some(), false);
+        let hold = self.keeping.hold(self.common.fault.is_some(), true);
         let unknown = self.no_displacement.then_some(vehicle::Place::Unknown);
         VehicleScenario {
             base: Scenario { sample_rate_hz, hold, ..self.place.scenario(self.common.seed) },

@@ -26,7 +26,7 @@ const QUANTITIES: [&[&str]; 8] = [
     ],
     // What it is held to.
     &["truth", "true pitch", "threshold", "wanted", "best", "left out", "fit"],
-    &["limit (Cramér–Rao)", "the last one ± the limit", "N"],
+    &["limit (Cramér–Rao)", "the final one ± the limit", "N"],
     // Its standard deviation.
     &["σ", "±1σ", "within 1σ", "σ(t)", "σ of the phase lock", "1σ of pitch and of roll", "B"],
     // Pairs: pitch and roll, north and east, what comes first and what comes second.

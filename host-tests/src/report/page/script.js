@@ -62,7 +62,9 @@ for (const area of document.querySelectorAll(".area")) {
   const hide = () => { cross.remove(); tip.remove(); };
   area.addEventListener("pointermove", show);
   area.addEventListener("pointerdown", show);
-  area.addEventListener("pointerleave", hide);
+  // What a finger touched stays until it touches something else.
+  area.addEventListener("pointerleave", (event) => { if (event.pointerType === "mouse") hide(); });
+  addEventListener("pointerdown", (event) => { if (!area.contains(event.target)) hide(); });
 }
 // The words of a stretch of time where there is no pointer that could rest on it.
 for (const timeline of document.querySelectorAll(".timeline")) {

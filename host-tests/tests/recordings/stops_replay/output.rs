@@ -106,7 +106,7 @@ fn the_report_draws_the_papers_figures() {
         "W = 2 Ω_h |sin(δ/2)|",
         "Where the vehicle went",
         "What the solution leaves of the vertical at each stop",
-        "Azimuth at the end as it came to stand",
+        "Azimuth at the end as it converged",
         "Error budget",
         "Stops",
     ];

@@ -338,7 +338,7 @@ fn table_of_stretches(conclusion: &Conclusion) -> Part {
         .into()
 }
 
-/// The fold with what the solution leaves, how the azimuth came to stand, what was done when; then spectra of every part
+/// The fold with what the solution leaves, how the azimuth converged, what was done when; then spectra of every part
 /// as it came and freed of the axis misalignment, and the phasors of its turns.
 fn figures(
     replay: &Replay,

@@ -1,4 +1,4 @@
-//! How the azimuth of a turning platform came to stand, and what was done when.
+//! How the azimuth of a turning platform converged, and what was done when.
 
 use orientation::alignment::rotating::average::Average;
 use orientation::alignment::rotating::session::Session;

@@ -77,7 +77,7 @@ pub(super) fn fit(session: &Session, conclusion: &Conclusion, fit: &Fit) -> [Fig
     let title = format!("Mean rate of each dwell, and the fit{also}");
     [
         Figure::new(title, angle(), ["rate", "°/h"], series),
-        Figure::new("What the fit leaves", angle(), ["unexplained", "°/h"], left)
+        Figure::new("Residuals of the fit", angle(), ["unexplained", "°/h"], left)
             .shaped(Shape::Low),
     ]
 }

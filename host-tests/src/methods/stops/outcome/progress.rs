@@ -1,4 +1,4 @@
-//! Where a vehicle went, what the solution leaves of its stops, how the azimuth came to stand, and what was done when.
+//! Where a vehicle went, what the solution leaves of its stops, how the azimuth converged, and what was done when.
 
 use orientation::alignment::stops::conclusion::Found;
 use orientation::alignment::stops::session::Session;
