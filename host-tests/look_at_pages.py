@@ -6,7 +6,7 @@
 draws the pages of MERIDIAN, the program, into FOLDER, opens each in Chromium, and holds it to what a reader needs:
 
 - nothing is loaded beside the file, and the file is no larger than 500 KB;
-- no script fails, and values show under the pointer;
+- no script fails, and values show under the pointer, and on a phone after a touch;
 - no text is smaller than 11 pixels, and none has less contrast to what it stands on than 4.5 (WCAG 2.2, 1.4.3);
 - nothing is wider than the window, also where everything is unfolded;
 - numbers beside an axis, and words in a figure, do not touch each other.
@@ -151,17 +151,19 @@ LOOK = r"""
 """
 
 
-def hovered(page):
-    """Complaints about figures that show no value under the pointer."""
+def pointed(page, is_touched):
+    """Complaints about figures that show no value under the pointer, or after a touch."""
+    point, how = (page.touchscreen.tap, "after a touch") if is_touched else (page.mouse.move, "under the pointer")
     wrong = []
     for index, area in enumerate(page.query_selector_all(".area")):
         area.scroll_into_view_if_needed()
         box = area.bounding_box()
-        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-        tip = page.query_selector(".tip")
-        if tip is None or not tip.inner_text().strip():
-            wrong.append(f"figure {index + 1} shows no value under the pointer")
-        page.mouse.move(1, 1)
+        point(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+        tips = page.query_selector_all(".tip")
+        if len(tips) != 1 or not tips[0].inner_text().strip():
+            wrong.append(f"figure {index + 1} shows no value {how}")
+        if not is_touched:
+            page.mouse.move(1, 1)
     return wrong
 
 
@@ -170,7 +172,9 @@ def looked_at(browser, file, folder):
     wrong = [f"{file.stat().st_size} bytes"] if file.stat().st_size > LARGEST else []
     for name, (width, height) in WIDTHS.items():
         for scheme in ["light", "dark"]:
-            context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme)
+            is_touched = name == "phone"
+            size = {"width": width, "height": height}
+            context = browser.new_context(viewport=size, color_scheme=scheme, has_touch=is_touched)
             page = context.new_page()
             page.on("request", lambda asked: asked.url == file.as_uri() or wrong.append(f"loads {asked.url}"))
             page.on("pageerror", lambda error: wrong.append(f"script: {error}"))
@@ -181,7 +185,7 @@ def looked_at(browser, file, folder):
             page.screenshot(path=folder / f"{file.stem}-{name}-{scheme}.png", full_page=True)
             if scheme == "light":
                 page.evaluate("() => document.querySelectorAll('details').forEach((it) => it.open = true)")
-                wrong += [f"{view}: {words}" for words in hovered(page)]
+                wrong += [f"{view}: {words}" for words in pointed(page, is_touched)]
                 wrong += [f"{view}, unfolded: {words}" for words in page.evaluate(LOOK)]
             if scheme == "dark" and name == "wide":
                 page.emulate_media(media="print")
