@@ -299,7 +299,7 @@ fn what_waits_for_its_input_ends_at_once_and_leaves_what_was_there_and_nothing_b
 #[test]
 fn a_pair_of_interruptions_counts_as_one() {
     let child = started(&["campaign", "sokolov", "--runs", "100000"]);
-    sleep(Duration::from_millis(1000));
+    sleep(Duration::from_secs(1));
     for _ in 0..2 {
         interrupt(&child);
         sleep(Duration::from_millis(1));

@@ -24,8 +24,6 @@ use crate::command::{Answer, Failure, Output, files};
 const PAGE: &str = ".html";
 /// How the name of an attitude ends.
 const ATTITUDE: &str = ".csv";
-/// The option that names the folder of the attitudes.
-const ATTITUDES: &str = "--attitude-out";
 
 /// A row of the table, and its object.
 struct Row {
@@ -49,16 +47,20 @@ impl Folders {
     /// Makes the folders.
     ///
     /// # Errors
-    /// A file is named; it cannot be made; two recordings would have one file in it.
+    /// A file is named; it cannot be made; two recordings would have one file in it, or one of them has the name of such
+    /// a file.
     pub fn make(
         [pages, attitudes]: [Option<&PathBuf>; 2],
         sources: &[Source],
     ) -> Result<Self, Failure> {
-        let named = [("--report", "the pages", pages), (ATTITUDES, "the attitudes", attitudes)];
-        for (option, what, folder) in named {
+        let named = [
+            ("--report", "the pages", PAGE, pages),
+            ("--attitude-out", "the attitudes", ATTITUDE, attitudes),
+        ];
+        for (option, what, end, folder) in named {
             let Some(folder) = folder else { continue };
             check(option, folder, sources).map_err(Failure::misuse)?;
-            spare(option, folder, sources).map_err(Failure::misuse)?;
+            spare(option, end, folder, sources).map_err(Failure::misuse)?;
             fs::create_dir_all(folder)
                 .map_err(|error| refused::unwritten(what, &folder.join("."), &error))?;
         }
@@ -99,9 +101,8 @@ fn check(option: &str, folder: &Path, sources: &[Source]) -> Result<(), String> 
     }
 }
 
-/// Refuses a folder in which one of the recordings has the name of what is written.
-fn spare(option: &str, folder: &Path, sources: &[Source]) -> Result<(), String> {
-    let end = if option == ATTITUDES { ATTITUDE } else { PAGE };
+/// Refuses a folder in which one of the recordings has the name of what is written, which ends so.
+fn spare(option: &str, end: &str, folder: &Path, sources: &[Source]) -> Result<(), String> {
     let mut written = sources.iter().map(|source| folder.join(stem(source) + end));
     let is_read = |path: &PathBuf| {
         sources.iter().filter_map(Source::path).any(|read| files::are_one(path, read))
