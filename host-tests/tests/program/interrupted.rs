@@ -116,8 +116,8 @@ fn a_run_that_has_measured_nothing_yet_says_how_far_it_was() {
 #[test]
 fn a_run_that_is_interrupted_in_its_alignment_says_what_sigma_it_had_by_then() {
     for run in [
-        "stage --dwell 120 --hold 0",
-        "two-frame --dwell 120 --hold 0",
+        "stage --rate 100 --dwell 120 --hold 0",
+        "two-frame --rate 100 --dwell 120 --hold 0",
         "turntable --turns 300 --hold 0",
     ] {
         let steps = if run.starts_with("turntable") { "turn 300 of" } else { "dwell 12 of" };

@@ -66,7 +66,7 @@ fn an_azimuth_of_an_alignment_after_one_that_was_refused_stands_beside_its_own_t
 
 #[test]
 fn a_run_of_which_no_alignment_found_an_azimuth_says_why() {
-    let run = ["run", "vehicle", "--gyro=mems", "--latitude=84", "--realign"];
+    let run = ["run", "vehicle", "--rate=50", "--gyro=mems", "--latitude=84", "--realign"];
     let output = meridian(&run);
     assert_eq!(code(&output), 1);
     let told = text(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");

@@ -70,9 +70,9 @@ fn assert_honest(name: &str, outcomes: &[Outcome], too_noisy: usize) {
 #[test]
 fn biases_that_turn_the_frame_by_tens_of_degrees_leave_errors_that_sigma_covers() {
     let way = Way { stops: 3, stop_s: 60.0, drive_s: 600.0 };
-    let three = days(way, TACTICAL, 60);
+    let three = days(way, TACTICAL, 30);
     assert_honest("three stops", &three, 0);
-    let two = days(Way { stops: 2, ..way }, TACTICAL, 40);
+    let two = days(Way { stops: 2, ..way }, TACTICAL, 20);
     assert_honest("two stops", &two, 2);
     for found in three.iter().chain(&two).filter_map(|day| day.conclusion.found) {
         let (limit, sigma) = (found.limit.0, found.azimuth.sigma.0);
@@ -84,7 +84,7 @@ fn biases_that_turn_the_frame_by_tens_of_degrees_leave_errors_that_sigma_covers(
 #[test]
 fn what_a_stop_leaves_is_small_where_biases_turn_the_frame_by_tens_of_degrees() {
     let way = Way { stops: 3, stop_s: 60.0, drive_s: 600.0 };
-    let outcomes = days(way, Gyros { n: 0.036, b: 0.0, bias: 30.0 }, 30);
+    let outcomes = days(way, Gyros { n: 0.036, b: 0.0, bias: 30.0 }, 15);
     assert_honest("N 0.036 °/√h", &outcomes, 0);
     let residuals = outcomes.iter().flat_map(|day| &day.residuals).flatten();
     let ratio = rms(residuals.flat_map(|left| left.tilt.map(|part| part.0 / left.sigma.0)));
@@ -98,7 +98,7 @@ fn flicker_is_covered_between_long_stops_and_long_drives() {
     let gyros = Gyros { n: 0.01, b: 0.3, bias: 1.0 };
     for [stop_s, drive_s] in [[60.0, 600.0], [300.0, 300.0]] {
         let way = Way { stops: 3, stop_s, drive_s };
-        assert_honest(&format!("{stop_s} s, {drive_s} s"), &days(way, gyros, 60), 0);
+        assert_honest(&format!("{stop_s} s, {drive_s} s"), &days(way, gyros, 30), 0);
     }
 }
 
@@ -106,7 +106,7 @@ fn flicker_is_covered_between_long_stops_and_long_drives() {
 fn gyros_too_noisy_for_the_signal_are_refused_for_their_noise_alone() {
     let way = Way { stops: 3, stop_s: 20.0, drive_s: 60.0 };
     for n in [0.5, 2.0] {
-        let outcomes = days(way, Gyros { n, ..TACTICAL }, 30);
+        let outcomes = days(way, Gyros { n, ..TACTICAL }, 15);
         for (seed, outcome) in outcomes.iter().enumerate() {
             assert!(is_too_noisy(outcome), "N {n}, {seed}: {:?}", outcome.conclusion.verdict);
         }
