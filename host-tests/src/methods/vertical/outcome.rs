@@ -16,7 +16,7 @@ use crate::report::{
 };
 
 /// What the biases hold beside themselves while north is not known.
-const EARTH_RATE_WITHIN: &str = ", with the Earth's level rate";
+const EARTH_RATE_WITHIN: &str = ", including the horizontal Earth rate";
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
@@ -188,7 +188,7 @@ fn biases(moments: &[Moment]) -> Figure {
         ]
     });
     Figure::over_time(
-        "Biases of the gyros with the Earth's level rate, as they were learnt",
+        "Biases of the gyros, including the horizontal Earth rate, as they were learnt",
         ["bias", "°/h"],
         series,
     )
