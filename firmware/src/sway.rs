@@ -3,9 +3,9 @@
 //!
 //! The base unit is read once in every `divider` samples, more often than it has a new output, so that none is
 //! left out; between, its latest rate is held. Until the sway has been observed for long enough, no decision is
-//! taken and no alignment begins. The decision then holds for that alignment. For another one the estimator begins anew: what it took
-//! for biases while the vehicle drove is in the rate that it would subtract, which turns with the
-//! stage as the Earth rate does.
+//! taken and no alignment begins. The decision then holds for that alignment. For another one the estimator
+//! begins anew: what it took for biases while the vehicle drove is in the rate that it would subtract, which
+//! turns with the stage as the Earth rate does.
 //!
 //! Each reading also goes to the attitude keeper.
 //!

@@ -8,9 +8,9 @@
 //! slipped while the board was off shows at the first pass.
 //!
 //! Motor and encoder are also compared at every reading of the motor's status. A gear is not uniform, so the
-//! platform runs ahead of the motor and behind it, but by the same amount at the same place of every turn. A change from one turn to
-//! the next means that the encoder slips, that the motor loses steps, or that one of them stands
-//! while the other turns.
+//! platform runs ahead of the motor and behind it, but by the same amount at the same place of every turn. A
+//! change from one turn to the next means that the encoder slips, that the motor loses steps, or that one of
+//! them stands while the other turns.
 
 use core::convert::Infallible;
 

@@ -173,7 +173,8 @@ fn dwelling(schedule: Schedule, clocks: Timebase) -> Procedure {
 
 /// Decimation of the LSM6DSL of the board itself: read once in this many samples of the gyro, 200 times a
 /// second, which finds every output of [`BASE_OUTPUT`]. By it the result is held on a stage, two frames or a
-/// turntable, and the sway of the base is compensated: the board is fixed to the base, the chip's x axis forward, y to the right, z down.
+/// turntable, and the sway of the base is compensated: the board is fixed to the base, the chip's x axis forward,
+/// y to the right, z down.
 pub const BASE_DIVIDER: u32 = if cfg!(feature = "sps2400") { 12 } else { 2 };
 /// Output rate of the LSM6DSL.
 pub const BASE_OUTPUT: BaseRate = BaseRate::Hz104;
