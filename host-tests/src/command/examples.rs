@@ -96,8 +96,8 @@ Examples:
 /// Of `campaign`.
 pub const CAMPAIGN: &str = "\
 Examples:
-  meridian campaign instrument --runs 20
-      Twenty boards, their errors beside the limit.
+  meridian campaign instrument --runs 5
+      Five boards, their errors beside the limit.
   meridian campaign disturbed --class base-turn --runs 5
       One class of faults.";
 

@@ -11,8 +11,7 @@ use serde_json::Value;
 use crate::support::files::{Scratch, stored, unpacked};
 use crate::support::program::{code, command, meridian, object, reason, text};
 
-/// What a program that was interrupted ended with: exit code, standard output, and what convergedard error after
-/// that.
+/// What a program that was interrupted ended with: exit code, standard output, and standard error after that.
 type Ended = (Option<i32>, String, String);
 
 /// The program, whose streams are ours.
@@ -116,8 +115,8 @@ fn a_run_that_has_measured_nothing_yet_says_how_far_it_was() {
 #[test]
 fn a_run_that_is_interrupted_in_its_alignment_says_what_sigma_it_had_by_then() {
     for run in [
-        "stage --rate 100 --dwell 120 --hold 0",
-        "two-frame --rate 100 --dwell 120 --hold 0",
+        "stage --rate 50 --dwell 120 --hold 0",
+        "two-frame --rate 50 --dwell 120 --hold 0",
         "turntable --turns 300 --hold 0",
     ] {
         let steps = if run.starts_with("turntable") { "turn 300 of" } else { "dwell 12 of" };
@@ -134,8 +133,8 @@ fn a_run_that_is_interrupted_in_its_alignment_says_what_sigma_it_had_by_then() {
 fn a_run_that_is_interrupted_later_has_its_result_and_what_was_kept_until_then() {
     // In the vehicle the next alignment has begun by then.
     let runs = [
-        ("stage --hold 14400", "coasting for 3"),
-        ("vehicle --hold 14400 --realign", "1694.109725 stop 1: the vehicle stands"),
+        ("stage --rate 50 --hold 14400", "coasting for 3"),
+        ("vehicle --rate 50 --hold 14400 --realign", "1694.112725 stop 1: the vehicle stands"),
     ];
     for (run, words) in runs {
         let (code, printed, said) = interrupted_at(words, &format!("run {run} -v"));
@@ -156,7 +155,7 @@ fn a_run_that_is_interrupted_later_has_its_result_and_what_was_kept_until_then()
 fn the_inputs_of_a_run_that_was_interrupted_replay_to_what_it_had() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.with("run.jsonl.gz", "before");
-    let run = format!("run stage --hold 14400 --record {path} --json -v");
+    let run = format!("run stage --rate 50 --hold 14400 --record {path} --json -v");
     let ran = ended(&interrupted_at("coasting for 3", &run));
     let output = meridian(&["replay", &path, "--json"]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
@@ -175,7 +174,7 @@ fn the_inputs_of_a_run_that_was_interrupted_replay_to_what_it_had() {
 fn the_inputs_of_an_alignment_that_was_interrupted_are_no_result_and_tell_its_sigma() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.path("run.jsonl");
-    let run = format!("run stage --dwell 120 --hold 0 --record {path} --json -v");
+    let run = format!("run stage --rate 50 --dwell 120 --hold 0 --record {path} --json -v");
     let ran = ended(&interrupted_at("dwell 12 of", &run));
     let output = meridian(&["replay", &path, "--json"]);
     assert_eq!(code(&output), 1);
@@ -191,7 +190,7 @@ fn the_inputs_of_an_alignment_that_was_interrupted_are_no_result_and_tell_its_si
 fn the_samples_of_a_run_that_was_interrupted_are_a_recording_too() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.path("run.csv.gz");
-    let run = format!("run stage --rate 50 --dwell 600 --hold 0 --record {path} --json -v");
+    let run = format!("run stage --rate 50 --dwell 120 --hold 0 --record {path} --json -v");
     let ran = ended(&interrupted_at("dwell 12 of", &run));
     let replayed = object(&meridian(&["replay", &path, "--json"]));
     assert_eq!(replayed["dwells"], ran["dwells"]);
@@ -275,7 +274,8 @@ fn an_interruption_ends_what_waits_for_standard_input_that_stays_open() {
 fn a_page_of_what_was_interrupted_is_drawn() {
     let scratch = Scratch::new("interrupted");
     let path = scratch.path("run.html");
-    let (code, ..) = interrupted_at("keeping, ", &format!("run --hold 14400 --report {path}"));
+    let (code, ..) =
+        interrupted_at("keeping, ", &format!("run --rate 50 --hold 14400 --report {path}"));
     assert_eq!(code, Some(1));
     let page = scratch.read("run.html");
     assert!(page.contains("True north found") && page.contains("interrupted at keeping"));

@@ -4,11 +4,11 @@ use crate::support::files::Scratch;
 use crate::support::program::{code, meridian, object, page, reason, text};
 
 /// Faults by which one dwell is measured again, on platforms that stop.
-const RUNS: [[&str; 3]; 4] = [
-    ["stage", "--fault", "base-nudge"],
-    ["stage", "--fault", "door-slam"],
-    ["stage", "--fault", "saturation-once"],
-    ["two-frame", "--fault", "door-slam"],
+const RUNS: [[&str; 4]; 4] = [
+    ["stage", "--rate=50", "--fault", "base-nudge"],
+    ["stage", "--rate=50", "--fault", "door-slam"],
+    ["stage", "--rate=50", "--fault", "saturation-once"],
+    ["two-frame", "--rate=50", "--fault", "door-slam"],
 ];
 
 #[test]

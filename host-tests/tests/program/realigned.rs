@@ -12,10 +12,12 @@ const RUNS: [&str; 4] = [
 ];
 
 #[test]
-fn the_alignment_stands_beside_what_was_kept() {
+fn the_alignment_stands_beside_what_was_kept_and_its_replay_says_the_same() {
+    let scratch = Scratch::new("realigned");
+    let path = scratch.path("run.jsonl");
     for run in RUNS {
         let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
-        let output = meridian(&[&arguments[..], &["--json"]].concat());
+        let output = meridian(&[&arguments[..], &["--json", "--record", &path]].concat());
         assert_eq!(code(&output), 0, "{run}: {}", reason(&output));
         let found = object(&output);
         assert_ne!(found["method"], "kept", "{run}");
@@ -28,6 +30,10 @@ fn the_alignment_stands_beside_what_was_kept() {
         let told = text(&meridian(&arguments).stdout);
         for part in ["azimuth of body x", "Error budget", "Kept for"] {
             assert!(told.contains(part), "{run}: {part} in {told}");
+        }
+        let replayed = object(&meridian(&["replay", &path, "--json"]));
+        for key in ["method", "azimuth_deg", "sigma_deg", "budget", "alignments", "kept"] {
+            assert_eq!(found[key], replayed[key], "{run}: {key}");
         }
     }
 }
@@ -87,9 +93,9 @@ fn the_timeline_has_what_the_alignments_before_the_latest_did() {
     let scratch = Scratch::new("before");
     let inputs = scratch.path("run.jsonl");
     let runs = [
-        ("stage --rate 50 --dwell 2 --realign --hold 900", "dwell 25"),
-        ("turntable --rate 50 --turns 3 --realign --hold 1200", "turns"),
-        ("vehicle --rate 50 --stops 2 --stop-seconds 30 --realign --hold 1200", "stop 2"),
+        ("stage --rate 50 --dwell 2 --realign --hold 500", "dwell 25"),
+        ("turntable --rate 50 --turns 3 --realign --hold 600", "turns"),
+        ("vehicle --rate 50 --stops 2 --stop-seconds 30 --realign --hold 600", "stop 2"),
     ];
     for (run, words) in runs {
         let run: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
@@ -98,19 +104,5 @@ fn the_timeline_has_what_the_alignments_before_the_latest_did() {
         assert!(before.iter().any(|told| told.contains(words)), "{run:?}: {before:?}");
         let (_, replayed) = page(&["replay", &inputs]);
         assert_eq!(told_in_row(&replayed, "alignments before"), before, "{run:?}");
-    }
-}
-
-#[test]
-fn its_replay_says_the_same() {
-    let scratch = Scratch::new("realigned");
-    for run in RUNS {
-        let path = scratch.path("run.jsonl");
-        let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
-        let ran = object(&meridian(&[&arguments[..], &["--json", "--record", &path]].concat()));
-        let replayed = object(&meridian(&["replay", &path, "--json"]));
-        for key in ["method", "azimuth_deg", "sigma_deg", "budget", "alignments", "kept"] {
-            assert_eq!(ran[key], replayed[key], "{run}: {key}");
-        }
     }
 }

@@ -261,7 +261,15 @@ fn an_azimuth_that_the_board_withdrew_is_no_result() {
     // The azimuth from outside is five of its σ off: the board believes neither it nor what it finds later.
     let scratch = Scratch::new("withdrawn");
     let path = scratch.path("run.jsonl");
-    let run = ["run", "two-frame", "--handover=214.7,0.16", "--realign", "--hold=1500", "--seed=5"];
+    let run = [
+        "run",
+        "two-frame",
+        "--rate=50",
+        "--handover=214.7,0.16",
+        "--realign",
+        "--hold=1500",
+        "--seed=5",
+    ];
     for object in
         [answered(&[&run[..], &["--record", &path]].concat()), answered(&["replay", &path])]
     {

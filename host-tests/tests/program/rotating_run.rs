@@ -13,7 +13,7 @@ fn run(arguments: &[&str]) -> Output {
 
 #[test]
 fn a_gyro_finds_north_on_a_turning_platform() {
-    let output = run(&["turntable", "--turns", "4", "--json", "--azimuth", "77"]);
+    let output = run(&["turntable", "--rate=50", "--turns", "4", "--json", "--azimuth", "77"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let object = object(&output);
     let number = |key: &str| object[key].as_f64().unwrap_or(f64::NAN);
@@ -25,7 +25,7 @@ fn a_gyro_finds_north_on_a_turning_platform() {
 
 #[test]
 fn speeds_and_turns_are_those_that_were_asked_for() {
-    let output = run(&["turntable", "--speeds", "0.2", "--turns", "3", "--json"]);
+    let output = run(&["turntable", "--rate=50", "--speeds", "0.2", "--turns", "3", "--json"]);
     let object = object(&output);
     let stretches = object["stretches"].as_array().map(Vec::as_slice).unwrap_or_default();
     assert_eq!(stretches.len(), 2, "{object}");
@@ -41,7 +41,7 @@ fn speeds_and_turns_are_those_that_were_asked_for() {
 fn a_flash_file_spares_the_modulated_turns_of_the_next_run() {
     let scratch = Scratch::new("kept");
     let file = scratch.path("flash");
-    let turns = ["turntable", "--turns", "4", "--json", "--flash", file.as_str()];
+    let turns = ["turntable", "--rate=50", "--turns", "4", "--json", "--flash", file.as_str()];
     let first = run(&[&turns[..], &["--date", "2026-03-14"]].concat());
     let second = run(&[&turns[..], &["--date", "2026-03-20", "--modulated-turns", "0"]].concat());
     let [first, second] = [first, second].map(|output| object(&output));
@@ -84,7 +84,7 @@ fn a_molecular_electronic_sensor_without_a_stored_misalignment_is_refused() {
 fn a_damaged_flash_file_is_named_and_left_alone() {
     let scratch = Scratch::new("damaged");
     let file = scratch.path("flash");
-    let arguments = ["turntable", "--turns", "2", "--flash", file.as_str()];
+    let arguments = ["turntable", "--rate=50", "--turns", "2", "--flash", file.as_str()];
     assert!(run(&arguments).status.success());
     let mut bytes = std::fs::read(&file).expect("it was written");
     let middle = bytes.len() / 2;
@@ -100,7 +100,7 @@ fn a_damaged_flash_file_is_named_and_left_alone() {
 
 #[test]
 fn the_report_of_a_run_draws_its_turns() {
-    let (_, page) = page(&["run", "turntable", "--turns", "3"]);
+    let (_, page) = page(&["run", "turntable", "--rate=50", "--turns", "3"]);
     assert_drawn(&page, &["rate-modulated", "Phasor of each turn"]);
     assert!(!page.contains("no points to draw"));
 }

@@ -11,7 +11,8 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 /// A short day: two stops, four minutes.
-const SHORT: [&str; 6] = ["vehicle", "--stops", "2", "--drive-seconds", "240", "--stop-seconds=40"];
+const SHORT: [&str; 7] =
+    ["vehicle", "--rate=50", "--stops", "2", "--drive-seconds", "240", "--stop-seconds=40"];
 
 /// The object of a short day with more options, and whether there was a result.
 fn short(more: &[&str]) -> (Value, bool) {

@@ -318,7 +318,7 @@ fn a_spinning_bodys_gyro_of_another_scale_is_not_stuck() {
 fn only_a_vehicle_is_sent_to_the_method_that_needs_no_latitude() {
     let scratch = Scratch::new("nowhere-on-earth");
     for (recording, has_level) in [
-        (recorded(&scratch), false),
+        (recorded().to_owned(), false),
         (unpacked("rotating-gyro"), false),
         (dwells("", "2e-8"), false),
         (unpacked("parked-swaying"), true),

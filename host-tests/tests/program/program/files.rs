@@ -5,7 +5,7 @@ use std::fs;
 use crate::support::files::{Scratch, stored};
 use crate::support::program::{assert_misuse, code, command, meridian, reason};
 
-use super::recorded;
+use super::recorded_anew;
 
 /// A folder with a copy of a recording, and its content.
 fn copy(name: &str, of: &str) -> (Scratch, String, Vec<u8>) {
@@ -119,8 +119,8 @@ fn a_file_in_a_folder_that_is_not_there_is_refused_in_words_that_name_both() {
 #[test]
 fn what_was_recorded_before_may_be_written_over_and_dev_null_takes_everything() {
     let scratch = Scratch::new("again");
-    let first = recorded(&scratch);
-    assert_eq!(recorded(&scratch), first);
+    let first = recorded_anew(&scratch);
+    assert_eq!(recorded_anew(&scratch), first);
     let null = ["--record", "/dev/null", "--report", "/dev/null"];
     let output = meridian(&[&["run", "--rate", "50", "--dwell", "2"][..], &null].concat());
     assert_eq!(code(&output), 0, "{}", reason(&output));
@@ -133,7 +133,7 @@ const ENDS: [(&str, &str, &[&str]); 6] = [
     ("replay STAGE", "--report", &[".html", ".htm"]),
     ("replay IMU --method vertical", "--attitude-out", &[".csv"]),
     ("plan --arw 1 --latitude 1 --sigma 100", "--report", &[".html", ".htm"]),
-    ("campaign sokolov --runs 1", "--report", &[".html", ".htm"]),
+    ("campaign spin --runs 1", "--report", &[".html", ".htm"]),
 ];
 
 #[test]

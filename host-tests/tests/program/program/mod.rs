@@ -8,17 +8,27 @@ mod reasons;
 mod seeds;
 mod warnings;
 
+use std::sync::OnceLock;
+
 use crate::support::files::Scratch;
 use crate::support::program::{code, meridian, object, reason};
 
 /// What a board on a stage shows: 24 positions of 2 s at 50 Hz, as a recorder beside it has them, which does not know
-/// what its session was given.
-fn recorded(scratch: &Scratch) -> String {
+/// what its session was given. Recorded once for all tests.
+fn recorded() -> &'static str {
+    static RECORDED: OnceLock<String> = OnceLock::new();
+    RECORDED.get_or_init(|| {
+        let all = recorded_anew(&Scratch::new("recorded"));
+        all.split_inclusive('\n').filter(|line| !line.starts_with("# session:")).collect()
+    })
+}
+
+/// All of that recording, which is made for this.
+fn recorded_anew(scratch: &Scratch) -> String {
     let path = scratch.path("stage.csv");
     let output = meridian(&["run", "--rate", "50", "--dwell", "2", "--record", &path]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
-    let all = scratch.read("stage.csv");
-    all.split_inclusive('\n').filter(|line| !line.starts_with("# session:")).collect()
+    scratch.read("stage.csv")
 }
 
 /// The reason for which a recording is refused.

@@ -13,7 +13,7 @@ const DEGREES: f64 = 57.295_779_513_082_32;
 #[test]
 fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
     let scratch = Scratch::new("units");
-    let sound = recorded(&scratch);
+    let sound = recorded();
     let cases: [(&[&str], f64, &str); 5] = [
         (&["stage_rad"], DEGREES, "column stage_rad: in degrees, as it seems, not rad"),
         (&["g_rad_s"], DEGREES, "column g_rad_s: in °/s, as it seems, not rad/s"),
@@ -35,7 +35,7 @@ fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
 #[test]
 fn the_text_for_people_names_the_likely_cause_too() {
     let scratch = Scratch::new("text");
-    let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
+    let path = scratch.with("x.csv", scaled(recorded(), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
     let reported = text(&output.stdout);
     assert!(reported.contains("column stage_rad: in degrees"), "{reported}");
@@ -44,7 +44,7 @@ fn the_text_for_people_names_the_likely_cause_too() {
 #[test]
 fn what_the_columns_show_stands_before_the_refusal_that_came_of_it() {
     let scratch = Scratch::new("leading");
-    let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
+    let path = scratch.with("x.csv", scaled(recorded(), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
     let why = reason(&output);
     assert!(why.contains("x.csv: column stage_rad: in degrees"), "{why}");
@@ -79,7 +79,7 @@ fn scatter_that_is_no_noise_has_a_row_of_its_own_in_the_budget() {
 #[test]
 fn dwells_that_scatter_alike_tell_of_n_and_not_of_the_platform() {
     let scratch = Scratch::new("noise");
-    let sound = recorded(&scratch);
+    let sound = recorded();
     let with =
         |n: &str| sound.replace("gyro_N_deg_sqrt_h: 0.001", &format!("gyro_N_deg_sqrt_h: {n}"));
     for n in ["0.00001", "0.0001", "0.0003"] {
@@ -96,7 +96,7 @@ fn dwells_that_scatter_alike_tell_of_n_and_not_of_the_platform() {
 #[test]
 fn a_stuck_gyro_and_a_stuck_encoder_of_a_stage_are_named() {
     let scratch = Scratch::new("stuck");
-    let sound = recorded(&scratch);
+    let sound = recorded();
     let why = refused(&scratch, &mapped(&sound, &["g_rad_s"], |_| "1e-5".to_owned()));
     assert!(why.contains("column g_rad_s holds the same value in "), "{why}");
     assert!(why.contains("the sensor is stuck; check its supply and cable"), "{why}");
@@ -198,7 +198,7 @@ fn two_positions_are_refused_with_the_option_that_tells_their_azimuths_apart() {
 fn a_run_says_what_was_made_to_go_wrong_and_what_the_board_said_of_it() {
     let gyro = "\"gyro: at the limit of its range\"";
     for (fault, reported) in [("overload-once", "nothing wrong"), ("saturation-once", gyro)] {
-        let run = ["run", "turntable", "--fault", fault];
+        let run = ["run", "turntable", "--rate=100", "--fault", fault];
         let told = words(&text(&meridian(&run).stdout));
         let line = format!("fault {fault}, as asked for; the board reported {reported}");
         assert!(told.contains(&line), "{told}");
@@ -211,7 +211,7 @@ fn a_run_says_what_was_made_to_go_wrong_and_what_the_board_said_of_it() {
 #[test]
 fn what_a_board_reported_and_mended_takes_from_the_badge() {
     for (fault, badge) in [("overload-once", "found"), ("saturation-once", "degraded")] {
-        let (_, page) = page(&["run", "turntable", "--fault", fault]);
+        let (_, page) = page(&["run", "turntable", "--rate=100", "--fault", fault]);
         assert!(page.contains(&format!("<span class=\"badge {badge}\">")), "{fault}");
         assert_eq!(page.contains("reported on the way: "), badge == "degraded", "{fault}");
     }

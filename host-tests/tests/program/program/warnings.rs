@@ -26,7 +26,7 @@ fn warnings(scratch: &Scratch, recording: &str) -> Vec<String> {
 #[test]
 fn an_unknown_key_that_resembles_a_known_one_is_reported_with_its_line() {
     let scratch = Scratch::new("keys");
-    let sound = recorded(&scratch);
+    let sound = recorded();
     for (line, key, known) in [
         (2, "latitude", "latitude_deg"),
         (2, "Latitude_deg", "latitude_deg"),
@@ -66,7 +66,7 @@ fn a_key_of_the_drift_that_is_called_otherwise_is_reported() {
         ("rate_random_walk_deg_h_sqrt_h", "gyro_K_deg_h_sqrt_h"),
         ("rate_ramp_deg_h2", "gyro_R_deg_h2"),
     ] {
-        let reported = warnings(&scratch, &format!("# {key}: 0.01\n{}", recorded(&scratch)));
+        let reported = warnings(&scratch, &format!("# {key}: 0.01\n{}", recorded()));
         let words = format!("key {key}: is not known and passed over; if {known} is meant");
         assert!(reported.iter().any(|line| line.contains(&words)), "{words}: {reported:?}");
     }
@@ -77,7 +77,7 @@ fn a_remark_is_no_slip_of_a_key() {
     let scratch = Scratch::new("remarks");
     let remarks = "# gyro: KVH DSP-1760\n# site: Lindau, 47.54 N\n# operator: rh\n# date: 2026-11-22 10:15\n\
                    # mind: the gap\n# note: latitude by map\n# seed: 4\n";
-    assert_eq!(warnings(&scratch, &(remarks.to_owned() + &recorded(&scratch))), [""; 0]);
+    assert_eq!(warnings(&scratch, &(remarks.to_owned() + recorded())), [""; 0]);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn no_stored_recording_is_warned_of() {
 #[test]
 fn a_kind_that_is_written_otherwise_is_found_in_its_line() {
     let scratch = Scratch::new("kind");
-    let path = scratch.with("kind.csv", recorded(&scratch).replace("# kind:", "# Kind:"));
+    let path = scratch.with("kind.csv", recorded().replace("# kind:", "# Kind:"));
     let output = meridian(&["replay", &path]);
     assert_eq!(code(&output), 1);
     let reported = text(&output.stderr);
@@ -104,7 +104,7 @@ fn a_kind_that_is_written_otherwise_is_found_in_its_line() {
 #[test]
 fn a_column_of_truth_that_is_malformed_is_reported() {
     let scratch = Scratch::new("truth");
-    let sound = recorded(&scratch);
+    let sound = recorded();
     let with = |name: &str, value: &str| {
         let mut rows = 0;
         let line = |line: &str| match line {
@@ -153,7 +153,7 @@ fn a_true_attitude_in_parts_or_of_no_length_is_reported() {
 
 #[test]
 fn what_takes_from_a_result_stands_in_text_and_object_alike() {
-    for run in ["run --fault gyro-reset --hold 0", "run --sway 0.02"] {
+    for run in ["run --rate 50 --fault gyro-reset --hold 0", "run --rate 50 --sway 0.02 --hold 0"] {
         let arguments: Vec<&str> = run.split(' ').collect();
         let object = object(&meridian(&[&arguments[..], &["--json"]].concat()));
         let noted = object["noted"].as_array().expect("something takes from it");
