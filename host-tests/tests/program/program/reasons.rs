@@ -22,10 +22,10 @@ fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
         (&["g_rad_s"], DEGREES * 3600.0, "check the unit: °/s or °/h?"),
     ];
     for (columns, factor, words) in cases {
-        let why = refused(&scratch, &scaled(&sound, columns, factor));
+        let why = refused(&scratch, &scaled(sound, columns, factor));
         assert!(why.contains(words), "{why}");
     }
-    let both = scaled(&scaled(&sound, &["stage_rad", "g_rad_s"], DEGREES), &FORCES, 1e3 / 9.806_65);
+    let both = scaled(&scaled(sound, &["stage_rad", "g_rad_s"], DEGREES), &FORCES, 1e3 / 9.806_65);
     let why = refused(&scratch, &both);
     for words in ["stage_rad: in degrees", "g_rad_s: in °/s", "fz_m_s2: in mg"] {
         assert!(why.contains(words), "{why}");
@@ -97,10 +97,10 @@ fn dwells_that_scatter_alike_tell_of_n_and_not_of_the_platform() {
 fn a_stuck_gyro_and_a_stuck_encoder_of_a_stage_are_named() {
     let scratch = Scratch::new("stuck");
     let sound = recorded();
-    let why = refused(&scratch, &mapped(&sound, &["g_rad_s"], |_| "1e-5".to_owned()));
+    let why = refused(&scratch, &mapped(sound, &["g_rad_s"], |_| "1e-5".to_owned()));
     assert!(why.contains("column g_rad_s holds the same value in "), "{why}");
     assert!(why.contains("the sensor is stuck; check its supply and cable"), "{why}");
-    let why = refused(&scratch, &mapped(&sound, &["stage_rad"], |_| "0.25".to_owned()));
+    let why = refused(&scratch, &mapped(sound, &["stage_rad"], |_| "0.25".to_owned()));
     assert!(why.contains("column stage_rad holds the same value in "), "{why}");
 }
 
