@@ -23,7 +23,7 @@ fn recorded() -> &'static str {
     })
 }
 
-/// All of that recording, which is made for this.
+/// The same recording, made at each call, with the keys that tell what its session was given.
 fn recorded_anew(scratch: &Scratch) -> String {
     let path = scratch.path("stage.csv");
     let output = meridian(&["run", "--rate", "50", "--dwell", "2", "--record", &path]);
