@@ -62,17 +62,19 @@ pub(crate) struct Cadence {
     count: u64,
     /// Outputs per second, Hz, > 0.
     hertz: f64,
+    /// When that is: it is asked for more often than outputs come.
+    next: Instant,
 }
 
 impl Cadence {
     /// Outputs whose next one comes so many periods after a moment.
     pub(crate) fn new(since: Instant, count: u64, hertz: f64) -> Self {
-        Self { since, count, hertz }
+        Self { since, count, hertz, next: period(since, count, hertz) }
     }
 
     /// When the next output comes.
     pub(crate) fn next(&self) -> Instant {
-        period(self.since, self.count, self.hertz)
+        self.next
     }
 
     /// Outputs per second, Hz.
@@ -82,7 +84,7 @@ impl Cadence {
 
     /// The next output has come.
     pub(crate) fn pass(&mut self) {
-        self.count += 1;
+        *self = Self::new(self.since, self.count + 1, self.hertz);
     }
 }
 

@@ -117,9 +117,9 @@ fn a_run_that_is_interrupted_in_its_alignment_says_what_sigma_it_had_by_then() {
     for run in [
         "stage --rate 50 --dwell 120 --hold 0",
         "two-frame --rate 50 --dwell 120 --hold 0",
-        "turntable --turns 300 --hold 0",
+        "turntable --rate 50 --turns 60 --hold 0",
     ] {
-        let steps = if run.starts_with("turntable") { "turn 300 of" } else { "dwell 12 of" };
+        let steps = if run.starts_with("turntable") { "turn 70 of" } else { "dwell 12 of" };
         let after = interrupted_at(steps, &format!("run {run} --json -v"));
         let object = ended(&after);
         let reason = object["reason"].as_str().expect("a reason");
