@@ -1,12 +1,12 @@
 //! `meridian emulate`: the firmware on an emulated Cortex-M4F, or a board's own image behind a model of its
 //! microcontroller.
 
-use std::collections::VecDeque;
-
 use clap::Args;
 use execution::options;
 use firmware::platform::Platform;
+use host::emulate::decode::Line;
 use host::emulate::executed::{Executed, Options, execute};
+use host::emulate::jobs::Job;
 use host::emulate::{STEPS, emulate};
 use host::output::manner::Manner;
 use host::output::progress::Progress;
@@ -58,37 +58,22 @@ pub fn run(options: &EmulateOptions, manner: Manner) -> Result<Answer, Failure> 
         return run_boards(carriers, options, manner);
     }
     let progress = Progress::of_steps(manner, STEPS as u64, "emulated runs");
-    let mut log = Log { progress: &progress, is_shown: manner.shows_log(), last: VecDeque::new() };
-    let found = emulate(options.seed, |line| log.take(line.to_string()), &progress);
+    let on_line = |job: &Job, line: &Line| {
+        if manner.shows_log() {
+            progress.log(&format!("{:<9} {line}", job.word));
+        }
+    };
+    let found = emulate(options.seed, &on_line, &progress);
     progress.finish();
-    let found = found.inspect_err(|_| log.say_last())?;
+    let found = found.map_err(|failed| {
+        if !manner.shows_log() {
+            failed.last.iter().for_each(|line| say(&line.to_string()));
+        }
+        failed.reason
+    })?;
     let object = emulation::object(&found);
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
     Ok(Answer::reported(refusal, manner, &object, || emulation::report(&found))?)
-}
-
-/// Lines of a log that are kept, to be shown where it ends badly.
-const LAST: usize = 10;
-
-/// The log of an image: shown as it comes where that is asked for, else its last lines where it ends badly.
-struct Log<'p> {
-    progress: &'p Progress,
-    is_shown: bool,
-    last: VecDeque<String>,
-}
-
-impl Log<'_> {
-    fn take(&mut self, line: String) {
-        if self.is_shown {
-            return self.progress.log(&line);
-        }
-        self.last.push_back(line);
-        self.last.drain(..self.last.len().saturating_sub(LAST));
-    }
-
-    fn say_last(&self) {
-        self.last.iter().for_each(|line| say(line));
-    }
 }
 
 /// Executes the images of boards; whether no azimuth is wrong.

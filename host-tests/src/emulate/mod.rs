@@ -20,19 +20,23 @@ pub mod outcome;
 pub mod qemu;
 pub mod sections;
 
+use std::collections::VecDeque;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use self::collect::Collected;
+use self::collect::{Collected, Figures};
+use self::decode::Line;
 use self::jobs::{JOBS, Job};
 use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
 use crate::refused;
-use crate::work::Follower;
+use crate::work::{Follower, side_by_side};
 
-/// Longest time for an image to run: a hundred times what is usual, and never for ever.
+/// Longest time for an image to run: five times what the longest run takes on a slow computer, and never for ever.
 const LONGEST: Duration = Duration::from_mins(10);
+/// Lines of a log that are kept, to be shown where its run ends badly.
+const LAST: usize = 10;
 
 /// All that an emulation showed.
 #[derive(Clone, Debug)]
@@ -61,7 +65,7 @@ pub struct Run {
     /// Which one.
     pub job: &'static Job,
     /// What was taken.
-    pub figures: collect::Figures,
+    pub figures: Figures,
 }
 
 impl Emulation {
@@ -74,36 +78,47 @@ impl Emulation {
     }
 }
 
+/// Why there is no emulation.
+#[derive(Clone, Debug)]
+pub struct Failed {
+    /// What is missing or what went wrong, in one line.
+    pub reason: String,
+    /// The last lines that the run said which ended badly, if one did.
+    pub last: VecDeque<Line>,
+}
+
+impl From<String> for Failed {
+    fn from(reason: String) -> Self {
+        Self { reason, last: VecDeque::new() }
+    }
+}
+
+/// Takes the lines of a run's log as they come; several runs are made at a time.
+pub type OnLine<'l> = &'l (dyn Fn(&Job, &Line) + Sync);
+
 /// Steps of an emulation: each run of the instrument with that of the host, and the cores.
 pub const STEPS: usize = JOBS.len() + 1;
 
-/// Builds, runs, compares and checks; the log's lines go to `on_line` as they come, and `follower` is told of each step.
+/// Builds, runs side by side, compares and checks; `follower` is told of each step.
 ///
 /// # Errors
-/// One line that says what is missing or what went wrong.
-pub fn emulate(
-    seed: u64,
-    mut on_line: impl FnMut(&decode::Line),
-    follower: &dyn Follower,
-) -> Result<Emulation, String> {
+/// What is missing or what went wrong; of several runs that did, the first.
+pub fn emulate(seed: u64, on_line: OnLine, follower: &dyn Follower) -> Result<Emulation, Failed> {
     qemu::require()?;
     let images = images::build()?;
     let elf = read(&images.emulator)?;
-    let (mut outcomes, mut runs) = (Vec::new(), Vec::new());
-    let mut comparison = Ok(());
-    for job in JOBS {
-        let order = format!("{seed}/{}", job.word);
-        let (emulated, figures) = instrument(&images.emulator, &elf, &order, &mut on_line)?;
-        let host = (job.on_host)(seed)?;
-        comparison = comparison.and_then(|()| outcome::compare(&emulated, &host));
-        outcomes.push(emulated);
-        runs.push(Run { job, figures });
-        follower.done();
-    }
-    let emulated = outcomes.swap_remove(0);
+    let instrument = Instrument { image: &images.emulator, elf: &elf, seed, on_line };
+    let (both, cost) = rayon::join(
+        || side_by_side(JOBS.iter(), follower, |job| instrument.on_both(job)),
+        || cores(&images.cost).inspect(|_| follower.done()),
+    );
+    let both: Vec<_> = both.into_iter().collect::<Result<_, _>>()?;
+    let (cost, cost_is_right) = cost?;
+    let comparison =
+        both.iter().try_for_each(|(_, emulated, host)| outcome::compare(emulated, host));
+    let emulated = both[0].1.clone();
+    let runs: Vec<_> = both.into_iter().map(|(run, ..)| run).collect();
     let memory = Memory::of(&elf)?;
-    let (cost, cost_is_right) = cores(&images.cost)?;
-    follower.done();
     let checks = checks::all(&runs, &memory);
     Ok(Emulation { seed, emulated, comparison, runs, memory, cost, cost_is_right, checks })
 }
@@ -112,26 +127,54 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
     fs::read(path).map_err(|error| refused::named(path.display(), &error))
 }
 
-/// Runs the image `emulator`.
-fn instrument(
-    image: &Path,
-    elf: &[u8],
-    order: &str,
-    mut on_line: impl FnMut(&decode::Line),
-) -> Result<(Outcome, collect::Figures), String> {
-    let table = decode::table(elf)?;
-    let mut stream = table.new_stream_decoder();
-    let mut collected = Collected::default();
-    let status = qemu::run(image, &["-append", order], LONGEST, |bytes| {
-        decode::take(&mut *stream, bytes, |line| {
-            on_line(line);
-            collected.take(line)
-        })
-    })?;
-    if !status.success() {
-        return Err(format!("the image `emulator` failed ({status}): its last lines say why"));
+/// The image `emulator`, and what is asked of it.
+struct Instrument<'i> {
+    image: &'i Path,
+    elf: &'i [u8],
+    seed: u64,
+    on_line: OnLine<'i>,
+}
+
+impl Instrument<'_> {
+    /// A run, what came of it, and what comes of it on the host.
+    fn on_both(&self, job: &'static Job) -> Result<(Run, Outcome, Outcome), Failed> {
+        let (emulated, figures) = self.run(job)?;
+        let host = (job.on_host)(self.seed)?;
+        Ok((Run { job, figures }, emulated, host))
     }
-    collected.finish()
+
+    /// Runs the image.
+    fn run(&self, job: &Job) -> Result<(Outcome, Figures), Failed> {
+        let mut last = VecDeque::new();
+        let run = self.collected(job, |line| {
+            (self.on_line)(job, line);
+            last.push_back(line.clone());
+            last.drain(..last.len().saturating_sub(LAST));
+        });
+        run.map_err(|reason| Failed { reason: format!("{}: {reason}", job.word), last })
+    }
+
+    /// Runs the image and collects what it says.
+    fn collected(
+        &self,
+        job: &Job,
+        mut on_line: impl FnMut(&Line),
+    ) -> Result<(Outcome, Figures), String> {
+        let table = decode::table(self.elf)?;
+        let mut stream = table.new_stream_decoder();
+        let mut collected = Collected::default();
+        let order = format!("{}/{}", self.seed, job.word);
+        let status = qemu::run(self.image, &["-append", &order], LONGEST, |bytes| {
+            decode::take(&mut *stream, bytes, |line| {
+                on_line(line);
+                collected.take(line)
+            })
+        })?;
+        if !status.success() {
+            return Err(format!("the image `emulator` failed ({status}): its last lines say why"));
+        }
+        collected.finish()
+    }
 }
 
 /// Runs the image `cost`.
