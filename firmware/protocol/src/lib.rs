@@ -1,0 +1,13 @@
+//! What the instrument sends and takes over its link, as pure codecs: numbers in, bytes out, and back.
+//!
+//! | module | what it is |
+//! |---|---|
+//! | [`report`] | the instrument's attitude and state, of which all that is sent is made |
+//! | [`nmea`] | sentences of NMEA 0183 |
+//!
+//! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod nmea;
+pub mod report;

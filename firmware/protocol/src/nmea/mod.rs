@@ -1,0 +1,50 @@
+//! Sentences of NMEA 0183, as public descriptions of IEC 61162-1 have them: at most 82 characters from `$` to the line's
+//! end, a checksum of two hexadecimal digits in capitals, numbers of variable length, empty fields for what is unknown.
+//!
+//! | sentence | what | while it is not valid |
+//! |---|---|---|
+//! | [`hdt`] | heading, true | the field is empty |
+//! | [`ths`] | heading, true, with its mode | the field is empty, mode V |
+//! | [`rot`] | rate of turn | the field is empty, status V |
+//! | [`phtro`] | pitch and roll, as fibre-optic gyrocompasses send them | it is not sent |
+//! | [`phinf`] | their word of status | its bits say so |
+//! | [`pmrds`] | state, σ, faults: the instrument's own | its fields are empty |
+//! | [`txt`] | words | |
+//!
+//! The talker is HE, a gyrocompass that seeks north.
+
+mod fixed;
+mod heading;
+mod inclination;
+mod status;
+
+pub use heading::{hdt, rot, ths};
+pub use inclination::phtro;
+pub use status::{phinf, pmrds, txt};
+
+use core::fmt::{self, Write as _};
+
+use heapless::String;
+
+/// Most characters of a sentence, `$` and the end of the line included.
+pub const LONGEST: usize = 82;
+/// Characters of a sentence beside its content: `$`, `*`, two digits, carriage return and line feed.
+const FRAME: usize = 6;
+
+/// A sentence with its frame and the end of its line.
+pub type Sentence = String<LONGEST>;
+
+/// The checksum of a sentence's content: all its bytes, added modulo two.
+#[must_use]
+pub fn checksum(content: &[u8]) -> u8 {
+    content.iter().fold(0, |sum, byte| sum ^ byte)
+}
+
+/// A sentence of this content; [`None`] if it is too long for one, which no sentence of this module is.
+fn sentence(content: fmt::Arguments) -> Option<Sentence> {
+    let mut inner = String::<{ LONGEST - FRAME }>::new();
+    inner.write_fmt(content).ok()?;
+    let mut sentence = Sentence::new();
+    write!(sentence, "${inner}*{:02X}\r\n", checksum(inner.as_bytes())).ok()?;
+    Some(sentence)
+}

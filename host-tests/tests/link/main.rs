@@ -1,0 +1,4 @@
+//! What goes over the link: sentences and messages as others read them.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+mod sentences;
