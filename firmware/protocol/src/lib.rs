@@ -4,10 +4,12 @@
 //! |---|---|
 //! | [`report`] | the instrument's attitude and state, of which all that is sent is made |
 //! | [`nmea`] | sentences of NMEA 0183 |
+//! | [`mavlink`] | messages of MAVLink 2 |
 //!
 //! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod mavlink;
 pub mod nmea;
 pub mod report;

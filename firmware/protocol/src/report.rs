@@ -89,6 +89,10 @@ pub struct Report {
     pub level: Option<Level>,
     /// Rate of the azimuth, clockwise positive, which needs no azimuth; [`None`] while it is unknown.
     pub rate_of_turn: Option<RadiansPerSecond>,
+    /// Rates of the body about its axes forward, right, down; [`None`] while they are unknown.
+    pub rates: Option<[RadiansPerSecond; 3]>,
+    /// How often the azimuth has been set anew rather than carried on; it begins anew after 255.
+    pub resets: u8,
     /// Readings that failed since the start.
     pub faults: u32,
     /// Devices that have failed and are not restored.
