@@ -5,6 +5,7 @@
 //! | [`report`] | the instrument's attitude and state, of which all that is sent is made |
 //! | [`nmea`] | sentences of NMEA 0183 |
 //! | [`mavlink`] | messages of MAVLink 2 |
+//! | [`receiver`] | lines and frames among the bytes that are received |
 //!
 //! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
 #![no_std]
@@ -12,4 +13,5 @@
 
 pub mod mavlink;
 pub mod nmea;
+pub mod receiver;
 pub mod report;
