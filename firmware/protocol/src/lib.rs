@@ -5,13 +5,17 @@
 //! | [`report`] | the instrument's attitude and state, of which all that is sent is made |
 //! | [`nmea`] | sentences of NMEA 0183 |
 //! | [`mavlink`] | messages of MAVLink 2 |
+//! | [`command`] | commands as lines of text |
+//! | [`position`] | the latitude that a satellite receiver states |
 //! | [`receiver`] | lines and frames among the bytes that are received |
 //!
 //! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod command;
 pub mod mavlink;
 pub mod nmea;
+pub mod position;
 pub mod receiver;
 pub mod report;

@@ -1,6 +1,7 @@
 //! What goes over the link: sentences and messages as others read them.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+mod commands;
 mod messages;
 mod receiver;
 mod sentences;
