@@ -33,7 +33,7 @@ pub fn latitude(line: &str) -> Option<Latitude> {
         _ => return None,
     };
     let degrees = degrees(field(place)?).filter(|_| is_valid)?;
-    Latitude::from_degrees(sign * degrees).ok()
+    Latitude::from_degrees(sign * degrees)
 }
 
 /// Degrees of a field `ddmm.mmmm`: two digits of degrees, two of minutes, and their decimal places.
@@ -41,6 +41,7 @@ fn degrees(field: &str) -> Option<f64> {
     let (degrees, minutes) = field.split_at_checked(2)?;
     let has_two_digits = minutes.find('.').unwrap_or(minutes.len()) == 2;
     let (degrees, minutes) = (number(degrees).ok()?, number(minutes).ok()?);
-    let is_one = has_two_digits && (0.0..=90.0).contains(&degrees) && (0.0..MINUTES).contains(&minutes);
+    let is_one =
+        has_two_digits && (0.0..=90.0).contains(&degrees) && (0.0..MINUTES).contains(&minutes);
     is_one.then(|| degrees + minutes / MINUTES)
 }

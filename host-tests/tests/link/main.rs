@@ -3,5 +3,6 @@
 
 mod commands;
 mod messages;
+mod positions;
 mod receiver;
 mod sentences;
