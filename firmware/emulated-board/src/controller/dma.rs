@@ -16,8 +16,10 @@ pub struct Channel {
     peripheral: u32,
     /// `DMA_CMARx`.
     memory: u32,
-    /// Items at the beginning.
+    /// Items at the beginning: the number that was written last, to which a circular channel returns (11.4.5).
     items: u32,
+    /// Whether an item was transferred since their number was written.
+    is_used: bool,
 }
 
 /// A transfer of one item that a channel is to do.
@@ -39,6 +41,11 @@ impl Channel {
     /// Whether it is enabled and has items left.
     pub fn is_armed(&self) -> bool {
         self.control & 1 != 0 && self.left > 0
+    }
+
+    /// Whether it has transferred items, and has some left, since their number was written.
+    const fn is_amid(&self) -> bool {
+        self.left > 0 && self.is_used
     }
 
     /// The item that is next.
@@ -84,7 +91,7 @@ impl Dma {
     pub fn take(&mut self, channel: usize) -> Option<Item> {
         let armed = self.channels.get_mut(channel).filter(|channel| channel.is_armed())?;
         let item = armed.item();
-        armed.left -= 1;
+        (armed.left, armed.is_used) = (armed.left - 1, true);
         self.transfers += 1;
         let flag = |bit: u32| 1 << (4 * channel as u32 + bit);
         if 2 * armed.left == armed.items {
@@ -149,19 +156,23 @@ impl Dma {
                     0 if value & 0x4000 != 0 => {
                         return Err(Refused::NotModelled("transfers from memory to memory"));
                     }
-                    0 => {
-                        if value & 1 != 0 && channel.control & 1 == 0 {
-                            channel.items = channel.left;
-                        }
-                        channel.control = value;
+                    // What is left would not be transferred for certain (11.4.5).
+                    0 if value & !channel.control & 1 != 0 && channel.is_amid() => {
+                        return Err(Refused::NotModelled(
+                            "a channel that goes on amid its items without their number being written again",
+                        ));
                     }
+                    0 => channel.control = value,
                     // A channel that is enabled keeps its settings (11.6.4 to 11.6.6).
                     _ if channel.control & 1 != 0 => {
                         return Err(Refused::NotModelled(
                             "a channel that is changed while it is enabled",
                         ));
                     }
-                    1 => channel.left = value & 0xFFFF,
+                    1 => {
+                        let items = value & 0xFFFF;
+                        (channel.items, channel.left, channel.is_used) = (items, items, false);
+                    }
                     2 => channel.peripheral = value,
                     _ => channel.memory = value,
                 }

@@ -239,7 +239,7 @@ impl Controller {
                 self.spi[bus].receive(self.wiring.finish(bus));
             }
         }
-        if self.usart.advance(at) {
+        if self.usart.advance(at, self.hertz) {
             self.wiring.frame(self.usart.baud(self.hertz));
         }
         if self.i2c.due() <= at {

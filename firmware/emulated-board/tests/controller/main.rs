@@ -10,6 +10,7 @@ mod flash;
 mod pins;
 mod power;
 mod resets;
+mod ring;
 mod serial;
 
 use std::cell::RefCell;

@@ -152,14 +152,136 @@ fn the_wires_hear_of_the_rate_of_each_frame_both_ways() {
     assert_eq!(bench.wires.0.borrow().rates.len(), 2, "it was lost");
 }
 
+/// Whether the port tells of an idle line (40.8.8, bit 4).
+fn is_idle(bench: &mut Bench) -> bool {
+    bench.read(PORT + 0x1C) & 1 << 4 != 0
+}
+
+/// A port that has told of the first idle line, at which it interrupts.
+fn quiet_port() -> Bench {
+    let mut bench = port();
+    bench.pass(FRAME);
+    bench.write(PORT + 0x20, 1 << 4);
+    bench.write(PORT, 0x1D);
+    bench
+}
+
+#[test]
+fn an_idle_line_is_told_a_frame_after_the_last_byte_and_once() {
+    let mut bench = quiet_port();
+    bench.controller.hear(b"xy", bench.now);
+    // Two frames of 1000 µs, and ten bits without one.
+    bench.pass(Time::microseconds(2999));
+    assert!(!is_idle(&mut bench) && !bench.interrupts(37));
+    bench.pass(Time::microseconds(1));
+    assert!(is_idle(&mut bench) && bench.interrupts(37));
+    bench.write(PORT + 0x20, 1 << 4);
+    assert!(!is_idle(&mut bench) && !bench.interrupts(37));
+    bench.pass(FRAME.times(5));
+    assert!(!is_idle(&mut bench), "nothing has come since");
+}
+
+#[test]
+fn an_idle_line_that_nobody_clears_stays_while_bytes_come() {
+    let mut bench = quiet_port();
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(FRAME.times(2));
+    bench.controller.hear(b"y", bench.now);
+    bench.pass(FRAME);
+    assert!(is_idle(&mut bench) && bench.interrupts(37));
+    bench.write(PORT, 0xD);
+    assert!(is_idle(&mut bench) && !bench.interrupts(37), "it is told, and not asked for");
+}
+
+#[test]
+fn the_first_idle_line_after_the_receiver_is_switched_on_is_told_without_a_byte() {
+    // 40.8.8 asks for a byte only before the next one.
+    for (control, is_told) in [(0xD, true), (0x5, true), (0x9, false), (0xC, false)] {
+        let mut bench = Bench::new();
+        bench.write(PORT + 0x0C, 400);
+        bench.write(PORT, control);
+        bench.pass(Time::microseconds(999));
+        assert!(!is_idle(&mut bench), "{control:#x}");
+        bench.pass(Time::microseconds(1));
+        assert_eq!(is_idle(&mut bench), is_told, "{control:#x}");
+    }
+}
+
+#[test]
+fn a_byte_within_a_frame_after_another_leaves_no_idle_line_between_them() {
+    let mut bench = quiet_port();
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(FRAME + Time::microseconds(900));
+    bench.controller.hear(b"y", bench.now);
+    bench.pass(Time::microseconds(1999));
+    assert!(!is_idle(&mut bench));
+    bench.pass(Time::microseconds(1));
+    assert!(is_idle(&mut bench));
+}
+
+#[test]
+fn a_frame_that_is_lost_keeps_the_line_from_being_idle() {
+    let mut bench = port();
+    bench.write(PORT, 0x9);
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(Time::microseconds(250));
+    bench.write(PORT, 0xD);
+    bench.pass(Time::microseconds(1749));
+    assert!(!is_idle(&mut bench), "the frame ended 999 µs ago");
+    bench.pass(Time::microseconds(1));
+    assert!(is_idle(&mut bench));
+    assert_eq!(received(&mut bench), None);
+}
+
+#[test]
+fn an_idle_line_lasts_a_frame_at_the_rate_of_the_receiver() {
+    let mut bench = quiet_port();
+    // 4 MHz / 800 are 5000 baud: ten bits of 200 µs.
+    bench.write(PORT + 0x0C, 800);
+    bench.controller.hear(b"x", bench.now);
+    bench.pass(FRAME + Time::microseconds(1999));
+    assert!(!is_idle(&mut bench));
+    bench.pass(Time::microseconds(1));
+    assert!(is_idle(&mut bench));
+}
+
+#[test]
+fn the_port_is_busy_from_the_start_to_the_end_of_a_frame_that_it_hears() {
+    let mut bench = port();
+    let is_busy = |bench: &mut Bench| bench.read(PORT + 0x1C) >> 16 & 1 != 0;
+    assert!(!is_busy(&mut bench));
+    bench.controller.hear(b"x", bench.now);
+    assert!(is_busy(&mut bench));
+    bench.pass(Time::microseconds(999));
+    assert!(is_busy(&mut bench));
+    bench.pass(Time::microseconds(1));
+    assert!(!is_busy(&mut bench));
+}
+
+#[test]
+fn an_overrun_interrupts_where_errors_are_to_and_ends_with_its_flag() {
+    for (errors, interrupts) in [(0, false), (1, true)] {
+        let mut bench = port();
+        bench.write(PORT + 8, errors);
+        bench.controller.hear(b"xy", bench.now);
+        bench.pass(FRAME);
+        assert!(!bench.interrupts(37));
+        bench.pass(FRAME);
+        assert_eq!(bench.interrupts(37), interrupts, "EIE {errors}");
+        bench.write(PORT + 0x20, 1 << 3);
+        assert!(!bench.interrupts(37));
+        assert_eq!(bench.read(PORT + 0x1C) & 8, 0);
+    }
+}
+
 #[test]
 fn what_the_serial_port_does_not_do_here_is_refused() {
-    // CR1: nine bits, parity, oversampling, an idle line that interrupts; CR2: two stop bits; CR3: a handshake; RQR: a break.
+    // CR1: nine bits, parity, oversampling, a wrong parity that interrupts; CR2: two stop bits; CR3: a handshake; RQR: a break.
     for (offset, value) in [
         (0x00, 1 << 12),
         (0x00, 1 << 10),
         (0x00, 1 << 15),
-        (0x00, 1 << 4),
+        (0x00, 1 << 8),
         (0x04, 2 << 12),
         (0x08, 1 << 8),
         (0x18, 2),
