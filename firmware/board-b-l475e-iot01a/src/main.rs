@@ -165,7 +165,7 @@ async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link
         defmt::info!("board: {} records of the log in flash", records);
         words[8] = "log in flash\r\n";
     }
-    link::say(link, &words).await;
+    link::say(&mut link.sender, &words).await;
 }
 
 /// Runs the program of the carrier.

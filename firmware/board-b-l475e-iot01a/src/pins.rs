@@ -1,13 +1,13 @@
 //! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
 
-use embassy_stm32::gpio::{Level, Output, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::interrupt::{Interrupt, InterruptExt};
 use embassy_stm32::peripherals::{
-    DMA1_CH5, DMA2_CH6, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1, PB2, PB4,
-    PB10, PB11, PC3, PC4, PD0, PD2, PD5,
+    DMA1_CH5, DMA2_CH6, DMA2_CH7, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1,
+    PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5, USART1,
 };
 use embassy_stm32::spi::Spi;
-use embassy_stm32::usart::{self, ConfigError, UartTx};
+use embassy_stm32::usart::{self, ConfigError, Uart};
 use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
 use firmware::platform::Platform;
 use firmware::ports::Frames;
@@ -25,6 +25,8 @@ use crate::clock;
 
 bind_interrupts!(struct Interrupts {
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
+    DMA2_CHANNEL7 => dma::InterruptHandler<DMA2_CH7>;
+    USART1 => usart::InterruptHandler<USART1>;
 });
 
 /// The events of the bus of the base.
@@ -104,7 +106,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// Connects all that several carriers have, and the link for status lines.
+    /// Connects all that several carriers have, and the link.
     ///
     /// # Errors
     /// An invalid configuration of the serial port.
@@ -126,7 +128,8 @@ impl Board {
         unsafe {
             edges::NOTIFIER.enable();
         }
-        let link = UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?;
+        let (send, receive) = (p.DMA2_CH6, p.DMA2_CH7);
+        let port = Uart::new(p.USART1, p.PB7, p.PB6, send, receive, Interrupts, link_settings())?;
         let board = Self {
             buses,
             converter: (p.PA2, ready),
@@ -139,7 +142,7 @@ impl Board {
             ready: (p.PB0, p.PB1, p.PC4, p.PC3),
             lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
         };
-        Ok((board, link))
+        Ok((board, Link::new(port)))
     }
 
     /// Flash of the controller.
@@ -204,6 +207,14 @@ impl Board {
         }
         SpinWires { converters, outlets }
     }
+}
+
+/// Settings of the link's port: 115 200 baud, eight bits, no parity, one stop bit. A pull-up has a line that nothing
+/// drives read as one at rest.
+fn link_settings() -> usart::Config {
+    let mut settings = usart::Config::default();
+    settings.rx_pull = Pull::Up;
+    settings
 }
 
 /// Pins of the IMU on the base.

@@ -4,7 +4,7 @@
 //! |--:|---|---|
 //! | 0 | edges of the data-ready lines; on a spinning body the transfers that they begin | a stamp is as late as its interrupt: nothing may come first, no critical section either |
 //! | 1 | the notifier of these | it wakes their tasks, as what a critical section holds back may |
-//! | 2 | alarms of the time driver, the bus of the base, direct memory access | they move data and wake tasks, which may take some microseconds |
+//! | 2 | alarms of the time driver, the bus of the base, the link and its direct memory access | they move data and wake tasks, which may take some microseconds |
 //! | 6 | the executor of acquisition | what is read belongs to the moment of its conversion |
 //! | 8 | the executor of control: motors and keeper | they must not wait for a conclusion, but may work for a millisecond |
 //! | thread | the executor of the thread: aligner, conclusions, link, store | |
@@ -22,9 +22,15 @@ const EDGES: [Interrupt; 6] = [
     Interrupt::DMA1_CHANNEL2,
 ];
 
-/// Time driver, bus of the base, direct memory access of the link.
-const OTHERS: [Interrupt; 4] =
-    [Interrupt::TIM1_BRK_TIM15, Interrupt::I2C2_EV, Interrupt::I2C2_ER, Interrupt::DMA2_CHANNEL6];
+/// Time driver, bus of the base, the link with its direct memory access both ways.
+const OTHERS: [Interrupt; 6] = [
+    Interrupt::TIM1_BRK_TIM15,
+    Interrupt::I2C2_EV,
+    Interrupt::I2C2_ER,
+    Interrupt::USART1,
+    Interrupt::DMA2_CHANNEL6,
+    Interrupt::DMA2_CHANNEL7,
+];
 
 /// The executors of acquisition and of control. The peripherals of these interrupts are not used: a master of a
 /// single-wire protocol, and a controller of touch keys.

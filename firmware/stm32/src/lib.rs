@@ -173,10 +173,11 @@ async fn find_and_report<S: Timed>(
     channels: &'static Channels<S>,
 ) -> ! {
     let shared = &channels.shared;
-    find(method, &(), Outside { link, recorder, store }, channels).await;
+    let outside = Outside { link: &mut link.sender, recorder, store };
+    find(method, &(), outside, channels).await;
     shared.over.signal(());
     defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
-    shared.checked(Part::Link, pin!(link::repeat(link, channels))).await
+    shared.checked(Part::Link, pin!(link::repeat(&mut link.sender, channels))).await
 }
 
 /// Goes on with what has begun, without end, where nothing but a heading is kept; or says why nothing has.
@@ -196,5 +197,6 @@ async fn go_on<M: Method<S>, S: Timed>(
 /// Says why nothing begins: once in the log, every second over the link.
 async fn refuse(reason: NotBegun, link: &mut Link, log: &BoardLog) -> ! {
     log.keep(Weight::Outcome, || defmt::error!("board: {}", reason));
-    Checked::new(log.check_ins(), Part::Link, pin!(link::refuse(link, reason.brief()))).await
+    Checked::new(log.check_ins(), Part::Link, pin!(link::refuse(&mut link.sender, reason.brief())))
+        .await
 }
