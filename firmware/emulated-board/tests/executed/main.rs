@@ -7,6 +7,7 @@ mod clocks;
 mod conclusion;
 mod cost;
 mod course;
+mod hearing;
 mod rules;
 mod settings;
 mod sound;

@@ -67,15 +67,20 @@ impl Executed {
 
 /// The order's image in a world.
 pub fn execute_in(order: &Order, world: World) -> Executed {
-    execute_image(&image(order.carrier), order, world)
+    execute_spoken_to(order, world, &[])
 }
 
-/// An image in a world.
-fn execute_image(image: &Rc<Image>, order: &Order, world: World) -> Executed {
+/// The order's image in a world whose other side of the link sends these bytes every millisecond.
+pub fn execute_spoken_to(order: &Order, world: World, bytes: &[u8]) -> Executed {
+    execute_image(&image(order.carrier), order, world, bytes)
+}
+
+/// An image in a world whose other side of the link sends these bytes every millisecond.
+fn execute_image(image: &Rc<Image>, order: &Order, world: World, bytes: &[u8]) -> Executed {
     let (mut log, mut link) = (Vec::new(), Vec::new());
     let on_link = |sent: &[u8]| {
         link.extend_from_slice(sent);
-        Vec::new()
+        bytes.to_vec()
     };
     let report = execute(image, order, world, |line| log.push(Entry::of(line)), on_link);
     let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
@@ -117,6 +122,6 @@ pub fn sampled_fast(carrier: Platform) -> Arc<Executed> {
     once(format!("{carrier} {FEATURE}"), || {
         let image = read(&found(carrier, Some(FEATURE)), carrier);
         let world = World::new(carrier, 1).expect("the usual world can be made");
-        execute_image(&image, &Order::usual(carrier, 1), world)
+        execute_image(&image, &Order::usual(carrier, 1), world, &[])
     })
 }
