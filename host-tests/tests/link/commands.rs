@@ -63,7 +63,9 @@ fn sentences_for_others_are_none_of_ours() {
         "$PMRDS,ready,0.039*00",
         "$PMRDCX,start*00",
     ];
-    others.iter().for_each(|line| assert_eq!(parse(line), None, "{line}"));
+    for line in others {
+        assert_eq!(parse(line), None, "{line}");
+    }
 }
 
 #[test]

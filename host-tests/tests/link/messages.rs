@@ -102,14 +102,16 @@ fn an_estimate_has_the_angles_their_variances_and_no_number_that_is_none() {
     };
     assert_eq!((estimate.usec, estimate.reset_counter), (12_345_678, 3));
     assert_eq!([estimate.x, estimate.y, estimate.z], [0.0; 3]);
-    let angles = [estimate.roll, estimate.pitch, estimate.yaw].map(|angle| angle.to_degrees());
+    let angles = [estimate.roll, estimate.pitch, estimate.yaw].map(f32::to_degrees);
     for (angle, expected) in angles.into_iter().zip([-3.0, 5.0, -160.0]) {
         assert!((angle - expected).abs() < 1e-4, "{angle}° instead of {expected}°");
     }
     let mut expected = [0.0; 21];
     let [heading, level] = SIGMAS.map(|sigma| (sigma * sigma) as f32);
     let variances = [(0, 1e4), (6, 1e4), (11, 1e4), (15, level), (18, level), (20, heading)];
-    variances.iter().for_each(|(place, variance)| expected[*place] = *variance);
+    for (place, variance) in variances {
+        expected[place] = variance;
+    }
     for (found, expected) in estimate.covariance.into_iter().zip(expected) {
         assert!((found - expected).abs() <= 1e-6 * expected, "{found} instead of {expected}");
     }

@@ -12,11 +12,13 @@ use protocol::report::{Degradation, Level, Origin, Report, State};
 const ALL: [fn(&Report) -> Option<Sentence>; 6] = [hdt, ths, rot, phtro, phinf, pmrds];
 
 /// An azimuth and its 1σ, °.
+#[expect(clippy::unnecessary_wraps, reason = "as a report has it")]
 fn azimuth(angle: f64, sigma: f64) -> Option<Azimuth> {
     Some(Azimuth { angle: Radians::from_degrees(angle), sigma: Radians::from_degrees(sigma) })
 }
 
 /// Pitch, roll and their 1σ, °.
+#[expect(clippy::unnecessary_wraps, reason = "as a report has it")]
 fn level([pitch, roll, sigma]: [f64; 3]) -> Option<Level> {
     let [pitch, roll, sigma] = [pitch, roll, sigma].map(Radians::from_degrees);
     Some(Level { pitch, roll, sigma })
@@ -151,7 +153,9 @@ fn the_letters_of_pitch_and_roll_are_those_of_fibre_optic_gyrocompasses() {
 fn devices_that_have_failed_are_bits_of_the_status() {
     let word = |devices: &[Device]| {
         let mut report = ready();
-        devices.iter().for_each(|device| report.failed.insert(*device));
+        for device in devices {
+            report.failed.insert(*device);
+        }
         text(phinf(&report))[7..15].to_owned()
     };
     assert_eq!(word(&[Device::Gyro]), "00000100");
