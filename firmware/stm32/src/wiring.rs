@@ -27,8 +27,8 @@ const RECEIVED: usize = 256;
 /// The serial port, both ways.
 pub struct Link {
     /// What it receives, in a ring buffer that direct memory access fills without end, whatever the core does.
-    /// Whoever reads must come before the ring is full, at least every 22 ms while bytes come; one that is never read
-    /// is written over and over, and nothing else notices.
+    /// It is to be read before the ring is full, at least every 22 ms while bytes come. A ring that is not read is
+    /// written over and over, which disturbs nothing else.
     pub receiver: RingBufferedUartRx<'static>,
     /// What it sends: status lines.
     pub sender: UartTx<'static, Async>,

@@ -1,4 +1,4 @@
-//! A board to whose link the other side sends without a pause, while nobody reads it.
+//! A board that receives over its link without a pause, while no task reads what comes.
 
 use emulated_board::run::Order;
 use execution::report::{Report, Service};
