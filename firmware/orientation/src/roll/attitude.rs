@@ -4,13 +4,15 @@
 use super::phase_accumulator::sine_and_cosine;
 use super::spin::Spin;
 use crate::signal::SpinSample;
-use crate::units::{Angle, AngleIncrement, Radians, wrapped};
+use crate::units::{Angle, AngleIncrement, Radians, TURN, wrapped};
 
 /// Number of samples over which the transverse rotation is summed before course and pitch are
 /// updated.
 const SAMPLES: u32 = 16;
 /// Greatest pitch up to which a course is propagated, rad: 89°.
-const STEEPEST: f64 = 1.553;
+const STEEPEST: f32 = 1.553;
+/// Steps of an [`Angle`] in a radian.
+const STEPS: f32 = (1.0 / Angle::STEP) as f32;
 
 /// Course and pitch of a spinning body; the roll is [`Spin::roll`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,13 +55,17 @@ impl Attitude {
     /// Updates course and pitch with the summed rotation.
     #[inline(never)]
     fn update(&mut self) {
-        let [up, right] =
-            [self.up, self.right].map(|steps| f64::from(steps) * AngleIncrement::STEP);
+        let [up, right] = [self.up, self.right].map(|steps| steps * AngleIncrement::STEP as f32);
         (self.up, self.right, self.count) = (0.0, 0.0, 0);
-        let middle = self.pitch.0 + 0.5 * up;
-        self.pitch.0 += up;
+        let middle = self.pitch.0 as f32 + 0.5 * up;
+        self.pitch.0 += f64::from(up);
         if middle.abs() < STEEPEST {
-            self.course = Radians(wrapped(self.course.0 + right / libm::cos(middle)));
+            // Within a quarter of a turn, so that it fits.
+            let middle = Angle(((middle * STEPS) as i32).cast_unsigned());
+            let [_, cosine] = sine_and_cosine(middle);
+            let course = self.course.0 + f64::from(right / cosine);
+            let is_whole = (0.0..TURN).contains(&course);
+            self.course = Radians(if is_whole { course } else { wrapped(course) });
         }
     }
 }
