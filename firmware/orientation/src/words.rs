@@ -12,7 +12,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded<const PLACES: usize>(pub f64);
 
-// In integers, since a status line of a board has such numbers: core's own formatting of floats takes
+// In integers, since the link of a board tells such numbers: core's own formatting of floats takes
 // 10 KB of flash.
 impl<const PLACES: usize> fmt::Display for Rounded<PLACES> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -58,6 +58,57 @@ impl<const PLACES: usize> defmt::Format for Rounded<PLACES> {
     fn format(&self, f: defmt::Formatter) {
         let unit = (0..PLACES).fold(1.0, |unit, _| unit * 10.0);
         defmt::write!(f, "{}", libm::round(self.0 * unit) / unit);
+    }
+}
+
+/// A number of any size that is printed with nine significant digits at most, without zeros at their end; below a millionth
+/// with a power of ten. The `defmt` log has all of its digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shortened(pub f64);
+
+/// Decimal places of a [`Shortened`] number from one to ten.
+const PLACES: u32 = 8;
+/// Greatest number of decimal places, of a number from a millionth on.
+const MOST_PLACES: u32 = 14;
+
+// In integers, as `Rounded`.
+impl fmt::Display for Shortened {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = self.0.abs();
+        if number.is_nan() || number > 1e18 {
+            return Rounded::<0>(self.0).fmt(f);
+        }
+        // Powers of ten up to the 22nd are exact.
+        let (mut scale, mut power) = (1.0, 0);
+        while number > 0.0 && number < 1e-6 && number * scale < 1.0 && power < 22 {
+            (scale, power) = (scale * 10.0, power + 1);
+        }
+        let number = number * scale;
+        let (mut places, mut bound) = (PLACES, 10.0);
+        while places > 0 && number >= bound {
+            (places, bound) = (places - 1, bound * 10.0);
+        }
+        bound = 1.0;
+        while number > 0.0 && number < bound && places < MOST_PLACES {
+            (places, bound) = (places + 1, bound / 10.0);
+        }
+        let (whole, mut part) = decimals(number, places);
+        while places > 0 && part.is_multiple_of(10) {
+            (part, places) = (part / 10, places - 1);
+        }
+        let sign = if self.0 < 0.0 { "-" } else { "" };
+        write!(f, "{sign}{}", whole as u64)?;
+        if places > 0 {
+            write!(f, ".{part:0width$}", width = places as usize)?;
+        }
+        if power > 0 { write!(f, "e-{power}") } else { Ok(()) }
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Shortened {
+    fn format(&self, f: defmt::Formatter) {
+        defmt::write!(f, "{}", self.0);
     }
 }
 

@@ -71,6 +71,11 @@ pub trait Method<S> {
     /// The verdict; [`None`] until the alignment is over.
     fn verdict(&self) -> Option<Verdict>;
 
+    /// Standard deviation of the azimuth that is required, 1σ; [`None`] from a method that determines none.
+    fn required_sigma(&self) -> Option<Radians> {
+        None
+    }
+
     /// The axis misalignment that the alignment has found at the speed of this index, to be saved
     /// against a loss of supply; [`None`] from any method without rate-modulated turns.
     fn misalignment(&self, _speed: usize) -> Option<AxisMisalignment> {

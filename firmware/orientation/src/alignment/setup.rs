@@ -2,7 +2,7 @@
 
 use crate::filter::DesignError;
 use crate::units::{Radians, TURN};
-use crate::words::Rounded;
+use crate::words::{Rounded, Shortened};
 
 /// Reason for which an alignment cannot begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,8 @@ impl core::error::Error for SetupError {}
 
 crate::words! { SetupError:
     Self::OutOfRange(Quantity { name, value, range: [least, greatest] }) =>
-        "{} is {}, which is not from {} to {}", name, value, least, greatest;
+        "{} is {}, which is not from {} to {}",
+        name, Shortened(value), Shortened(least), Shortened(greatest);
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;

@@ -13,7 +13,7 @@ use super::setting::Gyro;
 use super::vertical::Vertical;
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
-use crate::math::quaternion::angles;
+use crate::math::quaternion::{Attitude, angles};
 use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other, and at which an
@@ -21,7 +21,9 @@ use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 const BOUND: f64 = 4.0;
 
 /// Error of a level that is not known any more, 1σ, rad: it says of no axis that it is upright.
-const LOST: f64 = 0.1;
+const LOST: f32 = 0.1;
+/// Square of [`BOUND`].
+const SQUARE_OF_BOUND: f32 = (BOUND * BOUND) as f32;
 
 /// Outcome of a new alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,49 +45,58 @@ pub enum Realigned {
 
 /// Slope of body x at a moment, on which an error ε of the level about the horizontal below body x turns
 /// its azimuth by ε·tan P.
+///
+/// In single precision, and without a function of an angle: it is of errors, and ten times a second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slope {
     /// Cosine and tangent of the pitch P.
-    cosine: f64,
-    tangent: f64,
-    /// Roll, rad.
-    roll: f64,
+    cosine: f32,
+    tangent: f32,
+    /// Sine and cosine of the roll.
+    roll: [f32; 2],
     /// Variance of the level's error, rad².
-    variance: f64,
+    variance: f32,
 }
 
 impl Slope {
     /// The present one.
     fn of(vertical: &Vertical) -> Self {
-        let [_, pitch, roll] = angles(vertical.attitude().parts());
-        let (sine, cosine) = libm::sincos(pitch);
-        let sigma = f64::from(vertical.sigma());
-        Self { cosine, tangent: sine / cosine, roll, variance: sigma * sigma }
+        Self::of_attitude(&vertical.attitude(), vertical.sigma())
+    }
+
+    /// That of an attitude whose level has an error, 1σ, rad. Upright, the roll is zero.
+    fn of_attitude(attitude: &Attitude, sigma: f32) -> Self {
+        let [.., [forward, right, down]] = attitude.rough_matrix();
+        let cosine = libm::sqrtf(right * right + down * down);
+        let roll = if cosine > 0.0 { [right / cosine, down / cosine] } else { [0.0, 1.0] };
+        Self { cosine, tangent: -forward / cosine, roll, variance: sigma * sigma }
     }
 
     /// Whether body x may be upright, so that it has no azimuth.
     fn is_upright(&self) -> bool {
-        self.cosine * self.cosine < BOUND * BOUND * self.variance.min(LOST * LOST)
+        self.cosine * self.cosine < SQUARE_OF_BOUND * self.variance.min(LOST * LOST)
     }
 
     /// Variance of what the level's error turns the azimuth by, rad².
-    fn of_azimuth(&self) -> f64 {
+    fn of_azimuth(&self) -> f32 {
         self.variance * self.tangent * self.tangent
     }
 
     /// Variance of what the level's error turned the azimuth by since an earlier moment, rad². The smaller of both errors is
     /// taken for that of the accelerometers, which both have in common and which stays with the body.
     fn variance_since(&self, before: &Self) -> f64 {
-        let common = self.variance.min(before.variance) * libm::cos(self.roll - before.roll);
+        let [[sine, cosine], [earlier_sine, earlier_cosine]] = [self.roll, before.roll];
+        let of_difference = sine * earlier_sine + cosine * earlier_cosine;
+        let common = self.variance.min(before.variance) * of_difference;
         let both = self.of_azimuth() + before.of_azimuth();
-        (both - 2.0 * common * self.tangent * before.tangent).max(0.0)
+        (both - 2.0 * common * self.tangent * before.tangent).max(0.0).into()
     }
 
     /// Ends what it has in common with later ones, and returns the variance that is left of it, rad².
     fn part(&mut self) -> f64 {
         let variance = self.of_azimuth();
         self.tangent = 0.0;
-        variance
+        variance.into()
     }
 }
 
@@ -118,8 +129,20 @@ impl Heading {
 
     /// Present azimuth of body x; where that may be upright σ is π.
     pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
-        let angle = Radians(wrapped(self.frame + course(vertical)));
-        let slope = Slope::of(vertical);
+        let attitude = vertical.attitude();
+        let [course, ..] = angles(attitude.parts());
+        self.azimuth_of(&attitude, course, vertical)
+    }
+
+    /// The same of the vertical's present attitude, and the course of body x on the level frame, rad, which is that attitude's.
+    pub(super) fn azimuth_of(
+        &self,
+        attitude: &Attitude,
+        course: f64,
+        vertical: &Vertical,
+    ) -> Azimuth {
+        let angle = Radians(wrapped(self.frame + course));
+        let slope = Slope::of_attitude(attitude, vertical.sigma());
         let of_level = slope.variance_since(&self.slope);
         let sigma = libm::sqrt(self.variance(vertical) + of_level);
         Azimuth { angle, sigma: Radians(if slope.is_upright() { PI } else { sigma.min(PI) }) }

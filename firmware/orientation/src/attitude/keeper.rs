@@ -15,6 +15,21 @@ use crate::alignment::Azimuth;
 /// Standard deviation at which an azimuth carries no information, 1σ: it is withdrawn.
 const NOWHERE: Radians = Radians(0.5);
 
+/// What is shown to users of an attitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shown {
+    /// End of the latest sample.
+    pub time: Instant,
+    /// Pitch and roll.
+    pub level: [Radians; 2],
+    /// Standard deviation of each, 1σ.
+    pub level_sigma: Radians,
+    /// Azimuth; none where it is unknown.
+    pub azimuth: Option<Azimuth>,
+    /// Reliability of the level.
+    pub state: State,
+}
+
 /// Propagates pitch, roll and azimuth.
 #[derive(Clone, Debug)]
 pub struct Keeper {
@@ -249,6 +264,37 @@ impl Keeper {
             is_bias_beyond_stated: vertical.is_bias_beyond_stated,
             seconds: Seconds(seconds),
         }
+    }
+
+    /// What is shown to users of the present attitude, ten times a second: angles to within 3·10⁻⁶ rad.
+    pub(crate) fn show(&self) -> Shown {
+        let vertical = &self.vertical;
+        let attitude = vertical.attitude();
+        let [course, pitch, roll] = attitude.rough_angles().map(f64::from);
+        let azimuth = |heading: &Heading| heading.azimuth_of(&attitude, course, vertical);
+        Shown {
+            time: vertical.time(),
+            level: [pitch, roll].map(Radians),
+            level_sigma: Radians(vertical.sigma().into()),
+            azimuth: self.heading.as_ref().map(azimuth),
+            state: self.state(),
+        }
+    }
+
+    /// Mean rates of the body about its axes forward, right and down since they were taken last, rad/s, less the biases;
+    /// [`None`] where nothing was measured, or a gyro was at the limit of its range.
+    pub(crate) fn take_rates(&mut self) -> Option<[f32; 3]> {
+        self.vertical.take_rates()
+    }
+
+    /// Rate of the azimuth of body x, rad/s, at these rates of the body about its axes; [`None`] where body x is upright.
+    pub(crate) fn turn_rate(&self, body: &[f32; 3]) -> Option<f32> {
+        self.vertical.turn_rate(body)
+    }
+
+    /// Greatest standard deviation of the gyros' biases, 1σ, rad/s.
+    pub(crate) fn bias_sigma(&self) -> f32 {
+        self.vertical.bias_sigmas().into_iter().fold(0.0, f32::max)
     }
 
     /// State to be saved against a loss of supply; only at rest, and with an azimuth.

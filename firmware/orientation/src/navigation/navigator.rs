@@ -4,6 +4,7 @@
 use super::Order;
 use super::policy::{Policy, Realignment};
 use super::progress::{Progress, VerticalGyro};
+use super::rates::Rates;
 use crate::alignment::{Azimuth, Refusal, Request};
 use crate::attitude::restart::{RecallRefusal, Remembered};
 use crate::attitude::{Gyro, Keeper, Realigned, Report, State, Trust};
@@ -40,19 +41,35 @@ const SAVING: u64 = 60_000_000;
 /// Change of azimuth or σ that is worth saving, rad.
 const CHANGE: f64 = 0.01 * DEGREE;
 
-/// Attitude as it is reported to users.
+/// Attitude as it is reported to users, ten times a second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attitude {
+    /// Time of the latest inertial sample.
+    pub time: Instant,
     /// Azimuth of body x; [`None`] if it is unknown, or if no inertial samples arrive.
     pub azimuth: Option<Azimuth>,
+    /// Whether the azimuth is that saved before the loss of supply.
+    pub is_recalled: bool,
+    /// Whether the azimuth was given from outside, and no alignment has confirmed it since.
+    pub is_from_outside: bool,
+    /// Time since an azimuth was taken or confirmed; [`None`] without an azimuth, and with one that was recalled.
+    pub since_aligned: Option<Seconds>,
+    /// How often the azimuth was set anew rather than carried on or confirmed; it begins anew after 255.
+    pub resets: u8,
     /// Pitch, nose up positive.
     pub pitch: Radians,
     /// Roll, right side down positive.
     pub roll: Radians,
+    /// Standard deviation of pitch and of roll, 1σ.
+    pub level_sigma: Radians,
+    /// Rates of the body about its axes forward, right, down, in the mean of a tenth of a second; [`None`] where a gyro was at
+    /// the limit of its range, or gives no samples.
+    pub rates: Option<[RadiansPerSecond; 3]>,
+    /// Rate of the azimuth, clockwise positive, in the mean of a second; [`None`] as the rates, where body x is upright, and
+    /// until the gyros' biases are known to half a degree a minute.
+    pub rate_of_turn: Option<RadiansPerSecond>,
     /// The keeper's state; [`None`] if no inertial samples arrive.
     pub state: Option<State>,
-    /// Whether the azimuth is that saved before the loss of supply.
-    pub is_recalled: bool,
 }
 
 /// Motion of the body, as its inertial sensors show it.
@@ -107,8 +124,10 @@ pub enum Output {
     Save(Remembered),
     /// The body has set off: the saved heading is not valid any more.
     Forget,
-    /// Once a second: the keeper's report, and the attitude for users once there is one.
-    Report(Report, Option<Attitude>),
+    /// Once a second: the keeper's report.
+    Report(Report),
+    /// Ten times a second: the attitude for users, from the first inertial sample on.
+    Attitude(Attitude),
 }
 
 /// Receiver of outputs.
@@ -123,6 +142,12 @@ pub struct Navigator<'k> {
     policy: Policy,
     /// The heading from before the restart, until it has been accepted or rejected.
     remembered: Option<Remembered>,
+    /// Whether the azimuth was given from outside; time at which it was taken or confirmed, and how often it was set anew.
+    is_from_outside: bool,
+    aligned: Option<Instant>,
+    resets: u8,
+    /// Rates of the body.
+    rates: Rates,
     /// Azimuth that this run has saved, and the time.
     saved: Option<(Azimuth, Instant)>,
     /// Whether a heading is saved, by this run or before it.
@@ -161,8 +186,6 @@ pub struct Navigator<'k> {
     was_idle: bool,
     /// Begin of the hold, the end of the first alignment.
     since: Option<Instant>,
-    /// Whether an attitude has been shown to users: from then on it is also said that it is lost.
-    is_shown: bool,
 }
 
 impl<'k> Navigator<'k> {
@@ -172,6 +195,10 @@ impl<'k> Navigator<'k> {
             keeper,
             policy: *policy,
             remembered: None,
+            is_from_outside: false,
+            aligned: None,
+            resets: 0,
+            rates: Rates::default(),
             saved: None,
             is_saved: false,
             now: Instant::default(),
@@ -194,7 +221,6 @@ impl<'k> Navigator<'k> {
             is_idle: false,
             was_idle: false,
             since: None,
-            is_shown: false,
         }
     }
 
@@ -273,7 +299,8 @@ impl<'k> Navigator<'k> {
         }
         self.keeper.move_at(speed);
         if let Some(azimuth) = direction {
-            self.align(azimuth, outlet);
+            let outcome = self.align(azimuth, outlet);
+            self.is_from_outside |= outcome == Realigned::Taken;
             self.spare(outlet);
         }
     }
@@ -295,6 +322,7 @@ impl<'k> Navigator<'k> {
             self.looks = 0;
             self.second(outlet);
         }
+        self.show(outlet);
     }
 
     /// Whether a check of the state is due.
@@ -321,6 +349,7 @@ impl<'k> Navigator<'k> {
         }
         if let Some(carried) = self.keeper.carried(at, azimuth) {
             self.align(carried, outlet);
+            self.is_from_outside = false;
         } else if self.is_behind(at) {
             outlet(Output::Progress(Progress::TooLate));
         } else {
@@ -342,17 +371,23 @@ impl<'k> Navigator<'k> {
 
     /// Takes an azimuth: as the first one, or fused with the held one by an innovation test.
     #[inline(never)]
-    fn align(&mut self, azimuth: Azimuth, outlet: Outlet) {
+    fn align(&mut self, azimuth: Azimuth, outlet: Outlet) -> Realigned {
         self.remembered = None;
         let outcome = self.keeper.realign(azimuth);
         if !matches!(outcome, Realigned::Disagrees { .. }) {
             self.is_recalled = false;
+            self.aligned = Some(self.now);
+        }
+        // One that is fused with that which is held is carried on.
+        if outcome == Realigned::Taken {
+            self.resets = self.resets.wrapping_add(1);
         }
         outlet(Output::Progress(Progress::HandedOver(azimuth, outcome)));
         if matches!(outcome, Realigned::Disagrees { .. }) {
             self.forget(outlet);
         }
         self.has_azimuth = true;
+        outcome
     }
 
     /// Checks the state and reports its changes.
@@ -362,7 +397,7 @@ impl<'k> Navigator<'k> {
         self.report_state((!is_silent).then(|| self.keeper.state()), outlet);
         let has_azimuth = self.keeper.has_azimuth();
         if core::mem::replace(&mut self.has_azimuth, has_azimuth) && !has_azimuth {
-            self.is_recalled = false;
+            (self.is_recalled, self.is_from_outside, self.aligned) = (false, false, None);
             outlet(Output::Progress(Progress::AzimuthLost));
             self.forget(outlet);
         }
@@ -419,8 +454,7 @@ impl<'k> Navigator<'k> {
         self.recall(outlet);
         self.save(outlet);
         self.realign(outlet);
-        let report = self.keeper.report();
-        outlet(Output::Report(report, self.attitude(&report)));
+        outlet(Output::Report(self.keeper.report()));
     }
 
     /// Decides on the heading from before the restart once the vehicle has rested long enough.
@@ -437,6 +471,7 @@ impl<'k> Navigator<'k> {
             return outlet(Output::Progress(Progress::RecallRefused(reason)));
         }
         (self.is_recalled, self.has_azimuth) = (true, true);
+        self.resets = self.resets.wrapping_add(1);
         if let Some(azimuth) = self.keeper.azimuth() {
             outlet(Output::Progress(Progress::HeadingRecalled(azimuth)));
         }
@@ -526,20 +561,30 @@ impl<'k> Navigator<'k> {
         }
     }
 
-    /// The attitude for users; [`None`] before the first alignment has ended, as long as there has
-    /// been no azimuth.
-    fn attitude(&mut self, report: &Report) -> Option<Attitude> {
-        self.is_shown |= self.since.is_some() || report.azimuth.is_some();
-        if !self.is_shown {
-            return None;
+    /// Shows the attitude to users.
+    #[inline(never)]
+    fn show(&mut self, outlet: Outlet) {
+        if self.moved.is_none() {
+            return;
         }
-        let is_silent = self.is_silent();
-        Some(Attitude {
-            azimuth: report.azimuth.filter(|_| !is_silent),
-            pitch: report.pitch,
-            roll: report.roll,
-            state: (!is_silent).then_some(report.state),
+        let (shown, is_silent) = (self.keeper.show(), self.is_silent());
+        let rates = self.rates.look(self.keeper);
+        let azimuth = shown.azimuth.filter(|_| !is_silent);
+        let since = self.aligned.filter(|_| azimuth.is_some());
+        let [pitch, roll] = shown.level;
+        outlet(Output::Attitude(Attitude {
+            time: shown.time,
+            azimuth,
             is_recalled: self.is_recalled,
-        })
+            is_from_outside: self.is_from_outside,
+            since_aligned: since.map(|at| Seconds(self.now.0.saturating_sub(at.0) as f64 * 1e-6)),
+            resets: self.resets,
+            pitch,
+            roll,
+            level_sigma: shown.level_sigma,
+            rates: rates.body.filter(|_| !is_silent),
+            rate_of_turn: rates.turn.filter(|_| !is_silent),
+            state: (!is_silent).then_some(shown.state),
+        }));
     }
 }

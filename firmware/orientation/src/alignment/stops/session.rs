@@ -22,7 +22,7 @@ use crate::alignment::{Input, Listener, Method, Refusal, Request, SetupError, So
 use crate::device::TRIAD;
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};
-use crate::units::{Instant, Metres, Seconds};
+use crate::units::{Instant, Metres, Radians, Seconds};
 
 /// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -378,6 +378,10 @@ impl Method<InertialSample> for Session {
             None => Conclusion::of(&self.setting, &mut self.stop_detector),
         };
         self.finish(conclusion, listener)
+    }
+
+    fn required_sigma(&self) -> Option<Radians> {
+        Some(self.setting.site.required_sigma)
     }
 
     fn verdict(&self) -> Option<Verdict> {

@@ -89,6 +89,7 @@ impl Vertical {
     #[inline(never)]
     pub(super) fn clip(&mut self, sample: &InertialSample) {
         let latest = self.before.turned;
+        self.seen.is_clipped = true;
         self.increment.push(core::array::from_fn(|axis| {
             let turned = sample.turned[axis];
             if turned.is_saturated() { latest[axis] } else { turned }

@@ -28,7 +28,7 @@ use self::judge::{Findings, STRETCH, Task};
 use self::motion::GRAVITY;
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
-use self::sums::{Before, Rested, Sums, Window};
+use self::sums::{Before, Rested, Seen, Sums, Window};
 use self::sway::SwayAverage;
 use super::setting::Setting;
 use crate::math::quaternion::{Attitude, Matrix, Vector};
@@ -37,6 +37,8 @@ use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
 use crate::units::{Instant, RadiansPerSecond, SpecificForce};
 
+/// Least cosine of the pitch at which a rate of turn is stated: body x is within 84° of the horizontal.
+const LEAST_COSINE: f32 = 0.1;
 /// Time between attitude updates, µs: 50 Hz.
 const TICK: u64 = 20_000;
 /// Greatest delay of a sample, in sample periods.
@@ -116,6 +118,8 @@ pub(super) struct Vertical {
     sway: SwayAverage,
     /// Values of the previous sample.
     before: Before,
+    /// What is shown to those who steer by it.
+    seen: Seen,
     /// Motion since the heading was handed over.
     pub(super) course: Course,
     /// Time of the latest attitude update.
@@ -207,6 +211,7 @@ impl Vertical {
         self.since = now;
         let rotation = self.increment.take();
         if seconds > 0.0 {
+            self.seen.turned.add(seconds, &rotation);
             self.advance(&rotation, seconds);
         }
         self.before.lately *= 1.0 - (seconds / GAP_WATCH).min(1.0);
@@ -285,6 +290,23 @@ impl Vertical {
     /// rotation during gaps.
     pub(crate) fn turn_variance(&self) -> f32 {
         self.filter.variance(TURN) + self.unlearnt_variance()
+    }
+
+    /// Mean rates of the body about its axes since they were taken last, rad/s, less the biases; [`None`] where nothing was
+    /// measured, or a gyro was at the limit of its range.
+    pub(crate) fn take_rates(&mut self) -> Option<Vector> {
+        let Seen { turned, is_clipped } = core::mem::take(&mut self.seen);
+        let is_known = turned.seconds > 0.0 && !is_clipped;
+        is_known.then(|| difference(&turned.rates(), &self.bias))
+    }
+
+    /// Rate of the azimuth of body x, rad/s, at these rates of the body about its axes; [`None`] where body x is upright.
+    /// It is (q sin φ + r cos φ) / cos θ less that of the level frame about down.
+    pub(crate) fn turn_rate(&self, [_, about_right, about_down]: &Vector) -> Option<f32> {
+        let [.., [_, right, down]] = self.matrix;
+        let square = right * right + down * down;
+        let turn = || (right * about_right + down * about_down) / square - self.frame[2];
+        (square > LEAST_COSINE * LEAST_COSINE).then(turn)
     }
 
     /// Mean rates about the body's axes at rest, including the Earth rate; `None` in motion.

@@ -81,7 +81,7 @@ impl Window {
 pub(super) struct Turned {
     /// Length, s.
     pub(super) seconds: f32,
-    /// Rotation against the Earth about the body's axes, including the biases, rad.
+    /// Rotation about the body's axes, including the biases, rad.
     pub(super) angles: Vector,
 }
 
@@ -96,6 +96,15 @@ impl Turned {
     pub(super) fn rates(&self) -> Vector {
         scaled(&self.angles, 1.0 / self.seconds)
     }
+}
+
+/// What the gyros have shown since the latest look at it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    /// Rotation, of the Earth and biases included.
+    pub(super) turned: Turned,
+    /// Whether a gyro was at the limit of its range.
+    pub(super) is_clipped: bool,
 }
 
 /// Part of a rest that has not updated the biases yet. The mean rate of each part counts, and each

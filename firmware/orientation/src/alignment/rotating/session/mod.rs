@@ -467,6 +467,10 @@ impl Method<Sample> for Session {
         Request::Done
     }
 
+    fn required_sigma(&self) -> Option<Radians> {
+        Some(self.setting.site.required_sigma)
+    }
+
     fn verdict(&self) -> Option<Verdict> {
         let conclusion = self.conclusion.as_ref().filter(|_| self.phase == Phase::Done)?;
         let limit = conclusion.fit.as_ref().map(|fit| fit.limit).unwrap_or_default();

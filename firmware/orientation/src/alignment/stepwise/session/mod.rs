@@ -36,7 +36,7 @@ use crate::filter::Coefficients;
 use crate::noise::fit::NoiseFit;
 use crate::signal::dwell::DwellAverage;
 use crate::signal::{Dwell, Sample};
-use crate::units::{Degrees, Instant, RadiansPerSecond, Seconds, TURN};
+use crate::units::{Degrees, Instant, Radians, RadiansPerSecond, Seconds, TURN};
 
 /// Fraction of the planned dwell above which a dwell counts as complete.
 const WHOLE: f64 = 0.99;
@@ -407,6 +407,10 @@ impl Method<Sample> for Session {
                 self.finish(listener)
             }
         }
+    }
+
+    fn required_sigma(&self) -> Option<Radians> {
+        Some(self.setting.site.required_sigma)
     }
 
     fn verdict(&self) -> Option<Verdict> {
