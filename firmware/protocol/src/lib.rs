@@ -8,6 +8,7 @@
 //! | [`command`] | commands as lines of text |
 //! | [`position`] | the latitude that a satellite receiver states |
 //! | [`receiver`] | lines and frames among the bytes that are received |
+//! | [`words`] | words for people, in parts that a sentence or a message takes |
 //!
 //! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
 #![no_std]
@@ -19,3 +20,4 @@ pub mod nmea;
 pub mod position;
 pub mod receiver;
 pub mod report;
+pub mod words;

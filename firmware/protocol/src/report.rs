@@ -4,13 +4,14 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use orientation::alignment::Azimuth;
 use orientation::device::Device;
+use orientation::roll::Condition;
 use orientation::units::{Instant, Radians, RadiansPerSecond, Seconds};
 use orientation::words;
 
 /// What the instrument is doing, and how far its azimuth may be relied upon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum State {
-    /// No azimuth, and none is being determined: devices start, or an alignment has yet to be ordered.
+    /// No azimuth, and none is being determined: an alignment has yet to be ordered.
     #[default]
     Waiting,
     /// No azimuth yet: it is being determined.
@@ -28,10 +29,19 @@ pub enum State {
 pub enum Degradation {
     /// It is that from before the last loss of supply: the body may have been turned meanwhile.
     Recalled,
-    /// The gyros alone carry the level.
+    /// The gyros alone carry the level, or the roll.
     Coasting,
-    /// Its σ exceeds that which is required.
+    /// Its σ exceeds that which is required, or the level is being found again.
     Uncertain,
+    /// It is that of the end of the alignment: nothing has measured since whether the body has turned.
+    Unwatched,
+}
+
+words! { Degradation:
+    Self::Recalled => "recalled";
+    Self::Coasting => "coasting";
+    Self::Uncertain => "uncertain";
+    Self::Unwatched => "unwatched";
 }
 
 words! { State:
@@ -74,6 +84,24 @@ impl Level {
     }
 }
 
+/// Roll of a spinning body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roll {
+    /// Roll and its standard deviation, 1σ; [`None`] while it is unknown.
+    pub angle: Option<[Radians; 2]>,
+    /// What it rests on.
+    pub condition: Condition,
+}
+
+impl Roll {
+    /// Roll and 1σ where they are possible ones: finite, and σ not below zero.
+    #[must_use]
+    pub fn usable_angle(&self) -> Option<[Radians; 2]> {
+        self.angle
+            .filter(|[angle, sigma]| angle.0.is_finite() && (0.0..f64::INFINITY).contains(&sigma.0))
+    }
+}
+
 /// The instrument's attitude and state at a moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
@@ -87,6 +115,8 @@ pub struct Report {
     pub origin: Origin,
     /// Pitch and roll; [`None`] while they are unknown.
     pub level: Option<Level>,
+    /// Roll of a spinning body; [`None`] on any other carrier.
+    pub spin: Option<Roll>,
     /// Rate of the azimuth, clockwise positive, which needs no azimuth; [`None`] while it is unknown.
     pub rate_of_turn: Option<RadiansPerSecond>,
     /// Rates of the body about its axes forward, right, down; [`None`] while they are unknown.
@@ -99,7 +129,7 @@ pub struct Report {
     pub failed: Devices,
     /// Time since the end of the alignment that the azimuth is of; [`None`] without an azimuth.
     pub since_alignment: Option<Seconds>,
-    /// Completed and planned dwells, turns or stops of the alignment that runs.
+    /// Completed and planned dwells or turns of the alignment that runs.
     pub progress: Option<[u16; 2]>,
 }
 

@@ -159,7 +159,7 @@ fn the_status_says_which_sensors_work_and_whether_the_azimuth_is_valid() {
 #[test]
 fn words_of_fifty_bytes_are_whole_and_longer_ones_are_cut() {
     let text = |words: &str| {
-        let sent = statustext(MavSeverity::MAV_SEVERITY_NOTICE, words);
+        let sent = statustext(MavSeverity::MAV_SEVERITY_NOTICE, [0, 0], words);
         let (_, MavMessage::STATUSTEXT(read)) = read(&mut Sender::of_system(1), &sent) else {
             panic!("it is another message")
         };

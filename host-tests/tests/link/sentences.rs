@@ -3,10 +3,12 @@
 use nmea::ParseResult;
 use orientation::alignment::Azimuth;
 use orientation::device::Device;
+use orientation::roll::Condition;
 use orientation::units::{Radians, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
-use protocol::nmea::{LONGEST, Sentence, hdt, phinf, phtro, pmrds, rot, ths, txt};
-use protocol::report::{Degradation, Level, Origin, Report, State};
+use protocol::nmea::{LONGEST, Sentence, WORDS, hdt, phinf, phtro, pmrdl, pmrds, rot, ths, txt};
+use protocol::report::{Degradation, Level, Origin, Report, Roll, State};
+use protocol::words::Words;
 
 /// All sentences of a report.
 const ALL: [fn(&Report) -> Option<Sentence>; 6] = [hdt, ths, rot, phtro, phinf, pmrds];
@@ -57,7 +59,7 @@ fn an_instrument_that_is_ready_says_all_that_it_knows() {
         "$HEROT,-12.3,A*36",
         "$PHTRO,1.20,M,0.31,B*5F",
         "$PHINF,00000000*75",
-        "$PMRDS,ready,0.039,0.012,0.012,2,61,,*22",
+        "$PMRDS,ready,0.039,0.012,0.012,2,61,,,*0E",
     ];
     assert_eq!(texts(&ready()), expected);
 }
@@ -70,7 +72,7 @@ fn an_instrument_that_knows_nothing_yet_sends_no_number() {
         "$HEROT,,V*12",
         "",
         "$PHINF,00000007*72",
-        "$PMRDS,waiting,,,,0,,,*03",
+        "$PMRDS,waiting,,,,0,,,,*2F",
     ];
     assert_eq!(texts(&Report::default()), expected);
 }
@@ -88,7 +90,7 @@ fn an_alignment_that_runs_is_told_with_its_progress_and_the_level_that_is_known(
     assert_eq!((heading.as_str(), moded.as_str()), ("$HEHDT,,T*01", "$HETHS,,V*14"));
     assert_eq!(inclination, "$PHTRO,1.20,M,0.31,B*5F");
     assert_eq!(status, "$PHINF,00000021*76");
-    assert!(own.starts_with("$PMRDS,aligning,,0.012,0.012,2,,5,24*"), "{own}");
+    assert!(own.starts_with("$PMRDS,aligning,,0.012,0.012,2,,5,24,*"), "{own}");
 }
 
 /// HDT has no sign of its validity, and some receivers take whatever number it has.
@@ -167,10 +169,14 @@ fn devices_that_have_failed_are_bits_of_the_status() {
 
 #[test]
 fn words_lose_what_a_sentence_may_not_have() {
-    assert_eq!(text(txt("last reset: panic")), "$HETXT,01,01,00,last reset: panic*65");
-    let odd = text(txt("a,b*c$d\\e^f!g\r\n° é"));
-    assert!(odd.starts_with("$HETXT,01,01,00,a b c d e f g     "), "{odd}");
-    assert_eq!(txt("x".repeat(200)).expect("words are cut").len(), LONGEST);
+    assert_eq!(text(txt([1, 1], "last reset: panic")), "$HETXT,01,01,00,last reset: panic*65");
+    let odd = text(txt([1, 1], "a,b*c$d\\e^f!g\r\n° é"));
+    assert!(odd.starts_with("$HETXT,01,01,00,a;b c d e f g     "), "{odd}");
+    assert_eq!(text(txt([12, 4], &"x".repeat(WORDS))).len(), LONGEST - 2);
+    assert_eq!(txt([1, 1], &"x".repeat(WORDS + 1)), None);
+    for numbers in [[0, 0], [1, 0], [1, 2], [100, 1]] {
+        assert_eq!(txt(numbers, "words"), None, "{numbers:?}");
+    }
 }
 
 /// Any report that types allow.
@@ -246,9 +252,48 @@ fn a_heading_that_is_not_valid_reads_back_as_none() {
 
 #[test]
 fn words_read_back_as_they_were() {
-    let sentence = text(txt("last reset: panic"));
+    let sentence = text(txt([1, 1], "last reset: panic"));
     let ParseResult::TXT(read) = nmea::parse_str(&sentence).expect("it is a sentence") else {
         panic!("it is another sentence")
     };
     assert_eq!((read.count, read.seq, read.text.as_str()), (1, 1, "last reset: panic"));
+}
+
+#[test]
+fn the_roll_of_a_spinning_body_is_told_with_what_it_rests_on() {
+    let roll = |angle: Option<[f64; 2]>, condition| {
+        let angle = angle.map(|angle| angle.map(Radians::from_degrees));
+        pmrdl(&Report { spin: Some(Roll { angle, condition }), ..Report::default() })
+    };
+    let told = |angle, condition| {
+        let sentence = text(roll(angle, condition));
+        sentence.rsplit_once('*').expect("it has a checksum").0.to_owned()
+    };
+    assert_eq!(told(Some([-0.0004, 0.0321]), Condition::Locked), "$PMRDL,0.000,0.033,locked");
+    assert_eq!(told(Some([573.2, 0.5]), Condition::Holding), "$PMRDL,213.200,0.500,holding");
+    assert_eq!(told(None, Condition::GyroStuck), "$PMRDL,,,gyro stuck");
+    assert_eq!(told(Some([f64::NAN, 0.1]), Condition::Locked), "$PMRDL,,,locked");
+    assert_eq!(told(Some([1.0, f64::NAN]), Condition::Locked), "$PMRDL,,,locked");
+    assert_eq!(pmrdl(&Report::default()), None, "another carrier has none");
+}
+
+proptest! {
+    #[test]
+    fn words_of_any_kind_come_in_parts_of_plain_letters(words in "\\PC{0,400}", of in 4..100_usize) {
+        let all = Words::new(&words);
+        let parts: String = (0..all.count(of)).map(|number| all.part(of, number)).collect();
+        prop_assert!(parts.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
+        prop_assert!((0..all.count(of)).all(|number| all.part(of, number).len() <= of));
+        let plain: String = words.chars().filter(|letter| (' '..='~').contains(letter)).collect();
+        if plain == words {
+            prop_assert!(words.starts_with(&parts) && parts.len() == words.len().min(6 * WORDS));
+        }
+        prop_assert_eq!(all.part(of, all.count(of)), "");
+    }
+}
+
+#[test]
+fn signs_of_quantities_are_spelt() {
+    let words = Words::new("213.702° ± 0.033° (1σ), 5 µg");
+    assert_eq!(words.part(100, 0), "213.702 deg +- 0.033 deg (1sigma), 5 ug");
 }

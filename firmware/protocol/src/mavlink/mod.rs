@@ -14,9 +14,10 @@
 mod telemetry;
 
 pub use telemetry::{
-    attitude_quaternion, heartbeat, statustext, sys_status, vision_position_estimate,
+    WORDS, attitude_quaternion, heartbeat, statustext, sys_status, vision_position_estimate,
 };
 
+pub use mavlink::dialects::common::MavSeverity;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
 /// A frame as it is sent.

@@ -1,9 +1,6 @@
 //! What is sent of a report.
 
 use core::f64::consts::PI;
-use core::fmt::{Display, Write as _};
-
-use heapless::String;
 use mavlink::dialects::common::{
     ATTITUDE_QUATERNION_DATA, HEARTBEAT_DATA, MavAutopilot, MavModeFlag, MavSeverity, MavState,
     MavSysStatusSensor as Sensors, MavSysStatusSensorExtended, MavType, STATUSTEXT_DATA,
@@ -22,7 +19,7 @@ const VERSION: u8 = 3;
 #[must_use]
 pub fn heartbeat(report: &Report) -> HEARTBEAT_DATA {
     HEARTBEAT_DATA {
-        custom_mode: 0,
+        custom_mode: mode(report.state),
         mavtype: MavType::MAV_TYPE_IMU,
         autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
         base_mode: MavModeFlag::empty(),
@@ -37,12 +34,33 @@ pub fn heartbeat(report: &Report) -> HEARTBEAT_DATA {
     }
 }
 
-/// The gyros.
-const GYROS: [Device; 5] =
-    [Device::Gyro, Device::ForwardGyro, Device::RightGyro, Device::DownGyro, Device::UpGyro];
-/// The accelerometers.
-const ACCELEROMETERS: [Device; 3] =
-    [Device::Accelerometer, Device::UpAccelerometer, Device::RightAccelerometer];
+/// The state as a number: 0 waiting, 1 aligning, 2 ready, 3 degraded, 4 failed; above its lowest byte why an azimuth is to be
+/// used with care, 1 recalled, 2 coasting, 3 uncertain, 4 unwatched.
+const fn mode(state: State) -> u32 {
+    match state {
+        State::Waiting => 0,
+        State::Aligning => 1,
+        State::Ready => 2,
+        State::Degraded(Degradation::Recalled) => 0x103,
+        State::Degraded(Degradation::Coasting) => 0x203,
+        State::Degraded(Degradation::Uncertain) => 0x303,
+        State::Degraded(Degradation::Unwatched) => 0x403,
+        State::Failed => 4,
+    }
+}
+
+/// The gyros, those of the coarse unit on the base included.
+const GYROS: [Device; 6] = [
+    Device::Gyro,
+    Device::ForwardGyro,
+    Device::RightGyro,
+    Device::DownGyro,
+    Device::UpGyro,
+    Device::Base,
+];
+/// The accelerometers, those of the coarse unit on the base included.
+const ACCELEROMETERS: [Device; 4] =
+    [Device::Accelerometer, Device::UpAccelerometer, Device::RightAccelerometer, Device::Base];
 
 /// Which sensors work, whether the azimuth is valid (the bit of the attitude reference system), and how many readings have
 /// failed (`errors_count1`).
@@ -113,7 +131,7 @@ const VARIANCES: [usize; 6] = [0, 6, 11, 15, 18, 20];
 /// the gyros alone carry the level of one that is; never else, since the message has no sign of its validity.
 ///
 /// The position is zero with a variance of 10⁴ m²: ArduPilot drops a message whose position is not a number, and PX4
-/// before 1.16 takes its yaw for one from an unknown direction.
+/// before its commit 648e730c takes its yaw for one from an unknown direction.
 #[must_use]
 pub fn vision_position_estimate(report: &Report) -> Option<VISION_POSITION_ESTIMATE_DATA> {
     let is_fused = matches!(report.state, State::Ready | State::Degraded(Degradation::Coasting));
@@ -138,23 +156,17 @@ pub fn vision_position_estimate(report: &Report) -> Option<VISION_POSITION_ESTIM
 }
 
 /// Most bytes of words in a message.
-const WORDS: usize = 50;
+pub const WORDS: usize = 50;
 
-/// Words for people; those that are too long are cut.
+/// Words for people, in the part of this number of a text of this identity; without one, zero, they are whole. Bytes beyond
+/// [`WORDS`] are left out.
 #[must_use]
-pub fn statustext(severity: MavSeverity, words: impl Display) -> STATUSTEXT_DATA {
-    let mut text = Cut(String::new());
-    // It never fails, as it cuts.
-    let _ = write!(text, "{words}");
-    STATUSTEXT_DATA { severity, text: text.0.as_str().into(), id: 0, chunk_seq: 0 }
-}
-
-/// Words that are cut at their greatest length.
-struct Cut(String<WORDS>);
-
-impl core::fmt::Write for Cut {
-    fn write_str(&mut self, words: &str) -> core::fmt::Result {
-        let _ = words.chars().try_for_each(|letter| self.0.push(letter));
-        Ok(())
-    }
+pub fn statustext(
+    severity: MavSeverity,
+    [identity, part]: [u8; 2],
+    words: &str,
+) -> STATUSTEXT_DATA {
+    let mut text = [0; WORDS];
+    text.iter_mut().zip(words.bytes()).for_each(|(place, byte)| *place = byte);
+    STATUSTEXT_DATA { severity, text: text.into(), id: identity.into(), chunk_seq: part }
 }

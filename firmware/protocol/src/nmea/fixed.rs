@@ -1,22 +1,20 @@
 //! Decimal fractions in integers: what is rounded first has no sign at zero, and an angle no 360.
 
-use core::fmt;
-
 use orientation::units::Radians;
 
 /// A decimal fraction of `PLACES` places, as an integer of its last place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Fixed<const PLACES: usize>(i64);
+pub(super) struct Fixed<const PLACES: usize>(i32);
 
 /// Units of the last of so many decimal places in one.
-const fn unit(places: usize) -> i64 {
-    10_i64.pow(places as u32)
+const fn unit(places: usize) -> i32 {
+    10_i32.pow(places as u32)
 }
 
 impl<const PLACES: usize> Fixed<PLACES> {
     /// A number that is rounded to nearest. One that is not finite, or too great, is at the limit of the integer.
     pub fn nearest(number: f64) -> Self {
-        Self(libm::round(number * unit(PLACES) as f64) as i64)
+        Self(libm::round(number * f64::from(unit(PLACES))) as i32)
     }
 
     /// An angle in degrees, from zero to less than a full turn once it is rounded.
@@ -27,9 +25,9 @@ impl<const PLACES: usize> Fixed<PLACES> {
 
     /// A standard deviation of an angle in degrees, rounded up: never less than it is, and 180 at most.
     pub fn sigma(sigma: Radians) -> Self {
-        let most = 180.0 * unit(PLACES) as f64;
-        let rounded = libm::ceil(sigma.degrees() * unit(PLACES) as f64);
-        Self(if rounded < most { rounded as i64 } else { most as i64 })
+        let most = 180.0 * f64::from(unit(PLACES));
+        let rounded = libm::ceil(sigma.degrees() * f64::from(unit(PLACES)));
+        Self(if rounded < most { rounded as i32 } else { most as i32 })
     }
 
     /// Its magnitude.
@@ -41,21 +39,10 @@ impl<const PLACES: usize> Fixed<PLACES> {
     pub fn is_negative(self) -> bool {
         self.0 < 0
     }
-}
 
-impl<const PLACES: usize> fmt::Display for Fixed<PLACES> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (sign, magnitude) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
-        let unit = unit(PLACES).unsigned_abs();
-        write!(f, "{sign}{}.{:0PLACES$}", magnitude / unit, magnitude % unit)
-    }
-}
-
-/// A field that is empty where there is nothing to say.
-pub(super) struct Field<T>(pub Option<T>);
-
-impl<T: fmt::Display> fmt::Display for Field<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.as_ref().map_or(Ok(()), |value| value.fmt(f))
+    /// What of its magnitude is before the point, and what behind it.
+    pub fn parts(self) -> (u32, u32) {
+        let (magnitude, unit) = (self.0.unsigned_abs(), unit(PLACES).unsigned_abs());
+        (magnitude / unit, magnitude % unit)
     }
 }

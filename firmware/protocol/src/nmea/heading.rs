@@ -2,8 +2,9 @@
 
 use orientation::units::{DEGREES_PER_RADIAN, Radians};
 
-use super::fixed::{Field, Fixed};
-use super::{Sentence, sentence};
+use super::Sentence;
+use super::fixed::Fixed;
+use super::writer::Writer;
 use crate::report::{Origin, Report, State};
 
 /// Seconds of a minute.
@@ -21,7 +22,7 @@ fn heading(angle: Radians) -> Fixed<3> {
 #[must_use]
 pub fn hdt(report: &Report) -> Option<Sentence> {
     let angle = report.valid_azimuth().map(|azimuth| heading(azimuth.angle));
-    sentence(format_args!("HEHDT,{},T", Field(angle)))
+    Writer::new("HEHDT").fixed(angle).letter('T').finish()
 }
 
 /// Mode of a heading: the one-letter indicator of THS.
@@ -41,7 +42,7 @@ fn mode(report: &Report) -> char {
 #[must_use]
 pub fn ths(report: &Report) -> Option<Sentence> {
     let angle = report.usable_azimuth().map(|azimuth| heading(azimuth.angle));
-    sentence(format_args!("HETHS,{},{}", Field(angle), mode(report)))
+    Writer::new("HETHS").fixed(angle).letter(mode(report)).finish()
 }
 
 /// `$HEROT,-12.3,A*hh`: rate of turn, degrees a minute, negative where the bow turns to port, with its status: A valid,
@@ -51,5 +52,5 @@ pub fn rot(report: &Report) -> Option<Sentence> {
     let rate = report.rate_of_turn.map(|rate| rate.0 * DEGREES_PER_RADIAN * MINUTE);
     let rate = rate.filter(|rate| rate.abs() <= FASTEST).map(Fixed::<1>::nearest);
     let status = if rate.is_some() { 'A' } else { 'V' };
-    sentence(format_args!("HEROT,{},{status}", Field(rate)))
+    Writer::new("HEROT").fixed(rate).letter(status).finish()
 }

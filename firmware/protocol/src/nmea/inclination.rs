@@ -2,8 +2,9 @@
 
 use orientation::units::Radians;
 
+use super::Sentence;
 use super::fixed::Fixed;
-use super::{Sentence, sentence};
+use super::writer::Writer;
 use crate::report::{Level, Report};
 
 /// A magnitude, and the letter of its sense: the first from zero on, the second below.
@@ -19,5 +20,6 @@ fn sensed(angle: Radians, [positive, negative]: [char; 2]) -> (Fixed<2>, char) {
 pub fn phtro(report: &Report) -> Option<Sentence> {
     let Level { pitch, roll, .. } = report.usable_level()?;
     let ((pitch, bow), (roll, port)) = (sensed(pitch, ['M', 'P']), sensed(roll, ['T', 'B']));
-    sentence(format_args!("PHTRO,{pitch},{bow},{roll},{port}"))
+    let mut writer = Writer::new("PHTRO");
+    writer.fixed(Some(pitch)).letter(bow).fixed(Some(roll)).letter(port).finish()
 }

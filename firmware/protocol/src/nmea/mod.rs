@@ -9,6 +9,7 @@
 //! | [`phtro`] | pitch and roll, as fibre-optic gyrocompasses send them | it is not sent |
 //! | [`phinf`] | their word of status | its bits say so |
 //! | [`pmrds`] | state, σ, faults: the instrument's own | its fields are empty |
+//! | [`pmrdl`] | roll of a spinning body: the instrument's own | its fields are empty |
 //! | [`txt`] | words | |
 //!
 //! The talker is HE, a gyrocompass that seeks north.
@@ -17,12 +18,11 @@ mod fixed;
 mod heading;
 mod inclination;
 mod status;
+mod writer;
 
 pub use heading::{hdt, rot, ths};
 pub use inclination::phtro;
-pub use status::{phinf, pmrds, txt};
-
-use core::fmt::{self, Write as _};
+pub use status::{WORDS, phinf, pmrdl, pmrds, txt};
 
 use heapless::String;
 
@@ -38,13 +38,4 @@ pub type Sentence = String<LONGEST>;
 #[must_use]
 pub fn checksum(content: &[u8]) -> u8 {
     content.iter().fold(0, |sum, byte| sum ^ byte)
-}
-
-/// A sentence of this content; [`None`] if it is too long for one, which no sentence of this module is.
-fn sentence(content: fmt::Arguments) -> Option<Sentence> {
-    let mut inner = String::<{ LONGEST - FRAME }>::new();
-    inner.write_fmt(content).ok()?;
-    let mut sentence = Sentence::new();
-    write!(sentence, "${inner}*{:02X}\r\n", checksum(inner.as_bytes())).ok()?;
-    Some(sentence)
 }

@@ -1,12 +1,12 @@
 //! State, faults and words.
 
-use core::fmt::Display;
-
 use orientation::device::Device;
+use orientation::roll::Condition;
 use orientation::units::Seconds;
 
-use super::fixed::{Field, Fixed};
-use super::{Sentence, sentence};
+use super::Sentence;
+use super::fixed::Fixed;
+use super::writer::Writer;
 use crate::report::{Report, State};
 
 /// Bits of `$PHINF`, as Octans and what emulates it set them: heading, roll and pitch are not valid; an alignment runs;
@@ -51,51 +51,83 @@ fn word(report: &Report) -> u32 {
 /// the base, right, up) has failed.
 #[must_use]
 pub fn phinf(report: &Report) -> Option<Sentence> {
-    sentence(format_args!("PHINF,{:08X}", word(report)))
+    Writer::new("PHINF").hexadecimal(word(report)).finish()
 }
 
 /// The greatest number of faults, and of seconds since the alignment, that `$PMRDS` states.
 const MOST: u32 = 9_999_999;
 
-/// `$PMRDS,degraded,0.039,0.012,0.012,2,61,5,24*hh`: the state in a word; 1σ of azimuth, pitch and roll, degrees, rounded
-/// up; readings that failed since the start; seconds since the end of the alignment; completed and planned dwells, turns
-/// or stops of the alignment that runs. What is unknown is empty. The manufacturer's code is not a registered one.
+/// `$PMRDS,degraded,0.039,0.012,0.012,2,61,5,24,coasting*hh`: the state in a word; 1σ of azimuth, pitch and roll, degrees,
+/// rounded up; readings that failed since the start; seconds since the end of the alignment; completed and planned dwells
+/// or turns of the alignment that runs; why an azimuth is to be used with care. What is unknown is empty. The
+/// manufacturer's code is not a registered one.
 #[must_use]
 pub fn pmrds(report: &Report) -> Option<Sentence> {
-    let azimuth = Field(report.usable_azimuth().map(|azimuth| Fixed::<3>::sigma(azimuth.sigma)));
-    let level = Field(report.usable_level().map(|level| Fixed::<3>::sigma(level.sigma)));
-    let faults = report.faults.min(MOST);
-    let since = Field(report.since_alignment.map(|Seconds(since)| (since as u32).min(MOST)));
-    let [done, of] = [0, 1].map(|index| Field(report.progress.map(|progress| progress[index])));
-    let state = report.state;
-    sentence(format_args!("PMRDS,{state},{azimuth},{level},{level},{faults},{since},{done},{of}"))
+    let azimuth = report.usable_azimuth().map(|azimuth| Fixed::<3>::sigma(azimuth.sigma));
+    let level = report.usable_level().map(|level| Fixed::<3>::sigma(level.sigma));
+    let since = report.since_alignment.map(|Seconds(since)| (since as u32).min(MOST));
+    let [done, of] =
+        [0, 1].map(|index: usize| report.progress.map(|progress| progress[index].into()));
+    let why = match report.state {
+        State::Degraded(why) => Some(why),
+        _ => None,
+    };
+    let mut writer = Writer::new("PMRDS");
+    writer.display(Some(report.state)).fixed(azimuth).fixed(level).fixed(level);
+    writer.whole(Some(report.faults.min(MOST))).whole(since).whole(done).whole(of);
+    writer.display(why).finish()
+}
+
+/// `$PMRDL,213.702,0.033,locked*hh`: roll of a spinning body, degrees, its 1σ, rounded up, and what it rests on, in words;
+/// [`None`] on any other carrier. While the roll is unknown its fields are empty.
+#[must_use]
+pub fn pmrdl(report: &Report) -> Option<Sentence> {
+    let roll = report.spin?;
+    let angle = roll.usable_angle().map(|[angle, _]| Fixed::<3>::turn(angle));
+    let sigma = roll.usable_angle().map(|[_, sigma]| Fixed::<3>::sigma(sigma));
+    Writer::new("PMRDL").fixed(angle).fixed(sigma).words(word_of(roll.condition)).finish()
+}
+
+/// What a roll rests on, in words.
+const fn word_of(condition: Condition) -> &'static str {
+    match condition {
+        Condition::Searching => "searching",
+        Condition::Locked => "locked",
+        Condition::Holding => "holding",
+        Condition::NotSpinning => "not spinning",
+        Condition::ForceLost => "force lost",
+        Condition::RotationLost => "rotation lost",
+        Condition::AccelerometerStuck(_) => "accelerometer stuck",
+        Condition::GyroStuck => "gyro stuck",
+        Condition::Mirrored => "forces mirrored",
+        Condition::Elliptic => "forces elliptic",
+        Condition::Contradicted => "forces contradict",
+    }
 }
 
 /// Most characters of words in a sentence: what is left of one beside its frame, its address and its numbers.
-const WORDS: usize = super::LONGEST - super::FRAME - "HETXT,01,01,00,".len();
+pub const WORDS: usize = super::LONGEST - super::FRAME - "HETXT,01,01,00,".len();
 
-/// `$HETXT,01,01,00,words*hh`: words for people. Characters that a sentence may not have become spaces, and words that are
-/// too long are cut.
+/// `$HETXT,02,01,00,words*hh`: words for people, of which this is the `number`th sentence of so `many`. A comma
+/// becomes a semicolon, and what else a sentence may not have a space; [`None`] for more than [`WORDS`] of them, or more than 99 sentences.
 #[must_use]
-pub fn txt(words: impl Display) -> Option<Sentence> {
-    let mut text = Cut { text: heapless::String::new() };
-    // It never fails, as it cuts.
-    let _ = core::fmt::write(&mut text, format_args!("{words}"));
-    sentence(format_args!("HETXT,01,01,00,{}", text.text))
-}
-
-/// Words that are cut at their greatest length.
-struct Cut {
-    text: heapless::String<WORDS>,
-}
-
-impl core::fmt::Write for Cut {
-    fn write_str(&mut self, words: &str) -> core::fmt::Result {
-        let allowed = |letter: char| {
-            let is_plain = matches!(letter, ' '..='}') && !"$!*,\\^".contains(letter);
-            if is_plain { letter } else { ' ' }
-        };
-        let _ = words.chars().map(allowed).try_for_each(|letter| self.text.push(letter));
-        Ok(())
+pub fn txt([many, number]: [u8; 2], words: &str) -> Option<Sentence> {
+    let allowed = |letter: char| match letter {
+        ',' => ';',
+        '$' | '!' | '*' | '\\' | '^' => ' ',
+        ' '..='}' => letter,
+        _ => ' ',
+    };
+    let plain: heapless::String<WORDS> = words
+        .chars()
+        .take(WORDS + 1)
+        .map(allowed)
+        .try_fold(heapless::String::new(), |mut plain, letter| {
+            plain.push(letter).ok().map(|()| plain)
+        })?;
+    if !(1..=many).contains(&number) || many >= 100 {
+        return None;
     }
+    let [many, number] = [many, number].map(u32::from);
+    Writer::new("HETXT").padded(many, 2).padded(number, 2).padded(0, 2).words(&plain).finish()
 }
