@@ -10,6 +10,7 @@ use orientation::words;
 use orientation::words::Rounded;
 
 use crate::kept_lines::Weight;
+use crate::not_begun::NotBegun;
 use crate::remembered::Remembered;
 use crate::retry_budget::Symptom;
 
@@ -76,8 +77,10 @@ pub enum Event {
     CalibrationNotSaved(Fault),
     /// The heading cannot be stored for the next start.
     HeadingNotKept(Fault),
-    /// The link does not accept status lines.
+    /// The link does not take what is sent.
     LinkSilent,
+    /// Nothing begins, for this reason.
+    NotBegun(NotBegun),
 }
 
 impl Event {
@@ -106,6 +109,7 @@ impl Event {
                 | Progress::Roll(roll::Progress::Flown(..) | roll::Progress::Ended(_)),
             )
             | Self::Navigation(_)
+            | Self::NotBegun(_)
             | Self::CalibrationUnreadable(_)
             | Self::CalibrationNotSaved(_)
             | Self::HeadingNotKept(_) => Some(Weight::Outcome),
@@ -151,5 +155,6 @@ words! { Event:
     Self::CalibrationSaved(misalignment) => "axis misalignment saved: {}", misalignment;
     Self::CalibrationNotSaved(fault) => "axis misalignment not saved: {}", fault;
     Self::HeadingNotKept(fault) => "the heading cannot be kept for the next start: {}", fault;
-    Self::LinkSilent => "link: takes no status lines";
+    Self::LinkSilent => "link: does not take what is sent";
+    Self::NotBegun(reason) => "{}", reason;
 }

@@ -214,11 +214,10 @@ fn execute(output: Output, shared: &Shared<'_>) {
         Output::Request(request) => shared.wanted.signal(request),
         Output::Save(remembered) => shared.saving.signal(Saving::Heading(remembered)),
         Output::Forget => shared.saving.signal(Saving::Nothing),
-        Output::Report(report, attitude) => {
-            shared.observer.kept(&report);
-            if let Some(attitude) = attitude {
-                shared.status.set((&attitude).into());
-            }
+        Output::Report(report) => shared.observer.kept(&report),
+        Output::Attitude(attitude) => {
+            shared.attitude.set(Some(attitude));
+            shared.looked.signal(());
         }
     }
 }

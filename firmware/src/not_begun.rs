@@ -26,23 +26,6 @@ words! { NotBegun:
     Self::NoScale => "a sensor's scale factor is none";
 }
 
-impl NotBegun {
-    /// The reason in brief, as the link tells it; the log has all of it. Without numbers, whose text would take 5 KB of
-    /// flash.
-    #[must_use]
-    pub const fn brief(&self) -> &'static str {
-        match self {
-            Self::Settings(SettingsError::Damaged) => "no settings: a damaged record",
-            Self::Settings(SettingsError::OtherCarrier { .. }) => "no settings: another carrier's",
-            Self::Settings(SettingsError::OutOfRange(_)) => "no settings: out of range",
-            Self::Settings(_) => "no settings: the log says why",
-            Self::Session(_) => "no session: the log says why",
-            Self::Mount(_) => "no mount: the log says why",
-            Self::NoScale => "no session: no scale factor",
-        }
-    }
-}
-
 impl From<SettingsError> for NotBegun {
     fn from(error: SettingsError) -> Self {
         Self::Settings(error)

@@ -3,11 +3,12 @@
 //!
 //! ```text
 //!  acquire ─┬─ motions ──▶ operate: mechanism, navigator ◀── requests, azimuth ─┐
-//!           └─ samples ──▶ find: aligner, link, store ──────────────────────────┘
+//!           │                       └── attitude ──▶ link                         │
+//!           └─ samples ──▶ find: aligner, store ────────────────────────────────┘
 //! ```
 //!
-//! What must not wait for the computation of a conclusion is acquisition and [`operate`]; a board gives them an
-//! executor of higher priority, and leaves [`find`] the thread. [`navigate`] is both in one executor, beside
+//! What must not wait for the computation of a conclusion is acquisition, [`operate`] and the [`link`]; a board gives them
+//! executors of higher priority, and leaves [`find`] the thread. [`navigate`] is all of them in one executor, beside
 //! acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
 //! unless it is to hold the azimuth, or to track a roll, without end.
 
@@ -15,7 +16,8 @@ use core::convert::Infallible;
 use core::future::pending;
 use core::pin::pin;
 
-use embassy_futures::select::{select3, select4};
+use embassy_futures::select::{select, select3, select4};
+use embassy_time::{Duration, Timer};
 use embedded_io_async::Write;
 use orientation::alignment::Method;
 use orientation::signal::Timed;
@@ -43,8 +45,14 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, K: Keep,
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
-    let (finding, discarding) = (find(method, aiding, outside, channels), discard(channels));
-    operate(mechanism, keeping, aiding, shared, (finding, discarding)).await;
+    let Outside { link, recorder, store } = outside;
+    let beside = async {
+        // Each is pinned here, so that it exists in memory once.
+        let finding = pin!(find(method, aiding, recorder, store, channels));
+        let reporting = pin!(link::run(link, shared));
+        select(finding, shared.checked(Part::Link, reporting)).await;
+    };
+    operate(mechanism, keeping, aiding, shared, (beside, discard(channels))).await;
     shared.health.get()
 }
 
@@ -77,7 +85,7 @@ pub async fn operate<M: Mechanism, K: Keep>(
 
 /// Where results go: link, recorder, and the store of what outlasts a loss of supply.
 pub struct Outside<'o, L, R, T> {
-    /// Link for status lines.
+    /// Serial link.
     pub link: &'o mut L,
     /// Recorder of samples and conclusions.
     pub recorder: &'o mut R,
@@ -85,23 +93,31 @@ pub struct Outside<'o, L, R, T> {
     pub store: T,
 }
 
-/// Aligns, reports over the link and keeps what is to be saved, until nothing more will happen.
-pub async fn find<L: Write, R: Recorder<S>, T: Store, S: Timed>(
+/// Time after which the parts of [`find`] are polled although nothing has woken them, so that each checks in.
+const CHECK_IN: Duration = Duration::from_secs(1);
+
+/// Wakes a task without end, so that its parts check in.
+pub async fn wake() -> Infallible {
+    loop {
+        Timer::after(CHECK_IN).await;
+    }
+}
+
+/// Aligns, as often as it is ordered, and keeps what is to be saved, without end.
+pub async fn find<R: Recorder<S>, T: Store, S: Timed>(
     method: &mut dyn Method<S>,
     aiding: &dyn Aiding,
-    outside: Outside<'_, L, R, T>,
+    recorder: &mut R,
+    mut store: T,
     channels: &Channels<'_, S>,
 ) {
     let shared = &channels.shared;
-    let Outside { link, recorder, mut store } = outside;
+    shared.required.set(method.required_sigma());
     // Each part is pinned here, so that it exists in memory once.
     let aligning = pin!(align(method, aiding, recorder, channels));
-    let reporting = pin!(link::run(link, shared));
     let watching = pin!(watch(shared));
     let storing = pin!(remember(&mut store, shared));
-    // The link wakes all of them once a second.
     let aligning = shared.checked(Part::Aligner, aligning);
-    let (reporting, storing) =
-        (shared.checked(Part::Link, reporting), shared.checked(Part::Store, storing));
-    select4(aligning, reporting, watching, storing).await;
+    let storing = shared.checked(Part::Store, storing);
+    select4(aligning, watching, storing, pin!(wake())).await;
 }

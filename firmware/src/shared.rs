@@ -9,23 +9,29 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Azimuth, Progress, Request};
 use orientation::attitude::restart::Remembered;
 use orientation::device::{Device, Trouble};
+use orientation::navigation::navigator::Attitude;
 use orientation::navigation::{Motion, Order};
 use orientation::roll;
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::timebase::{Clock, Timebase};
-use orientation::units::{self, Angle};
+use orientation::units::{self, Angle, Radians};
+use protocol::report::Devices;
 
 use crate::check_ins::{CheckIns, Checked, Part};
 use crate::crossing::{AnyObserver, Common, Lock};
 use crate::event::Event;
 use crate::health::Health;
+use crate::link;
 use crate::ports::Frames;
 use crate::retry_budget::{RETRY, Symptom};
+use crate::settings::Output;
 use crate::status::Status;
 
 /// Capacity of the queues: 16 ms at 2 kHz, 2 ms at 14.4 kHz.
 pub const QUEUE: usize = 32;
+/// Events that wait for the link: more than one alignment ends with.
+const NOTICES: usize = 4;
 /// How many of a queue may wait while its receiver rests: with as many that come until it looks again, and some
 /// more where it is late, none is lost.
 pub(crate) const WAITING: usize = QUEUE / 3;
@@ -196,8 +202,22 @@ pub struct Shared<'a> {
     pub(crate) observation: Common<Observation>,
     /// Counters of faults.
     pub health: Common<Health>,
-    /// The status that the link reports.
+    /// How far the instrument is.
     pub status: Common<Status>,
+    /// From the navigator to the link: the attitude, ten times a second.
+    pub attitude: Common<Option<Attitude>>,
+    /// From the navigator to the link: there is a new one.
+    pub looked: Signal<Lock, ()>,
+    /// From any part to the link: events that it is to tell. What does not find room is not told.
+    pub(crate) notices: Channel<Lock, Event, NOTICES>,
+    /// Devices that were given up and not started again since.
+    pub failed: Common<Devices>,
+    /// Standard deviation of the azimuth that is required; [`None`] where none is determined.
+    pub required: Common<Option<Radians>>,
+    /// What the link sends.
+    pub output: Common<Output>,
+    /// Whether the world is a simulated one, which the link says. Stated before the parts begin.
+    pub is_simulated: bool,
     /// Receiver of events.
     pub observer: &'a AnyObserver<'a>,
     /// Where the parts check in.
@@ -237,6 +257,13 @@ impl<'a> Shared<'a> {
             observation: Common::default(),
             health: Common::default(),
             status: Common::new(Status::Starting),
+            attitude: Common::default(),
+            looked: Signal::new(),
+            notices: Channel::new(),
+            failed: Common::default(),
+            required: Common::default(),
+            output: Common::default(),
+            is_simulated: false,
             observer,
             check_ins: observer.check_ins(),
         }
@@ -258,6 +285,12 @@ impl<'a> Shared<'a> {
         if !self.is_idle() {
             self.order(Order::Fail(reason));
         }
+    }
+
+    /// Notes that nothing begins: what was to be determined is not.
+    pub fn refuse_to_begin(&self) {
+        self.status.set(Status::Refused);
+        self.alignments.set(Alignments::Idle);
     }
 
     /// Notes that the aligner obeys an order. For an alignment that begins the base's sway is observed anew. One that
@@ -366,7 +399,22 @@ impl<'a> Shared<'a> {
     /// contains the clock and the log.
     #[inline(never)]
     pub fn report(&self, event: Event) {
+        match event {
+            Event::GivenUp(device, _) => self.failed.change(|failed| failed.insert(device)),
+            Event::Started(device) => self.failed.change(|failed| failed.remove(device)),
+            _ => {}
+        }
+        if link::is_told(&event) {
+            // The log has what finds no room.
+            let _ = self.notices.try_send(event);
+        }
         self.observer.event(Instant::now(), &event);
+    }
+
+    /// How far the instrument is, as it is shown: as long as the mechanism's angles are not valid, they are being sought.
+    pub(crate) fn shown_status(&self) -> Status {
+        let status = self.status.get();
+        if self.homed.signaled() { status } else { status.before_homing() }
     }
 
     /// Reports an alignment's progress, and updates the status that the link sends.

@@ -1,6 +1,6 @@
 //! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 64 MHz).
 //!
-//! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines are
+//! `cargo board` flashes it through the board's own ST-LINK and shows the log; what the link says is
 //! sent by the virtual COM port, 115 200 baud. The carrier is chosen by a feature, as in `cargo board
 //! --features vehicle`; latitude, gyro and schedule are in `firmware/stm32/src/settings.rs`, unless a record in
 //! the flash states them, the rest of the configuration in `configuration.rs` beside it.
@@ -48,6 +48,8 @@ defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 static ACQUISITION: InterruptExecutor = InterruptExecutor::new();
 /// Executor of motors and keeper.
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
+/// Executor of the link.
+static LINK: InterruptExecutor = InterruptExecutor::new();
 
 /// Polls the tasks of acquisition.
 #[interrupt]
@@ -69,10 +71,24 @@ fn TSC() {
     }
 }
 
+/// Polls the task of the link.
+#[interrupt]
+fn RNG() {
+    #[expect(unsafe_code, reason = "only the interrupt of the executor may poll it")]
+    // SAFETY: this is the interrupt that the executor was started with, and that start enables it.
+    unsafe {
+        LINK.on_interrupt();
+    }
+}
+
 /// Starts the executors above the thread.
 fn executors() -> Executors {
-    let [acquisition, control] = priorities::EXECUTORS;
-    Executors { acquisition: ACQUISITION.start(acquisition), control: CONTROL.start(control) }
+    let [acquisition, control, link] = priorities::EXECUTORS;
+    Executors {
+        acquisition: ACQUISITION.start(acquisition),
+        control: CONTROL.start(control),
+        link: LINK.start(link),
+    }
 }
 
 /// Symbols of the linker.
@@ -145,7 +161,7 @@ const REGISTERS: usize = 160;
 /// Tells log and link how the last run ended, unless it did so on purpose, and how many records of the log the flash holds.
 async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link) {
     let how = |last: &Last| last.how(reason == Reason::Watchdog, reason == Reason::Supply);
-    let (mut words, mut registers) = ([""; 9], String::<REGISTERS>::new());
+    let mut registers = String::<REGISTERS>::new();
     if let Some(last) = last
         && let Some(how) = how(last)
     {
@@ -159,13 +175,13 @@ async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link
         let text = last.record.text.as_str();
         let place = if text.is_empty() { "" } else { " at " };
         let [what, part] = [how.brief(), last.part(how)];
-        words = ["last reset: ", what, " in ", part, place, text, &registers, "\r\n", ""];
+        let words = format_args!("last reset: {what} in {part}{place}{text}{registers}");
+        link::announce(&mut link.sender, &words).await;
     }
     if records > 0 {
         defmt::info!("board: {} records of the log in flash", records);
-        words[8] = "log in flash\r\n";
+        link::announce(&mut link.sender, &"log in flash").await;
     }
-    link::say(&mut link.sender, &words).await;
 }
 
 /// Runs the program of the carrier.

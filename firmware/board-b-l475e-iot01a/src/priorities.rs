@@ -7,7 +7,8 @@
 //! | 2 | alarms of the time driver, the bus of the base, the link and its direct memory access | they move data and wake tasks, which may take some microseconds |
 //! | 6 | the executor of acquisition | what is read belongs to the moment of its conversion |
 //! | 8 | the executor of control: motors and keeper | they must not wait for a conclusion, but may work for a millisecond |
-//! | thread | the executor of the thread: aligner, conclusions, link, store | |
+//! | 10 | the executor of the link | it goes on while the thread computes |
+//! | thread | the executor of the thread: aligner, conclusions, store | |
 
 use embassy_stm32::interrupt::{Interrupt, InterruptExt, Priority};
 use stm32::edges::NOTIFIER;
@@ -32,19 +33,20 @@ const OTHERS: [Interrupt; 6] = [
     Interrupt::DMA2_CHANNEL7,
 ];
 
-/// The executors of acquisition and of control. The peripherals of these interrupts are not used: a master of a
-/// single-wire protocol, and a controller of touch keys.
-pub const EXECUTORS: [Interrupt; 2] = [Interrupt::SWPMI1, Interrupt::TSC];
+/// The executors of acquisition, of control and of the link. The peripherals of these interrupts are not used: a master of a
+/// single-wire protocol, a controller of touch keys, and a generator of random numbers.
+pub const EXECUTORS: [Interrupt; 3] = [Interrupt::SWPMI1, Interrupt::TSC, Interrupt::RNG];
 
 /// Sets the priorities.
 pub fn set() {
-    let [acquisition, control] = EXECUTORS;
-    let groups: [(&[Interrupt], Priority); 5] = [
+    let [acquisition, control, link] = EXECUTORS;
+    let groups: [(&[Interrupt], Priority); 6] = [
         (&EDGES, Priority::P0),
         (&[NOTIFIER], Priority::P1),
         (&OTHERS, Priority::P2),
         (&[acquisition], Priority::P6),
         (&[control], Priority::P8),
+        (&[link], Priority::P10),
     ];
     for (interrupts, priority) in groups {
         for interrupt in interrupts {

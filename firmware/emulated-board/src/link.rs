@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::Duration;
 
-/// Bytes that wait for a slow client at most: some ten minutes of status lines.
+/// Bytes that wait for a slow client at most: some minutes of sentences.
 pub const WAITING: usize = 1 << 16;
 /// How long the client may take for some of the bytes that wait at the end.
 const PATIENCE: Duration = Duration::from_secs(5);

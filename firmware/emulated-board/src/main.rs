@@ -95,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
     }
     match report.outcome.as_str() {
         "" => Err(named("its log says nothing: is it the image of a board?".to_owned())),
-        refused if refused.starts_with("board: no settings") => Err(named(refused.to_owned())),
+        refused if refused.starts_with("no settings") => Err(named(refused.to_owned())),
         _ => Ok(report),
     }
 }

@@ -226,11 +226,10 @@ fn instructions(
     sums.into_iter().map(|(origin, sum)| (origin, sum as f64 / samples as f64)).collect()
 }
 
-/// The faults that the last line of the link counts.
+/// The faults that the last sentence of the link counts that has the instrument's state.
 fn faults(link: &str) -> u64 {
-    let mut counts =
-        link.lines().filter_map(|line| line.rsplit("faults ").next()?.trim().parse().ok());
-    counts.next_back().unwrap_or(0)
+    let counts = link.lines().filter_map(|line| line.strip_prefix("$PMRDS,")?.split(',').nth(4));
+    counts.filter_map(|count| count.parse().ok()).next_back().unwrap_or(0)
 }
 
 /// Why the board was reset, each time.

@@ -14,8 +14,10 @@
 //! A record that is damaged, of another version, for another carrier, or out of range is refused as a
 //! whole: an instrument must not begin with other values than its user believes in.
 
+mod output;
 mod schedule;
 
+pub use output::{FASTEST, Format, ITEMS, Item, Output};
 pub use schedule::{
     CarrierSchedule, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
     VehicleSchedule,

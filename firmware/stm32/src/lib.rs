@@ -10,7 +10,8 @@
 //! | interrupts of devices and of the clock | wake tasks | some microseconds |
 //! | executor of acquisition | reads the sensors, queues samples and motions | 0.4 ms |
 //! | executor of control | motors; attitude and heading from the motions | 1.5 ms, once a second |
-//! | thread | aligner, conclusions, plans, link, store | a conclusion takes up to some seconds |
+//! | executor of the link | sentences and messages of the attitude | 1 ms, ten times a second |
+//! | thread | aligner, conclusions, plans, store | a conclusion takes up to some seconds |
 #![no_std]
 
 pub mod brown_out;
@@ -42,16 +43,14 @@ use embassy_executor::{SendSpawner, SpawnError, SpawnToken};
 use embassy_futures::join::join;
 use embassy_futures::select::select;
 use embassy_stm32::gpio::Output;
-use embassy_time::{Duration, Timer};
 use firmware::acquire::{acquire, on_stage};
-use firmware::check_ins::{Checked, Part};
+use firmware::check_ins::Part;
+use firmware::event::Event;
 use firmware::keep::{Keep, Keeping};
-use firmware::kept_lines::Weight;
-use firmware::link;
 use firmware::mechanism::Mechanism;
 use firmware::not_begun::NotBegun;
-use firmware::ports::{NoRecorder, Observer, Recorder, Store};
-use firmware::run::{Outside, find, operate};
+use firmware::ports::NoRecorder;
+use firmware::run::{find, operate, wake};
 use firmware::settings::Settings;
 use firmware::shared::Shared;
 use firmware::sway::SwayCompensation;
@@ -62,34 +61,37 @@ use orientation::timebase::Timebase;
 use static_cell::StaticCell;
 
 use i2c::BaseBus;
-use wiring::Link;
+use wiring::{Link, Outlets};
 
-/// Longest time between two polls of the parts that are to check in.
-const CHECK_IN: Duration = Duration::from_secs(1);
-
-/// Executors above the thread, which has what may wait: conclusions, plans, link and store.
+/// Executors above the thread, which has what may wait: conclusions, plans and store. Each has a greater priority than
+/// the next.
 #[derive(Clone, Copy)]
 pub struct Executors {
-    /// Of acquisition, with the greater priority: what is read belongs to the moment of its conversion.
+    /// Of acquisition: what is read belongs to the moment of its conversion.
     pub acquisition: SendSpawner,
     /// Of mechanism and keeper.
     pub control: SendSpawner,
+    /// Of the link, which goes on while the thread computes.
+    pub link: SendSpawner,
 }
 
 /// The channels between the instrument's parts.
 type Channels<S = Sample> = firmware::shared::Channels<'static, S>;
 
-/// What the thread is given: a method, the flash for what is to be kept, and the channels.
-type Begun<M, S = Sample> = (&'static mut M, UpperBank, &'static Channels<S>);
-
 /// The IMU on the base, which measures its motion.
 type OnBase = SwayCompensation<'static, ports::Base>;
 
-/// Channels of the instrument on a platform, at their final place in memory.
-fn channels(log: &'static BoardLog, clocks: Timebase) -> &'static Channels {
-    static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    let channels = CHANNELS.init_with(|| Channels::new(log));
-    channels.shared.clocks = clocks;
+/// Channels of an instrument at their final place in memory. The link reports from now on.
+fn connected<S: Send>(
+    place: &'static StaticCell<Channels<S>>,
+    executors: Executors,
+    outlets: &Outlets,
+    port: Link,
+) -> &'static Channels<S> {
+    let channels = place.init_with(|| Channels::new(outlets.log));
+    channels.shared.clocks = configuration::timebase(outlets.clock);
+    let channels: &'static Channels<S> = channels;
+    executors.link.spawn(once(link(port, &channels.shared)));
     channels
 }
 
@@ -155,48 +157,36 @@ async fn control_motors(
 
 /// Waits for the end of all. Once a second the parts beside it are woken, to check in.
 async fn wait(shared: &Shared<'static>) {
-    let waking = async {
-        loop {
-            Timer::after(CHECK_IN).await;
-        }
-    };
-    select(shared.over.wait(), waking).await;
+    select(shared.over.wait(), wake()).await;
 }
 
-/// Aligns, reports over the link and stores what is to be kept; then reports the conclusion without end. It never
-/// returns, because the peripherals would be dropped: the link would lose its last bytes.
-async fn find_and_report<S: Timed>(
-    method: &mut dyn Method<S>,
-    link: &mut Link,
-    recorder: &mut impl Recorder<S>,
-    store: impl Store,
-    channels: &'static Channels<S>,
-) -> ! {
-    let shared = &channels.shared;
-    let outside = Outside { link: &mut link.sender, recorder, store };
-    find(method, &(), outside, channels).await;
-    shared.over.signal(());
-    defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
-    shared.checked(Part::Link, pin!(link::repeat(&mut link.sender, channels))).await
+/// Reports over the link, for ever; says when nothing more will happen.
+#[embassy_executor::task]
+async fn link(mut port: Link, shared: &'static Shared<'static>) {
+    let reporting = async {
+        firmware::link::run(&mut port.sender, shared).await;
+        shared.over.signal(());
+        defmt::info!("board: done, {} faults on the way", shared.health.get().faults());
+        firmware::link::serve(&mut port.sender, shared).await;
+    };
+    shared.checked(Part::Link, pin!(reporting)).await;
 }
 
 /// Goes on with what has begun, without end, where nothing but a heading is kept; or says why nothing has.
 async fn go_on<M: Method<S>, S: Timed>(
-    begun: Result<Begun<M, S>, NotBegun>,
-    link: &mut Link,
-    log: &BoardLog,
+    begun: Result<&'static mut M, NotBegun>,
+    flash: UpperBank,
+    channels: &'static Channels<S>,
 ) -> ! {
     match begun {
-        Ok((method, flash, channels)) => {
-            find_and_report(method, link, &mut NoRecorder, flash.store(), channels).await
-        }
-        Err(reason) => refuse(reason, link, log).await,
+        Ok(method) => find(method, &(), &mut NoRecorder, flash.store(), channels).await,
+        Err(reason) => refuse(reason, &channels.shared),
     }
+    pending().await
 }
 
-/// Says why nothing begins: once in the log, every second over the link.
-async fn refuse(reason: NotBegun, link: &mut Link, log: &BoardLog) -> ! {
-    log.keep(Weight::Outcome, || defmt::error!("board: {}", reason));
-    Checked::new(log.check_ins(), Part::Link, pin!(link::refuse(&mut link.sender, reason.brief())))
-        .await
+/// Says why nothing begins.
+fn refuse(reason: NotBegun, shared: &Shared<'static>) {
+    shared.report(Event::NotBegun(reason));
+    shared.refuse_to_begin();
 }

@@ -2,27 +2,22 @@
 
 use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::not_begun::NotBegun;
-use firmware::ports::NoRecorder;
 use firmware::spin::configuration::SpinConfiguration;
 use orientation::roll::Flight;
 use orientation::signal::SpinSample;
 use static_cell::StaticCell;
 
 use crate::ports::Spinning;
-use crate::wiring::{Link, Outlets, SpinWires};
-use crate::{Channels, Executors, configuration, find_and_report, once, ports, refuse, settings};
+use crate::wiring::{Link, SpinWires};
+use crate::{Channels, Executors, configuration, connected, go_on, once, ports, settings};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
-pub async fn follow(executors: Executors, wires: SpinWires, mut link: Link) {
-    let log = wires.outlets.log;
-    match begin(executors, wires) {
-        Ok((flight, channels)) => {
-            let recorder = &mut NoRecorder;
-            find_and_report(flight, &mut link, recorder, (), channels).await;
-        }
-        Err(reason) => refuse(reason, &mut link, log).await,
-    }
+pub async fn follow(executors: Executors, wires: SpinWires, link: Link) {
+    static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
+    let channels = connected(&CHANNELS, executors, &wires.outlets, link);
+    let flash = wires.outlets.flash;
+    go_on(begin(executors, wires, channels), flash, channels).await;
 }
 
 /// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
@@ -34,23 +29,19 @@ pub async fn follow(executors: Executors, wires: SpinWires, mut link: Link) {
 fn begin(
     executors: Executors,
     wires: SpinWires,
-) -> Result<(&'static mut Flight, &'static Channels<SpinSample>), NotBegun> {
-    static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
+    channels: &'static Channels<SpinSample>,
+) -> Result<&'static mut Flight, NotBegun> {
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
     let SpinWires { converters, outlets } = wires;
     let settings = settings::load(&outlets, settings::spin)?;
-    let Outlets { log, clock, .. } = outlets;
-    let clocks = configuration::timebase(clock);
+    let clocks = channels.shared.clocks;
     let configuration = configuration::spinning().ok_or(NotBegun::NoScale)?;
-    let channels = CHANNELS.init_with(|| Channels::new(log));
-    channels.shared.clocks = clocks;
-    let channels: &'static Channels<_> = channels;
     let flight = FLIGHT.init_with(|| configuration::flight(&settings, clocks));
     let sensors = ports::spinning(converters);
     executors.acquisition.spawn(once(acquisition(sensors, configuration, channels)));
     // Nothing turns: the angles are valid.
     channels.shared.homed.signal(());
-    Ok((flight, channels))
+    Ok(flight)
 }
 
 /// Acquisition on a spinning body.

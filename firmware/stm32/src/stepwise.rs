@@ -17,17 +17,21 @@ use orientation::alignment::stepwise::setting::Setting;
 use static_cell::StaticCell;
 
 use crate::ports::{AxisMotor, MountInputs};
-use crate::wiring::{AxisPlatformWires, FramesWires, Link, Outlets};
+use crate::wiring::{AxisPlatformWires, FramesWires, Link};
 use crate::{
-    Begun, Channels, Executors, OnBase, channels, configuration, control_motors, go_on, keeping,
-    on_base, once, ports, settings, stage_acquisition,
+    Channels, Executors, OnBase, configuration, connected, control_motors, go_on, keeping, on_base,
+    once, ports, settings, stage_acquisition,
 };
+
+/// Channels of the instrument, of which an image has one.
+static CHANNELS: StaticCell<Channels> = StaticCell::new();
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, mut link: Link) {
-    let log = wires.outlets.log;
-    go_on(begin_on_a_stage(executors, wires), &mut link, log).await;
+pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, link: Link) {
+    let channels = connected(&CHANNELS, executors, &wires.outlets, link);
+    let flash = wires.outlets.flash;
+    go_on(begin_on_a_stage(executors, wires, channels), flash, channels).await;
 }
 
 /// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
@@ -39,23 +43,22 @@ pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, mut link
 fn begin_on_a_stage(
     executors: Executors,
     wires: AxisPlatformWires,
-) -> Result<Begun<Session>, NotBegun> {
+    channels: &'static Channels,
+) -> Result<&'static mut Session, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let settings = settings::load(&outlets, settings::stage)?;
-    let Outlets { flash, log, clock } = outlets;
-    let clocks = configuration::timebase(clock);
+    let clocks = channels.shared.clocks;
     let procedure = configuration::procedure(&settings, clocks);
     let session = session(configuration::setting(&settings), procedure)?;
     let encoder = ports::encoder(axes.encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
-    let channels = channels(log, clocks);
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(once(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings, clocks);
     executors.control.spawn(once(stage(motor, motor_enable, keeping, channels)));
-    Ok((session, flash, channels))
+    Ok(session)
 }
 
 /// Motor and keeper on a stage.
@@ -74,9 +77,10 @@ async fn stage(
 /// Runs the instrument on two frames: it aligns, then holds the result without end with the sensitive
 /// axis vertical.
 #[embassy_executor::task]
-pub async fn on_two_frames(executors: Executors, wires: FramesWires, mut link: Link) {
-    let log = wires.outlets.log;
-    go_on(begin_on_two_frames(executors, wires), &mut link, log).await;
+pub async fn on_two_frames(executors: Executors, wires: FramesWires, link: Link) {
+    let channels = connected(&CHANNELS, executors, &wires.outlets, link);
+    let flash = wires.outlets.flash;
+    go_on(begin_on_two_frames(executors, wires, channels), flash, channels).await;
 }
 
 /// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
@@ -88,16 +92,16 @@ pub async fn on_two_frames(executors: Executors, wires: FramesWires, mut link: L
 fn begin_on_two_frames(
     executors: Executors,
     wires: FramesWires,
-) -> Result<Begun<Session>, NotBegun> {
+    channels: &'static Channels,
+) -> Result<&'static mut Session, NotBegun> {
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let frames = configuration::frames()?;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let settings = settings::load(&outlets, settings::two_frame)?;
-    let (Outlets { flash, log, clock }, Frames { outer, inner }) = (outlets, axes);
-    let clocks = configuration::timebase(clock);
+    let (Frames { outer, inner }, clocks) = (axes, channels.shared.clocks);
     let procedure = configuration::mount_procedure(&settings, clocks);
     let session = session(configuration::mount_setting(&settings), procedure)?;
-    let (frames, channels) = (&*FRAMES.init(frames), channels(log, clocks));
+    let frames = &*FRAMES.init(frames);
     let encoders = Frames { outer: outer.encoder, inner: inner.encoder }.map(ports::encoder);
     let base = SwayCompensation::new(on_base(base));
     let converter = (converter, &settings.gyro);
@@ -106,7 +110,7 @@ fn begin_on_two_frames(
     executors.acquisition.spawn(once(mount_acquisition(inputs, frames, channels)));
     let keeping = keeping(&settings, clocks);
     executors.control.spawn(once(mount(motors, motor_enable, frames, keeping, channels)));
-    Ok((session, flash, channels))
+    Ok(session)
 }
 
 /// Acquisition on two frames.

@@ -13,16 +13,18 @@ use orientation::timebase::Timebase;
 use static_cell::StaticCell;
 
 use crate::ports::Triad;
-use crate::wiring::{Link, Outlets, VehicleWires};
+use crate::wiring::{Link, VehicleWires};
 use crate::{
-    Begun, Channels, Executors, configuration, control, go_on, keeper, once, ports, settings,
+    Channels, Executors, configuration, connected, control, go_on, keeper, once, ports, settings,
 };
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
-pub async fn align(executors: Executors, wires: VehicleWires, mut link: Link) {
-    let log = wires.outlets.log;
-    go_on(begin(executors, wires), &mut link, log).await;
+pub async fn align(executors: Executors, wires: VehicleWires, link: Link) {
+    static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
+    let channels = connected(&CHANNELS, executors, &wires.outlets, link);
+    let flash = wires.outlets.flash;
+    go_on(begin(executors, wires, channels), flash, channels).await;
 }
 
 /// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
@@ -34,16 +36,12 @@ pub async fn align(executors: Executors, wires: VehicleWires, mut link: Link) {
 fn begin(
     executors: Executors,
     wires: VehicleWires,
-) -> Result<Begun<Session, InertialSample>, NotBegun> {
-    static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
+    channels: &'static Channels<InertialSample>,
+) -> Result<&'static mut Session, NotBegun> {
     let VehicleWires { converters, accelerometer, outlets } = wires;
     let settings = settings::load(&outlets, settings::vehicle)?;
-    let Outlets { flash, log, clock } = outlets;
-    let clocks = configuration::timebase(clock);
+    let clocks = channels.shared.clocks;
     let session = session(&settings, clocks)?;
-    let channels = CHANNELS.init_with(|| Channels::new(log));
-    channels.shared.clocks = clocks;
-    let channels: &'static Channels<_> = channels;
     let sensors = ports::triad((converters, &settings.gyro), accelerometer)?;
     let keeping = settings.holds.then(|| {
         let keeper = keeper(&configuration::keeper(&settings, clocks));
@@ -51,7 +49,7 @@ fn begin(
     });
     executors.acquisition.spawn(once(acquisition(sensors, channels)));
     executors.control.spawn(once(keep(keeping, channels)));
-    Ok((session, flash, channels))
+    Ok(session)
 }
 
 /// Acquisition in a vehicle.

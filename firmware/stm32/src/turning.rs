@@ -2,10 +2,12 @@
 //! in flash. It holds azimuth, pitch and roll afterwards, by the IMU of the board on the base.
 
 use core::convert::Infallible;
+use core::future::pending;
 
 use embassy_stm32::gpio::Output;
 use firmware::keep::Keeping;
 use firmware::not_begun::NotBegun;
+use firmware::run::find;
 use firmware::settings::{Settings, TurntableSchedule};
 use firmware::storage::{CalibrationStore, SharedStore, Today, load_calibration};
 use firmware::sway::SwayCompensation;
@@ -16,10 +18,10 @@ use static_cell::StaticCell;
 
 use crate::flash::Store;
 use crate::ports::AxisMotor;
-use crate::wiring::{AxisPlatformWires, Link, Outlets};
+use crate::wiring::{AxisPlatformWires, Link};
 use crate::{
-    Channels, Executors, channels, configuration, control_motors, find_and_report, keeping,
-    on_base, once, ports, refuse, settings, stage_acquisition,
+    Channels, Executors, configuration, connected, control_motors, keeping, on_base, once, ports,
+    refuse, settings, stage_acquisition,
 };
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
@@ -27,10 +29,12 @@ const TODAY: Today = Today { date: None, longest: None };
 
 /// Runs the instrument on a rotating platform: it aligns, then holds the result without end.
 #[embassy_executor::task]
-pub async fn align(executors: Executors, wires: AxisPlatformWires, mut link: Link) {
-    let log = wires.outlets.log;
-    let Err(reason) = begin(executors, wires, &mut link).await;
-    refuse(reason, &mut link, log).await;
+pub async fn align(executors: Executors, wires: AxisPlatformWires, link: Link) {
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    let channels = connected(&CHANNELS, executors, &wires.outlets, link);
+    let Err(reason) = begin(executors, wires, channels).await;
+    refuse(reason, &channels.shared);
+    pending::<()>().await;
 }
 
 /// Runs without end.
@@ -40,25 +44,24 @@ pub async fn align(executors: Executors, wires: AxisPlatformWires, mut link: Lin
 async fn begin(
     executors: Executors,
     wires: AxisPlatformWires,
-    link: &mut Link,
+    channels: &'static Channels,
 ) -> Result<Infallible, NotBegun> {
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, outlets } = wires;
     let settings = settings::load(&outlets, settings::turntable)?;
-    let Outlets { flash, log, clock } = outlets;
-    let clocks = configuration::timebase(clock);
-    let channels = channels(log, clocks);
+    let clocks = channels.shared.clocks;
     let base = SwayCompensation::for_keeping(on_base(base));
     let encoder = ports::encoder(axes.encoder);
     let converter = (converter, &settings.gyro);
     let inputs = ports::inputs(converter, accelerometer, encoder, base)?;
-    let store = &SharedStore::new(flash.store());
+    let store = &SharedStore::new(outlets.flash.store());
     let session = session(&settings, store, channels).await?;
     let motor = ports::motor(axes.motor);
     executors.acquisition.spawn(once(stage_acquisition(inputs, channels)));
     let keeping = keeping(&settings, clocks);
     executors.control.spawn(once(platform(motor, motor_enable, keeping, channels)));
     let recorder = &mut CalibrationStore { store, channels };
-    find_and_report(session, link, recorder, store, channels).await
+    find(session, &(), recorder, store, channels).await;
+    pending().await
 }
 
 /// Motor and keeper on a rotating platform.

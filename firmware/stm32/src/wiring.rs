@@ -30,7 +30,7 @@ pub struct Link {
     /// It is to be read before the ring is full, at least every 22 ms while bytes come. A ring that is not read is
     /// written over and over, which disturbs nothing else.
     pub receiver: RingBufferedUartRx<'static>,
-    /// What it sends: status lines.
+    /// What it sends.
     pub sender: UartTx<'static, Async>,
 }
 
@@ -89,7 +89,7 @@ pub struct SpinWires {
     pub outlets: Outlets,
 }
 
-/// Where results go, beside the link for status lines.
+/// Where results go, beside the link.
 #[derive(Clone, Copy)]
 pub struct Outlets {
     /// Flash of the controller, for what must outlast a loss of supply.

@@ -4,6 +4,7 @@ use firmware::platform::Platform;
 
 use super::support::executed::{Executed, executed};
 use super::support::figure::within;
+use super::support::sentences::sentences;
 use super::support::worlds::calibrated_two_frames;
 
 /// Conversions that were lost from the last step of the measurement to the result. The probe, which looks while the
@@ -13,15 +14,11 @@ fn lost(shown: &Executed) -> f64 {
     (measuring.lost + concluding.lost) as f64
 }
 
-/// Pitch, roll or another number of the latest status line, by the word before it.
-fn shown_last(shown: &Executed, word: &str) -> f64 {
-    let line = shown.link.last().expect("the link says something");
-    let mut words = line.split(' ').skip_while(|found| *found != word);
-    let number = words.nth(1).unwrap_or_else(|| panic!("no {word} in {line:?}"));
-    number
-        .trim_end_matches(',')
-        .parse()
-        .unwrap_or_else(|_| panic!("no number after {word} in {line:?}"))
+/// The number in a field of the latest sentence of an address.
+fn shown_last(shown: &Executed, address: &str, field: usize) -> f64 {
+    let sentences = sentences(shown.link.iter().map(String::as_str), address);
+    let latest = sentences.last().expect("the link says something");
+    latest[field].parse().unwrap_or_else(|_| panic!("no number in {latest:?}"))
 }
 
 #[test]
@@ -69,7 +66,7 @@ fn acquisition_does_not_wait_for_a_conclusion_in_a_vehicle() {
 fn an_azimuth_that_is_handed_over_keeps_its_sigma() {
     let shown = executed(Platform::Stage, 1);
     let [_, sigma, _] = shown.report.azimuth_deg.expect("the alignment ends with an azimuth");
-    let more = shown_last(&shown, "sigma") - sigma;
+    let more = shown_last(&shown, "PMRDS", 1) - sigma;
     within(more, 0.0..=0.02, "° more is the σ of the azimuth that is kept on a stage");
 }
 
@@ -94,6 +91,6 @@ fn the_heading_of_a_body_at_rest_is_saved_once_a_minute_at_most() {
 fn pitch_and_roll_of_a_base_are_within_three_sigma_of_the_truth() {
     let shown = executed(Platform::Stage, 1);
     let scenario = simulated::executed::stage(1);
-    let pitch = (shown_last(&shown, "pitch") - scenario.pitch_deg).abs();
+    let pitch = (shown_last(&shown, "PHTRO", 0) - scenario.pitch_deg).abs();
     within(pitch, 0.0..=0.34, "° the pitch of a base is wrong, of which 0.11° are stated");
 }

@@ -7,6 +7,7 @@ use firmware::platform::Platform;
 use super::sound::{azimuth, distance};
 use super::support::board::Board;
 use super::support::executed::{Executed, execute_in, execute_spoken_to};
+use super::support::sentences::states;
 use super::support::worlds::{short_stage, usual};
 
 /// Bytes for a millisecond, of which 115 200 baud carry 11.52, ten bits each: the line is never at rest.
@@ -39,7 +40,8 @@ fn bytes_that_a_board_is_sent_during_an_alignment_change_nothing_else() {
     let ((found, sigma), (expected, _)) = (azimuth(&spoken_to.report), azimuth(&silent.report));
     let change = distance(found, expected);
     assert!(change <= 0.5 * sigma, "{change}° at a σ of {sigma}°");
-    assert!(spoken_to.link.iter().all(|line| line.ends_with(", faults 0")), "{:?}", spoken_to.link);
+    let states = states(spoken_to.link.iter().map(String::as_str));
+    assert!(states.iter().all(|state| state[4] == "0"), "{states:?}");
 }
 
 /// Whether the board has so many of the bytes, one after the other, in its first RAM (SRAM1, 96 KiB).

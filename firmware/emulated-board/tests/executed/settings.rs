@@ -9,6 +9,7 @@ use firmware::settings::{BYTES, SLOT};
 use super::support::board::Board;
 use super::support::executed::execute_in;
 use super::support::figure::within;
+use super::support::sentences::{states, words};
 use super::support::worlds::{short_stage, usual};
 
 /// A turntable with this store for twenty seconds: how long its link is silent while its watchdog is fed, s. The log
@@ -17,8 +18,12 @@ use super::support::worlds::{short_stage, usual};
 fn silence(store: Vec<u8>, reason: &str) -> f64 {
     let mut board =
         Board::within(Platform::Turntable, usual(Platform::Turntable).with_store(store));
-    let begin = board.until(&format!("board: no settings: {reason}"), 5.0);
-    while board.link.is_empty() && board.seconds() < begin + 20.0 {
+    let begin = board.until(&format!("no settings: {reason}"), 5.0);
+    let is_told = |board: &Board| {
+        let words = words(board.sent(begin, f64::INFINITY));
+        words.iter().any(|words| words.starts_with("no settings: "))
+    };
+    while !is_told(&board) && board.seconds() < begin + 20.0 {
         board.run(0.01);
     }
     let silent = board.seconds() - begin;
@@ -68,7 +73,7 @@ fn a_store_with_another_programs_remains_is_erased() {
         board.run(4.0);
         board.execution.lose_supply();
     }
-    let refused = "board: no settings: the store that may have a record cannot be read: bus error";
+    let refused = "no settings: the store that may have a record cannot be read: bus error";
     let ended = board.log.iter().filter(|(_, line)| line.contains(refused)).count();
     let words = "of three starts end with a bus error in a store with another program's remains";
     within(ended as f64, 0.0..=0.0, words);
@@ -79,11 +84,9 @@ fn a_store_with_another_programs_remains_is_erased() {
 fn a_board_that_does_not_hold_its_result_counts_no_faults_after_it() {
     let order = Order { afterwards: 5.0, ..Order::usual(Platform::Stage, 1) };
     let shown = execute_in(&order, short_stage(false, 0));
-    let counts = shown.link.iter().rev().take(4).map(|line| {
-        let count = line.rsplit("faults ").next().and_then(|count| count.parse::<f64>().ok());
-        count.unwrap_or_else(|| panic!("no faults in {line:?}"))
-    });
-    let counts: Vec<f64> = counts.collect();
+    let states = states(shown.link.iter().map(String::as_str));
+    let counts = states.iter().rev().take(4);
+    let counts: Vec<f64> = counts.map(|state| state[4].parse().expect("a number")).collect();
     let each = (counts[0] - counts[3]) / 3.0;
     let words = "faults a second are counted after the result of a stage that does not hold it";
     within(each, 0.0..=0.0, words);

@@ -7,6 +7,7 @@ use firmware::budget;
 use firmware::platform::Platform;
 
 use super::support::executed::{Executed, execute_anew, executed, executed_by};
+use super::support::sentences::states;
 
 /// Carriers whose alignment ends with an azimuth.
 const ALIGNED: [Platform; 3] = [Platform::Stage, Platform::Turntable, Platform::Vehicle];
@@ -169,9 +170,10 @@ fn a_heading_in_flash_takes_twelve_rows_and_one_that_declares_it_void() {
 fn a_vehicle_loses_nothing_from_when_its_converters_are_configured_until_its_conclusion() {
     let shown = executed(Platform::Vehicle, 1);
     assert_eq!(shown.report.service[0].lost, 0);
-    let measuring = shown.link.iter().take_while(|line| !line.starts_with("azimuth"));
-    assert!(measuring.clone().count() > 90, "the link says something every second");
-    measuring.for_each(|line| assert!(line.ends_with(", faults 0"), "{line}"));
+    let states = states(shown.link.iter().map(String::as_str));
+    let until = states.iter().take_while(|state| state[1].is_empty());
+    assert!(until.clone().count() > 90, "the link says something every second");
+    until.for_each(|state| assert_eq!([state[0], state[4]], ["aligning", "0"], "{state:?}"));
 }
 
 #[test]

@@ -7,6 +7,7 @@ use firmware::platform::Platform;
 
 use crate::board::Board;
 use crate::figure::within;
+use crate::sentences::states;
 use crate::turning::TurningBoard;
 
 /// How long a transfer may hang until the log says which bus it is, s.
@@ -25,8 +26,8 @@ fn a_hung_transfer_of_the_sensors_is_ended_and_told_by_its_bus() {
     let lines = board.lines(hung, f64::INFINITY);
     assert!(lines[0].ends_with(": reading lost: its bus hangs"), "{board}");
     assert!(lines[1].ends_with("the vehicle may drive"), "{board}");
-    let sent = board.sent(hung + 1.0, f64::INFINITY);
-    assert!(sent.len() >= 10 && sent.iter().all(|line| line.ends_with("faults 1")), "{board}");
+    let states = states(board.sent(hung + 1.0, f64::INFINITY));
+    assert!(states.len() >= 10 && states.iter().all(|state| state[4] == "1"), "{board}");
     let words = "s after a transfer of the sensors in a vehicle hangs no line names their bus";
     within(silent, TOLD, words);
 }
@@ -169,11 +170,11 @@ fn a_hung_transfer_of_the_base_is_ended_and_told_and_the_base_is_given_up() {
     let count = |words: &str| lines.iter().filter(|line| line.contains(words)).count();
     assert_eq!(count("base: bus error: starting it again"), 20, "{board}");
     assert_eq!(lines.last(), Some(&"keeping: no motion is measured any more"), "{board}");
-    let faults = board
-        .link
-        .last()
-        .and_then(|(_, line)| line.strip_prefix("measuring 0/8, faults ")?.parse::<u32>().ok());
-    assert!(faults.is_some_and(|faults| (20..30).contains(&faults)), "{board}");
+    let states = states(board.sent(hung, f64::INFINITY));
+    let Some(["aligning", _, _, _, faults, _, "0", "8", _]) = states.last() else {
+        panic!("{board}")
+    };
+    assert!(faults.parse().is_ok_and(|faults: u32| (20..30).contains(&faults)), "{board}");
 }
 
 /// Nothing tells the motion any more, and a body that rested then has not set off.

@@ -7,6 +7,7 @@ use firmware::platform::Platform;
 use crate::board::Board;
 use crate::figure::within;
 use crate::images::image;
+use crate::sentences::words;
 use crate::store::{RECALLED, nearly_full, recalled_sigma, world};
 use crate::turning::TurningBoard;
 
@@ -47,7 +48,7 @@ fn a_fault_before_a_loss_of_supply_is_told_by_the_next_start_and_found_in_the_fl
     let told = |from, until| {
         let log =
             board.lines(from, until).into_iter().find(|line| line.contains("of the log in flash"));
-        let is_sent = board.sent(from, until).contains(&"log in flash");
+        let is_sent = words(board.sent(from, until)).contains(&"log in flash".to_owned());
         (log.map(str::to_owned), is_sent)
     };
     assert_eq!(told(powered, faulted), (None, false), "{board}");

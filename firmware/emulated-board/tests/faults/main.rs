@@ -17,6 +17,8 @@ mod kept;
 mod power;
 mod readme;
 mod saving;
+#[path = "../../../../host-tests/tests/support/sentences.rs"]
+mod sentences;
 mod silent;
 mod stopped;
 mod store;

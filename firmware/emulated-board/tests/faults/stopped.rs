@@ -12,6 +12,7 @@ use firmware::platform::Platform;
 
 use crate::board::Board;
 use crate::images::image;
+use crate::sentences::words;
 use crate::turning::TurningBoard;
 
 /// Where there is nothing.
@@ -49,8 +50,10 @@ impl Restart {
         stop(&mut board);
         let start = board.until("board: started by", 10.0);
         board.until("keeping: level", 2.0);
-        let (log, link) = (board.lines(fault, f64::INFINITY), board.sent(fault, f64::INFINITY));
-        let lines = log.into_iter().chain(link).map(str::to_owned).collect();
+        let log = board.lines(fault, f64::INFINITY).into_iter().map(str::to_owned);
+        // The link has a semicolon for each comma.
+        let link = words(board.sent(fault, f64::INFINITY)).into_iter();
+        let lines = log.chain(link.map(|words| words.replace(';', ","))).collect();
         Self { after: start - fault, lines }
     }
 

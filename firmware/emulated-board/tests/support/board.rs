@@ -18,7 +18,7 @@ pub struct Board {
     pub printed: Vec<String>,
     /// Status lines of the link with the time at which each was complete, s.
     pub link: Vec<(f64, String)>,
-    /// The beginning of a status line.
+    /// The beginning of a line.
     begun: Vec<u8>,
 }
 

@@ -39,7 +39,7 @@ pub struct Executed {
     pub report: Report,
     /// Lines of the log.
     pub log: Vec<Entry>,
-    /// Lines of the link, one a second.
+    /// Lines of the link.
     pub link: Vec<String>,
 }
 

@@ -7,4 +7,6 @@ pub mod executed;
 pub mod figure;
 #[path = "../../support/images.rs"]
 pub mod images;
+#[path = "../../../../../host-tests/tests/support/sentences.rs"]
+pub mod sentences;
 pub mod worlds;

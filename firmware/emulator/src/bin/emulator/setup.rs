@@ -191,6 +191,13 @@ static GROUND: StaticCell<Ground> = StaticCell::new();
 static COURSE: StaticCell<Course> = StaticCell::new();
 static LOG: StaticCell<Log> = StaticCell::new();
 
+/// The channels of the board's parts, whose world is a simulated one.
+fn channels<S>(log: &'static Log) -> Channels<'static, S> {
+    let mut channels = Channels::new(log);
+    channels.shared.is_simulated = true;
+    channels
+}
+
 /// Builds a part in static memory. Not inlined, so that temporary copies on the stack are gone when
 /// the method runs.
 #[inline(never)]
@@ -228,7 +235,7 @@ fn stepwise(prepared: impl FnOnce() -> Option<Prepared>) -> Option<&'static mut 
 fn for_stage(scenario: &'static Scenario, log: &'static Log) -> Option<Parts> {
     let method = stepwise(|| scenario.prepared())?;
     let board = || RefCell::new(simulated::board(scenario, None, &HEALTHY));
-    Some((place(&GROUND, || Ground::Stage(scenario, board(), Channels::new(log))), method))
+    Some((place(&GROUND, || Ground::Stage(scenario, board(), channels(log))), method))
 }
 
 /// Builds a multi-position alignment on a two-frame mount.
@@ -237,7 +244,7 @@ fn for_frames(scenario: &'static FramesScenario, log: &'static Log) -> Option<Pa
     let method = stepwise(|| scenario.prepared())?;
     let mount = (scenario, scenario.frames().ok()?);
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    Some((place(&GROUND, || Ground::Frames(mount, board(), Channels::new(log))), method))
+    Some((place(&GROUND, || Ground::Frames(mount, board(), channels(log))), method))
 }
 
 /// Builds an alignment on a rotating platform.
@@ -246,7 +253,7 @@ fn for_turntable(scenario: &'static TurntableScenario, log: &'static Log) -> Opt
     let (setting, procedure) = scenario.checked()?;
     let method = place(&METHOD, || AnyMethod::Rotating(rotating::Session::of(setting, procedure)));
     let board = || RefCell::new(scenario.board(None, &HEALTHY));
-    Some((place(&GROUND, || Ground::Turntable(scenario, board(), Channels::new(log))), method))
+    Some((place(&GROUND, || Ground::Turntable(scenario, board(), channels(log))), method))
 }
 
 /// Builds an alignment in a vehicle.
@@ -256,7 +263,7 @@ fn for_vehicle(scenario: &'static VehicleScenario, log: &'static Log) -> Option<
     let session = || stops::Session::of(setting, procedure);
     let method = place(&METHOD, || AnyMethod::Stops(session(), Keeper::new(&keeper)));
     let board = || RefCell::new(scenario.board(&vehicle::BRIEF, &[], &HEALTHY));
-    Some((place(&GROUND, || Ground::Vehicle(scenario, board(), Channels::new(log))), method))
+    Some((place(&GROUND, || Ground::Vehicle(scenario, board(), channels(log))), method))
 }
 
 /// Builds the tracking of the roll of a spinning body.
@@ -266,5 +273,5 @@ fn for_spinning_body(scenario: &'static SpinScenario, log: &'static Log) -> Opti
     let method = place(&METHOD, || AnyMethod::Flight(scenario.flight()));
     let course = &*COURSE.init_with(|| scenario.course(None));
     let board = || RefCell::new(scenario.board(course, &HEALTHY));
-    Some((place(&GROUND, || Ground::Spin(configuration, board(), Channels::new(log))), method))
+    Some((place(&GROUND, || Ground::Spin(configuration, board(), channels(log))), method))
 }
