@@ -100,9 +100,11 @@ impl<'w> Harness<'w> {
         Self { events, reports, base, bytes, found, earlier, is_interrupted, watch }
     }
 
-    /// The channels of the board's parts.
+    /// The channels of the board's parts, whose world is a simulated one.
     pub(super) fn channels<S>(&self) -> Channels<'_, S> {
-        Channels::new(self)
+        let mut channels = Channels::new(self);
+        channels.shared.is_simulated = true;
+        channels
     }
 
     /// Runs an instrument to its end in virtual time on this thread, beside the acquisition of its

@@ -2,6 +2,7 @@
 
 use orientation::alignment::rotating::misalignment::AxisMisalignment;
 use orientation::alignment::{Input, Listener, Method, Request, Verdict};
+use orientation::units::Radians;
 
 use crate::methods::{Course, is_answered};
 use crate::report::Stretch;
@@ -72,6 +73,10 @@ impl<S, M: Method<S> + Course + Clone> Method<S> for Latest<M> {
 
     fn verdict(&self) -> Option<Verdict> {
         self.session.verdict()
+    }
+
+    fn required_sigma(&self) -> Option<Radians> {
+        self.session.required_sigma()
     }
 
     fn misalignment(&self, speed: usize) -> Option<AxisMisalignment> {

@@ -234,7 +234,7 @@ impl<'h, S: Timed> Halves<'h, S> {
             self.realignments.found.push((*at, *azimuth));
         }
         self.navigator.take(input, &mut |output| match output {
-            Output::Report(report, _) => self.reports.push(report),
+            Output::Report(report) => self.reports.push(report),
             Output::Order(order) => self.orders.push(order),
             Output::Progress(progress) => self.realignments.take(&progress),
             _ => {}

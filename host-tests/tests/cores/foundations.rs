@@ -1,12 +1,13 @@
 //! Units, Earth and the numerical pieces, against published values, scipy and closed forms.
 
 use orientation::earth::Latitude;
+use orientation::math::quaternion::{Attitude, quaternion};
 use orientation::math::{chi_square_tail, cholesky, cholesky_solve, median};
 use orientation::units::{
     Angle, AngularRate, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, Instant, SpecificForce, TURN,
     Temperature,
 };
-use orientation::words::Rounded;
+use orientation::words::{Rounded, Shortened};
 use proptest::prelude::*;
 
 #[test]
@@ -171,4 +172,38 @@ fn the_median_is_the_middle() {
     assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
     assert_eq!(median(&mut [4.0, 1.0, 3.0, 2.0]), 2.5);
     assert_eq!(median(&mut []), 0.0);
+}
+
+proptest! {
+    #[test]
+    fn angles_in_single_precision_are_right_to_three_microradians(
+        course in 0.0..TURN,
+        pitch in -80.0..80.0_f64,
+        roll in -3.1..3.1_f64,
+    ) {
+        let truth = [course, pitch.to_radians(), roll];
+        let found = Attitude::new(quaternion(truth)).rough_angles();
+        for (found, truth) in found.into_iter().zip(truth) {
+            let off = (f64::from(found) - truth).rem_euclid(TURN);
+            prop_assert!(off.min(TURN - off) < 3e-6, "{found} is not {truth}");
+        }
+    }
+
+    #[test]
+    fn a_shortened_number_reads_back_to_nine_digits(mantissa in -1.0..1.0_f64, power in -12_i32..17) {
+        let number = mantissa * 10_f64.powi(power);
+        let text = Shortened(number).to_string();
+        let read: f64 = text.parse().expect("a number");
+        prop_assert!((read - number).abs() <= 5.1e-9 * number.abs() + 1e-22, "{number} is {text}");
+        let digits = text.split('e').next().map_or("", |digits| digits.trim_start_matches(['-', '0', '.']));
+        prop_assert!(!text.contains('.') || !digits.ends_with(['0', '.']), "{text}");
+    }
+}
+
+#[test]
+fn shortened_numbers_are_as_people_write_them() {
+    let text = |number: f64| Shortened(number).to_string();
+    assert_eq!([0.0, 1.0, -0.5, 600.0, 1e9].map(text), ["0", "1", "-0.5", "600", "1000000000"]);
+    assert_eq!([0.1 + 0.2, 1.0 / 3.0, 1e-12].map(text), ["0.3", "0.333333333", "1e-12"]);
+    assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(text), ["NaN", "inf", "-inf"]);
 }

@@ -1,32 +1,23 @@
 //! The small parts of the instrument, each against a closed form or its written rule.
 
-use std::cell::RefCell;
-
 use drivers::data_ready::Edge;
 use drivers::fault::Fault;
 use embassy_futures::select::select;
-use embassy_time::{Duration, Instant, Timer};
-use embedded_io_async::{ErrorKind, ErrorType, Write};
+use embassy_time::{Duration, Timer};
 use firmware::align::align;
 use firmware::calibration::{Calibration, Harmonics};
-use firmware::event::Event;
 use firmware::guarded::Guarded;
 use firmware::health::Health;
-use firmware::link;
-use firmware::ports::{NoRecorder, Observer, Startable};
+use firmware::ports::{NoRecorder, Startable};
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::{Channels, Shared};
-use firmware::status::Status;
 use firmware::timeline::{Arrival, Timeline};
 use host::virtual_time;
-use orientation::alignment::{
-    Azimuth, Input, Listener, Method, Progress, Refusal, Request, Solution, Verdict,
-};
-use orientation::attitude::{State, Trust};
+use orientation::alignment::{Input, Listener, Method, Refusal, Request, Verdict};
 use orientation::device::{Device, Trouble};
 use orientation::navigation::Order;
 use orientation::signal::Sample;
-use orientation::units::{self, Angle, Radians, Seconds};
+use orientation::units::{self, Angle};
 use proptest::prelude::*;
 
 /// The end of a conversion by a line whose edges are not counted.
@@ -187,112 +178,6 @@ fn every_fault_counts_once() {
     health.restart(Device::Encoder);
     health.missing += 3;
     assert_eq!(health.faults(), 6);
-}
-
-#[test]
-fn a_status_never_tells_a_smaller_sigma_than_there_is() {
-    let azimuth =
-        Azimuth { angle: Radians::from_degrees(359.9996), sigma: Radians::from_degrees(0.012_01) };
-    let status =
-        Status::Starting.after(&Progress::Concluded(Solution { azimuth, limit: Radians(0.0) }));
-    assert_eq!(status.to_string(), "azimuth 0.000 sigma 0.013");
-    assert_eq!(Status::Measuring { done: 5, of: 24 }.to_string(), "measuring 5/24");
-}
-
-/// Keeps what is reported.
-#[derive(Default)]
-struct Recorded(RefCell<Vec<Event>>);
-
-impl Observer for Recorded {
-    fn event(&self, _: Instant, event: &Event) {
-        self.0.borrow_mut().push(*event);
-    }
-}
-
-/// A link that hangs, or refuses.
-enum SickLink {
-    Hangs,
-    Refuses,
-}
-
-impl ErrorType for SickLink {
-    type Error = ErrorKind;
-}
-
-impl Write for SickLink {
-    async fn write(&mut self, _: &[u8]) -> Result<usize, ErrorKind> {
-        match self {
-            Self::Hangs => core::future::pending().await,
-            Self::Refuses => Err(ErrorKind::Other),
-        }
-    }
-
-    async fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
-}
-
-#[test]
-fn a_sick_link_costs_its_lines_and_is_reported_once() {
-    for mut sick in [SickLink::Hangs, SickLink::Refuses] {
-        let reported = Recorded::default();
-        let shared = Shared::new(&reported);
-        virtual_time::run(async {
-            for _ in 0..3 {
-                link::send(&mut sick, &shared).await;
-                Timer::after(Duration::from_secs(1)).await;
-            }
-            assert!(Instant::now() <= Instant::from_millis(4500), "it waits half a second at most");
-        })
-        .expect("time wakes everybody");
-        assert_eq!(shared.health.get().unsent, 3);
-        assert_eq!(*reported.0.borrow(), [Event::LinkSilent]);
-    }
-}
-
-/// A link that keeps what it is sent.
-#[derive(Default)]
-struct Heard(Vec<u8>);
-
-impl ErrorType for Heard {
-    type Error = ErrorKind;
-}
-
-impl Write for Heard {
-    async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        self.0.extend(bytes);
-        Ok(bytes.len())
-    }
-
-    async fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
-}
-
-#[test]
-fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault_counted() {
-    let states = [
-        Trust::Starting,
-        Trust::Level,
-        Trust::Coasting,
-        Trust::FreeFall,
-        Trust::NoForce,
-        Trust::RotationLost,
-    ]
-    .map(|trust| State { trust, seconds: Seconds(3.2e7) });
-    let reported = Recorded::default();
-    let shared = Shared::new(&reported);
-    shared.count(|health| health.unsent = u32::MAX);
-    shared.homed.signal(());
-    for state in states.map(Some).into_iter().chain([None]) {
-        let level = [-90_000, -180_000];
-        let azimuth = Some([359_999, 180_000]);
-        shared.status.set(Status::Keeping { azimuth, level, state, is_recalled: true });
-        let mut heard = Heard::default();
-        virtual_time::run(link::send(&mut heard, &shared)).expect("time wakes everybody");
-        let line = String::from_utf8(heard.0).expect("text");
-        assert!(line.ends_with(", recalled, faults 4294967295\r\n"), "{line}");
-    }
 }
 
 /// A method that needs no sample, and ends where it has failed; how often it began, and whether it is over.

@@ -11,6 +11,7 @@ mod instrument;
 mod instrument_parts;
 mod keeping_instrument;
 mod kept_lines;
+mod link;
 mod mount;
 mod output_clock;
 mod postmortem;

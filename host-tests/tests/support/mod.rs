@@ -9,9 +9,11 @@
 pub mod campaign;
 pub mod files;
 pub mod inputs;
+pub mod link;
 pub mod pages;
 pub mod program;
 pub mod rig;
+pub mod sentences;
 
 use embassy_time::Instant;
 

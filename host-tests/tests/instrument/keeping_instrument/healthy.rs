@@ -1,6 +1,7 @@
 //! Nothing goes wrong.
 
 use super::{drive, frames, keep, reported, sigmas, vehicle, when};
+use crate::support::link::{sentences, states};
 use firmware::event::Event;
 use host::campaign::statistics::rms;
 use host::instrument::Trial;
@@ -109,13 +110,20 @@ fn keeping_changes_nothing_of_what_the_session_finds() {
 }
 
 #[test]
-fn the_link_tells_attitude_once_a_second_and_no_line_is_cut() {
+fn the_link_tells_attitude_once_a_second_and_the_heading_once_it_is_valid() {
     let found = drive(&vehicle(1, Hold::of(120.0)));
-    let lines: Vec<&str> = found.lines.lines().collect();
-    assert!(lines.iter().all(|line| line.ends_with(", faults 0")), "{lines:?}");
-    let kept = lines.iter().filter(|line| line.contains(" pitch ")).count();
-    assert!((118..=122).contains(&kept), "{kept} lines");
-    assert!(lines.iter().any(|line| line.contains("azimuth ") && line.contains(" level,")));
+    let states = states(&found.lines);
+    assert!(states.iter().all(|state| state[4] == "0"), "{states:?}");
+    let ready = states.iter().filter(|state| state[0] == "ready").count();
+    assert!((118..=122).contains(&ready), "{ready} of {} s", states.len());
+    let count = |address: &str, has: fn(&[&str]) -> bool| {
+        let sentences = sentences(&found.lines, address);
+        sentences.iter().filter(|fields| has(fields)).count()
+    };
+    assert_eq!(count("HEHDT", |fields| !fields[0].is_empty()), ready);
+    assert_eq!(count("HETHS", |fields| fields[1] == "S"), ready, "the world is a simulated one");
+    // Pitch and roll are known long before.
+    assert!(count("PHTRO", |_| true) > ready + 100, "{}", found.lines);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod recalling;
 mod remembering;
 mod restart;
 mod restarting;
+mod showing;
 
 use embassy_time::Instant;
 use firmware::event::Event;

@@ -2,6 +2,7 @@
 
 use super::{reported, vehicle};
 use crate::support::inputs::{recorded, replayed};
+use crate::support::link::{sentences, states};
 use firmware::event::Event;
 use firmware::ports::Store;
 use firmware::storage::{FlashStore, HEADING};
@@ -96,7 +97,14 @@ fn a_restart_without_motion_keeps_the_heading() {
     let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
     assert!(point.seconds() < 20.0, "after {} s", point.seconds());
     assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
-    assert!(after.lines.contains(", recalled"), "{}", after.lines);
+    // With the azimuth of before the restart no receiver steers unawares.
+    let (states, headings) = (states(&after.lines), sentences(&after.lines, "HEHDT"));
+    let is_recalled = |state: &[&str; 9]| state[0] == "degraded" && state[8] == "recalled";
+    assert!(states.iter().any(is_recalled), "{}", after.lines);
+    assert_eq!(states.len(), headings.len());
+    for (state, heading) in states.iter().zip(headings) {
+        assert_eq!(state[0] == "ready", !heading[0].is_empty(), "{state:?} {heading:?}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The instrument on a spinning body: five converters in step at 14 400 samples a second, its log, its link,
 //! and every fault in the catalogue.
 
+use crate::support::link::{sentences, states, words};
 use firmware::event::Event;
 use host::instrument::{SpinRun, Trial};
 use host::methods::spin::errors::wrapped;
@@ -65,8 +66,10 @@ fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
     assert!(events.contains(&rolled!(Begun)));
     assert!(events.iter().any(|event| is_roll(event, &[Condition::Locked])), "{events:?}");
     assert!(matches!(events.last(), Some(rolled!(Flown(_, Some(_))))), "{events:?}");
-    let last = run.lines.lines().last().unwrap_or_default();
-    assert!(last.starts_with("roll ") && last.ends_with(" locked, faults 0"), "{}", run.lines);
+    let rolls = sentences(&run.lines, "PMRDL");
+    assert!(matches!(rolls.last().map(Vec::as_slice), Some([_, _, "locked"])), "{}", run.lines);
+    let states = states(&run.lines);
+    assert!(matches!(states.last(), Some(["ready", .., "0", _, _, _, _])), "{}", run.lines);
 }
 
 #[test]
@@ -125,9 +128,8 @@ fn a_chip_that_fails_for_good_ends_the_flight_with_its_name() {
         let run = flown(&SpinScenario { seconds: 3.0, ..scenario }, Some(fault));
         let ended = run.events.iter().any(|(_, event)| matches!(event, rolled!(Ended(_))));
         assert!(ended, "{fault}: {:?}", run.events.last());
-        assert!(
-            run.lines.lines().last().is_some_and(|line| line.starts_with("no roll")),
-            "{fault}"
-        );
+        let last = words(&run.lines).pop().unwrap_or_default();
+        assert!(last.starts_with("no roll: "), "{fault}: {last}");
+        assert_eq!(states(&run.lines).last().expect("it is told")[0], "failed", "{fault}");
     }
 }

@@ -5,13 +5,14 @@ use std::path::Path;
 use super::{page, place};
 
 /// The pages, by their paths from the top.
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/ten-minutes.md",
     "firmware/README.md",
     "firmware/BUDGET.md",
     "firmware/emulated-board/README.md",
+    "firmware/protocol/README.md",
     "host-tests/README.md",
     "host-tests/ACCURACY.md",
     "host-tests/data/README.md",
