@@ -16,6 +16,8 @@ use crate::shared::{Channels, Shared, WAITING};
 /// Longest rest once the queue is empty. Samples are then taken several at a time, because waking for each would cost
 /// more than processing it.
 const REST: Duration = Duration::from_millis(10);
+/// The same where the sensors are fixed to the body: no mechanism waits for what follows from a sample.
+const LONG_REST: Duration = Duration::from_millis(20);
 
 /// Runs alignments for ever: the first at once, others as they are ordered.
 pub async fn align<R: Recorder<S>, S: Timed>(
@@ -83,7 +85,8 @@ async fn next<S>(channels: &Channels<'_, S>, may_rest: bool) -> Either<Order, S>
     shared.catch_up();
     let period = shared.period.get();
     if may_rest && period < REST {
-        Timer::after(REST.min(period * WAITING as u32)).await;
+        let longest = if shared.is_strapdown.get() { LONG_REST } else { REST };
+        Timer::after(longest.min(period * WAITING as u32)).await;
     }
     select(shared.orders.take(), samples.receive()).await
 }

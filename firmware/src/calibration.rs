@@ -6,6 +6,7 @@
 
 use micromath::F32Ext;
 use orientation::units::{Angle, TURN};
+use serde::{Deserialize, Serialize};
 
 /// Size of one step of an [`Angle`], rad: 2π/2³².
 const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
@@ -17,7 +18,7 @@ const KEPT: u32 = 1 << 18;
 
 /// Error of an encoder's reading against the true angle: Σ aₖ sin kθ + bₖ cos kθ, rad, k = 1, 2,
 /// with θ the angle that the encoder shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Harmonics {
     /// Amplitudes a₁ and b₁ of the error once per turn, rad.
     pub first: [f32; 2],

@@ -84,6 +84,11 @@ pub enum Event {
 }
 
 impl Event {
+    /// Whether it is told over the link: what came of an alignment or of the azimuth that is kept, and what was given up.
+    pub(crate) fn is_told(&self) -> bool {
+        self.weight() == Some(Weight::Outcome)
+    }
+
     /// How much it tells once the supply was lost: which device failed and how, and what came of an alignment or of the
     /// azimuth that is kept; [`None`] for what goes as it should.
     #[must_use]

@@ -18,7 +18,7 @@ use core::convert::Infallible;
 use core::future::pending;
 
 use drivers::fault::Fault;
-use embassy_futures::select::select;
+use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use orientation::attitude::Keeper;
 use orientation::attitude::restart::Remembered;
@@ -27,10 +27,12 @@ use orientation::units;
 
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
+use crate::settings::BoardSettings;
 use crate::shared::{Saving, Shared, WAITING};
 use crate::storage::HEADING;
 
-/// Longest time for which inertial samples wait in the queue, where the aligner does not say that it has had theirs.
+/// Longest time for which inertial samples wait in the queue, where the aligner does not say that it has had theirs: twice as
+/// long as the aligner rests.
 const REST: Duration = Duration::from_millis(50);
 /// Time after which what has failed is tried again with the stored heading: one from before the drive must not be recalled
 /// after it.
@@ -108,7 +110,7 @@ async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_
 
 /// Time for which inertial samples of this period wait in the queue.
 fn rest(period: Duration) -> Duration {
-    REST.min(period * WAITING as u32)
+    REST.min(period * 2 * WAITING as u32)
 }
 
 /// The navigator with what it is given.
@@ -131,7 +133,8 @@ impl Navigation<'_, '_> {
     /// Gives it what is known from outside, where it wants that before an event of this time.
     fn aid(&mut self, now: units::Instant) {
         if self.navigator.wants_aiding(now) {
-            self.give(Input::Aided(self.aiding.velocity(), self.aiding.azimuth()));
+            let azimuth = self.aiding.azimuth().or_else(|| self.shared.stated.try_take());
+            self.give(Input::Aided(self.aiding.velocity(), azimuth));
         }
     }
 
@@ -164,8 +167,29 @@ impl Navigation<'_, '_> {
     }
 }
 
-/// Says which heading a store holds from before the restart, then keeps in it what the navigator saves, for ever.
-pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallible {
+/// Does what the console orders of a store: keeps the settings, or reads a record of the log.
+async fn obey<T: Store>(
+    store: &mut T,
+    settings: Option<BoardSettings<'_>>,
+    ordered: Either<(), u32>,
+    shared: &Shared<'_>,
+) {
+    match (ordered, settings) {
+        (Either::First(()), Some(settings)) => {
+            shared.kept.signal(settings.save(store).await);
+        }
+        (Either::First(()), None) => {}
+        (Either::Second(after), _) => shared.line.signal(store.record_after(after).await),
+    }
+}
+
+/// Says which heading a store holds from before the restart, then keeps in it what the navigator saves and the console
+/// orders, for ever.
+pub async fn remember<T: Store>(
+    store: &mut T,
+    settings: Option<BoardSettings<'_>>,
+    shared: &Shared<'_>,
+) -> Infallible {
     let mut has_failed = false;
     let loaded = load(store).await;
     shared.remembered.signal(loaded.unwrap_or_default());
@@ -178,11 +202,22 @@ pub async fn remember<T: Store>(store: &mut T, shared: &Shared<'_>) -> Infallibl
             shared.report(Event::HeadingNotKept(fault));
         }
         let is_again = outcome.is_err();
-        latest = if is_again {
-            with_timeout(TRIED_AGAIN, shared.saving.wait()).await.unwrap_or(latest)
-        } else {
-            shared.saving.wait().await
+        let saving = async {
+            let saving = shared.saving.wait();
+            if is_again {
+                with_timeout(TRIED_AGAIN, saving).await.unwrap_or(latest)
+            } else {
+                saving.await
+            }
         };
+        let ordered = select(shared.keep.wait(), shared.wanted_line.wait());
+        match select(saving, ordered).await {
+            Either::First(saving) => latest = saving,
+            Either::Second(ordered) => {
+                obey(store, settings, ordered, shared).await;
+                continue;
+            }
+        }
         outcome = put(store, latest, is_again).await;
     }
 }
@@ -210,7 +245,7 @@ async fn load<T: Store>(store: &mut T) -> Result<Option<Remembered>, Fault> {
 fn execute(output: Output, shared: &Shared<'_>) {
     match output {
         Output::Progress(progress) => shared.report(Event::Navigation(progress)),
-        Output::Order(order) => shared.order(order),
+        Output::Order(order) => shared.order_of_navigator(order),
         Output::Request(request) => shared.wanted.signal(request),
         Output::Save(remembered) => shared.saving.signal(Saving::Heading(remembered)),
         Output::Forget => shared.saving.signal(Saving::Nothing),

@@ -15,9 +15,10 @@
 //! drive on. On a [`spin`]ning body there is no alignment; its roll angle is tracked.
 //!
 //! [`acquire::acquire`] samples, and [`run`] joins the other parts in fixed order: the
-//! aligner ([`align`]), the navigator ([`mod@keep`]), the [`mechanism`], the [`mod@link`]. They
-//! know no pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe
-//! what they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
+//! aligner ([`align`]), the navigator ([`mod@keep`]), the [`mechanism`], and beside them the
+//! conversation over the link, a crate of its own. They know no pin, no bus, and no clock other
+//! than `embassy-time`'s. The traits of [`ports`] describe what they need from outside; [`chips`]
+//! implements them by the drivers of the `drivers` crate.
 //! Whatever happens is reported once, as an [`event::Event`].
 #![no_std]
 #![forbid(unsafe_code)]
@@ -54,7 +55,6 @@ pub mod date;
 pub mod event;
 pub mod health;
 pub mod kept_lines;
-pub mod link;
 pub mod not_begun;
 pub mod remembered;
 pub mod status;

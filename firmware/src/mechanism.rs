@@ -36,6 +36,7 @@ impl Strapdown {
     /// Reports at once that the angles are valid, since there is no index to find.
     pub fn new(shared: &Shared<'_>) -> Self {
         shared.homed.signal(());
+        shared.is_strapdown.set(true);
         Self
     }
 }

@@ -11,6 +11,8 @@ use crate::settings::SettingsError;
 pub enum NotBegun {
     /// Its settings must not be used.
     Settings(SettingsError),
+    /// Its latitude was not stated.
+    NoLatitude,
     /// Its procedure is none.
     Session(SetupError),
     /// Its two frames do not reach an orientation.
@@ -21,6 +23,7 @@ pub enum NotBegun {
 
 words! { NotBegun:
     Self::Settings(error) => "no settings: {}", error;
+    Self::NoLatitude => "no latitude is set";
     Self::Session(error) => "no session: {}", error;
     Self::Mount(error) => "no mount: {}", error;
     Self::NoScale => "a sensor's scale factor is none";

@@ -34,6 +34,12 @@ impl Platform {
             Self::Spin => "spin",
         }
     }
+
+    /// Whether an azimuth is determined on it, for which its latitude must be known: on all but a spinning body.
+    #[must_use]
+    pub const fn has_azimuth(self) -> bool {
+        !matches!(self, Self::Spin)
+    }
 }
 
 impl fmt::Display for Platform {

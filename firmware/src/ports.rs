@@ -16,6 +16,7 @@ use orientation::units::{Angle, AngularRate, Metres, MetresPerSecond, SpecificFo
 
 use crate::check_ins::CheckIns;
 use crate::event::Event;
+use crate::storage::LogRecord;
 
 /// A device that can be started, and started again after a failure.
 pub trait Startable {
@@ -242,8 +243,26 @@ pub trait Actuator: Startable {
 /// Non-volatile storage of items, each in a slot of its own: calibrations, and the heading of a
 /// vehicle at rest.
 pub trait Store {
-    /// The latest item of a slot; [`None`] if the slot is empty.
-    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault>;
+    /// Reads the latest item of a slot into the first bytes of `item`, and returns its length; [`None`] if the slot is
+    /// empty.
+    ///
+    /// # Errors
+    /// [`Fault::Checksum`] for an item that is damaged; [`Fault::Bus`] for one that is longer than there is room, and
+    /// where the store cannot be read.
+    async fn read(&mut self, slot: u8, item: &mut [u8]) -> Result<Option<usize>, Fault>;
+
+    /// The latest item of a slot, which has this length; [`None`] if the slot is empty.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; [`Fault::Bus`] for an item of another length.
+    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
+        let mut item = [0; N];
+        match self.read(slot, &mut item).await? {
+            None => Ok(None),
+            Some(length) if length == N => Ok(Some(item)),
+            Some(_) => Err(Fault::Bus),
+        }
+    }
 
     /// Stores an item in a slot. If the supply is lost during the write, the slot holds either the
     /// old or the new item.
@@ -252,11 +271,16 @@ pub trait Store {
     /// Empties a slot, at once: nothing that takes long, as an erasure, is done for it. If the supply is lost
     /// meanwhile, the slot is empty or holds its item.
     async fn forget(&mut self, slot: u8) -> Result<(), Fault>;
+
+    /// The record of the log beside the store that follows the one of this number; [`None`] where there is none, or no log.
+    async fn record_after(&mut self, _number: u32) -> Option<LogRecord> {
+        None
+    }
 }
 
 impl<T: Store> Store for &mut T {
-    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
-        (**self).load(slot).await
+    async fn read(&mut self, slot: u8, item: &mut [u8]) -> Result<Option<usize>, Fault> {
+        (**self).read(slot, item).await
     }
 
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
@@ -266,11 +290,15 @@ impl<T: Store> Store for &mut T {
     async fn forget(&mut self, slot: u8) -> Result<(), Fault> {
         (**self).forget(slot).await
     }
+
+    async fn record_after(&mut self, number: u32) -> Option<LogRecord> {
+        (**self).record_after(number).await
+    }
 }
 
 /// A store that keeps nothing.
 impl Store for () {
-    async fn load<const N: usize>(&mut self, _: u8) -> Result<Option<[u8; N]>, Fault> {
+    async fn read(&mut self, _: u8, _: &mut [u8]) -> Result<Option<usize>, Fault> {
         Ok(None)
     }
 

@@ -4,21 +4,20 @@
 //! ```text
 //!  acquire ─┬─ motions ──▶ operate: mechanism, navigator ◀── requests, azimuth ─┐
 //!           │                       └── attitude ──▶ link                         │
-//!           └─ samples ──▶ find: aligner, store ────────────────────────────────┘
+//!           └─ samples ──▶ find: aligner ───────────────────────────────────────┘
 //! ```
 //!
 //! What must not wait for the computation of a conclusion is acquisition, [`operate`] and the [`link`]; a board gives them
-//! executors of higher priority, and leaves [`find`] the thread. [`navigate`] is all of them in one executor, beside
-//! acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
+//! executors of higher priority, and leaves [`find`] and [`store`] the thread. [`navigate`] is all of them in one executor,
+//! beside acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
 //! unless it is to hold the azimuth, or to track a roll, without end.
 
 use core::convert::Infallible;
 use core::future::pending;
 use core::pin::pin;
 
-use embassy_futures::select::{select, select3, select4};
+use embassy_futures::select::{select, select3};
 use embassy_time::{Duration, Timer};
-use embedded_io_async::Write;
 use orientation::alignment::Method;
 use orientation::signal::Timed;
 
@@ -26,9 +25,9 @@ use crate::align::align;
 use crate::check_ins::Part;
 use crate::health::Health;
 use crate::keep::{Keep, remember};
-use crate::link;
 use crate::mechanism::Mechanism;
 use crate::ports::{Aiding, Recorder, Store};
+use crate::settings::BoardSettings;
 use crate::shared::{Channels, Shared, discard};
 use crate::watch::watch;
 
@@ -36,21 +35,21 @@ use crate::watch::watch;
 /// over. Whatever the outcome, the mechanism is parked. Returns the counters of faults.
 ///
 /// The method is the largest object in memory; the caller owns it and chooses its place.
-pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, T: Store, K: Keep, S: Timed>(
+pub async fn navigate<M: Mechanism, R: Recorder<S>, K: Keep, S: Timed>(
     mechanism: &mut M,
     method: &mut dyn Method<S>,
     keeping: K,
     aiding: &dyn Aiding,
-    outside: Outside<'_, L, R, T>,
+    recorder: &mut R,
+    (storing, conversing): (impl Future<Output = ()>, impl Future<Output = ()>),
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
-    let Outside { link, recorder, store } = outside;
-    let beside = async {
+    let beside = async move {
         // Each is pinned here, so that it exists in memory once.
-        let finding = pin!(find(method, aiding, recorder, store, channels));
-        let reporting = pin!(link::run(link, shared));
-        select(finding, shared.checked(Part::Link, reporting)).await;
+        let finding = pin!(find(method, aiding, recorder, channels));
+        let (storing, conversing) = (pin!(storing), pin!(conversing));
+        select3(finding, storing, shared.checked(Part::Link, conversing)).await;
     };
     operate(mechanism, keeping, aiding, shared, (beside, discard(channels))).await;
     shared.health.get()
@@ -83,17 +82,7 @@ pub async fn operate<M: Mechanism, K: Keep>(
     shared.checked(Part::Mechanism, pin!(mechanism.park(meanwhile))).await;
 }
 
-/// Where results go: link, recorder, and the store of what outlasts a loss of supply.
-pub struct Outside<'o, L, R, T> {
-    /// Serial link.
-    pub link: &'o mut L,
-    /// Recorder of samples and conclusions.
-    pub recorder: &'o mut R,
-    /// Store of the heading.
-    pub store: T,
-}
-
-/// Time after which the parts of [`find`] are polled although nothing has woken them, so that each checks in.
+/// Time after which a part is polled although nothing has woken it, so that it checks in.
 const CHECK_IN: Duration = Duration::from_secs(1);
 
 /// Wakes a task without end, so that its parts check in.
@@ -103,12 +92,11 @@ pub async fn wake() -> Infallible {
     }
 }
 
-/// Aligns, as often as it is ordered, and keeps what is to be saved, without end.
-pub async fn find<R: Recorder<S>, T: Store, S: Timed>(
+/// Aligns, as often as it is ordered, without end.
+pub async fn find<R: Recorder<S>, S: Timed>(
     method: &mut dyn Method<S>,
     aiding: &dyn Aiding,
     recorder: &mut R,
-    mut store: T,
     channels: &Channels<'_, S>,
 ) {
     let shared = &channels.shared;
@@ -116,8 +104,15 @@ pub async fn find<R: Recorder<S>, T: Store, S: Timed>(
     // Each part is pinned here, so that it exists in memory once.
     let aligning = pin!(align(method, aiding, recorder, channels));
     let watching = pin!(watch(shared));
-    let storing = pin!(remember(&mut store, shared));
-    let aligning = shared.checked(Part::Aligner, aligning);
-    let storing = shared.checked(Part::Store, storing);
-    select4(aligning, watching, storing, pin!(wake())).await;
+    select3(shared.checked(Part::Aligner, aligning), watching, pin!(wake())).await;
+}
+
+/// Keeps in a store what is to outlast a loss of supply, without end.
+pub async fn store<T: Store>(
+    mut store: T,
+    settings: Option<BoardSettings<'_>>,
+    shared: &Shared<'_>,
+) {
+    let storing = pin!(remember(&mut store, settings, shared));
+    select(shared.checked(Part::Store, storing), pin!(wake())).await;
 }

@@ -9,6 +9,7 @@ use orientation::alignment::refusal::Refusal;
 use orientation::alignment::{Azimuth, Progress, Request};
 use orientation::attitude::restart::Remembered;
 use orientation::device::{Device, Trouble};
+use orientation::earth::Latitude;
 use orientation::navigation::navigator::Attitude;
 use orientation::navigation::{Motion, Order};
 use orientation::roll;
@@ -22,11 +23,12 @@ use crate::check_ins::{CheckIns, Checked, Part};
 use crate::crossing::{AnyObserver, Common, Lock};
 use crate::event::Event;
 use crate::health::Health;
-use crate::link;
+use crate::not_begun::NotBegun;
 use crate::ports::Frames;
 use crate::retry_budget::{RETRY, Symptom};
-use crate::settings::Output;
+use crate::settings::{Output, SettingsError};
 use crate::status::Status;
+use crate::storage::LogRecord;
 
 /// Capacity of the queues: 16 ms at 2 kHz, 2 ms at 14.4 kHz.
 pub const QUEUE: usize = 32;
@@ -187,6 +189,8 @@ pub struct Shared<'a> {
     pub(crate) without_mechanism: Common<Option<Refusal>>,
     /// The same while sensors that were given up rest until they may be tried again: no angle is read meanwhile.
     pub(crate) without_sensors: Common<Option<Refusal>>,
+    /// Whether the sensors are fixed to the body, so that no mechanism turns them.
+    pub(crate) is_strapdown: Common<bool>,
     /// Sampling period; one second until acquisition has stated it.
     pub period: Common<Duration>,
     /// Time between two motions; one second until acquisition has stated it.
@@ -209,13 +213,33 @@ pub struct Shared<'a> {
     /// From the navigator to the link: there is a new one.
     pub looked: Signal<Lock, ()>,
     /// From any part to the link: events that it is to tell. What does not find room is not told.
-    pub(crate) notices: Channel<Lock, Event, NOTICES>,
+    pub notices: Channel<Lock, Event, NOTICES>,
     /// Devices that were given up and not started again since.
     pub failed: Common<Devices>,
     /// Standard deviation of the azimuth that is required; [`None`] where none is determined.
     pub required: Common<Option<Radians>>,
     /// What the link sends.
     pub output: Common<Output>,
+    /// Devices that have passed their self-tests since the power-on, and were not given up since.
+    pub passed: Common<Devices>,
+    /// From the console to the instrument: the first alignment is to begin.
+    pub begin: Signal<Lock, ()>,
+    /// The latitude of a satellite receiver, which holds where the settings state none.
+    pub latitude: Common<Option<Latitude>>,
+    /// Why nothing begins.
+    pub not_begun: Common<Option<NotBegun>>,
+    /// Whether alignments begin by an order from outside alone, since one was ordered to end.
+    is_stopped: Common<bool>,
+    /// From the console to the navigator: an azimuth from outside.
+    pub stated: Signal<Lock, Azimuth>,
+    /// From the console to the store: the settings are to be kept.
+    pub keep: Signal<Lock, ()>,
+    /// From the store to the console: what came of that.
+    pub kept: Signal<Lock, Result<(), SettingsError>>,
+    /// From the console to the store: the number of a record of the log after which the next one is wanted.
+    pub wanted_line: Signal<Lock, u32>,
+    /// From the store to the console: that record, or nothing where there is none.
+    pub line: Signal<Lock, Option<LogRecord>>,
     /// Whether the world is a simulated one, which the link says. Stated before the parts begin.
     pub is_simulated: bool,
     /// Receiver of events.
@@ -249,6 +273,7 @@ impl<'a> Shared<'a> {
             is_at_rest: Common::new(false),
             without_mechanism: Common::default(),
             without_sensors: Common::default(),
+            is_strapdown: Common::new(false),
             period: Common::new(Duration::from_secs(1)),
             motion_period: Common::new(Duration::from_secs(1)),
             clocks: Timebase::nominal(Clock::Converter, Clock::Crystal),
@@ -263,6 +288,16 @@ impl<'a> Shared<'a> {
             failed: Common::default(),
             required: Common::default(),
             output: Common::default(),
+            passed: Common::default(),
+            begin: Signal::new(),
+            latitude: Common::default(),
+            not_begun: Common::default(),
+            is_stopped: Common::new(false),
+            stated: Signal::new(),
+            keep: Signal::new(),
+            kept: Signal::new(),
+            wanted_line: Signal::new(),
+            line: Signal::new(),
             is_simulated: false,
             observer,
             check_ins: observer.check_ins(),
@@ -287,10 +322,41 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// Notes that nothing begins: what was to be determined is not.
-    pub fn refuse_to_begin(&self) {
+    /// Notes that the first alignment is to wait for an order.
+    pub fn wait_to_begin(&self) {
+        self.status.set(Status::Waiting);
+    }
+
+    /// Whether the first alignment waits for an order.
+    #[must_use]
+    pub fn is_waiting(&self) -> bool {
+        self.status.get() == Status::Waiting
+    }
+
+    /// Notes that nothing begins, for this reason: what was to be determined is not.
+    pub fn refuse_to_begin(&self, reason: NotBegun) {
+        self.not_begun.set(Some(reason));
         self.status.set(Status::Refused);
         self.alignments.set(Alignments::Idle);
+    }
+
+    /// Ends the alignment that runs by an order from outside. The navigator begins none until there is one to begin.
+    pub fn stop(&self) {
+        self.is_stopped.set(true);
+        self.fail(Refusal::Stopped);
+    }
+
+    /// Has another alignment begin by an order from outside.
+    pub fn begin_again(&self) {
+        self.is_stopped.set(false);
+        self.order(Order::Restart);
+    }
+
+    /// Takes an order of the navigator. None to begin an alignment is obeyed after one from outside to end.
+    pub(crate) fn order_of_navigator(&self, order: Order) {
+        if order != Order::Restart || !self.is_stopped.get() {
+            self.order(order);
+        }
     }
 
     /// Notes that the aligner obeys an order. For an alignment that begins the base's sway is observed anew. One that
@@ -401,10 +467,13 @@ impl<'a> Shared<'a> {
     pub fn report(&self, event: Event) {
         match event {
             Event::GivenUp(device, _) => self.failed.change(|failed| failed.insert(device)),
-            Event::Started(device) => self.failed.change(|failed| failed.remove(device)),
+            Event::Started(device) => {
+                self.failed.change(|failed| failed.remove(device));
+                self.passed.change(|passed| passed.insert(device));
+            }
             _ => {}
         }
-        if link::is_told(&event) {
+        if event.is_told() {
             // The log has what finds no room.
             let _ = self.notices.try_send(event);
         }
@@ -412,7 +481,7 @@ impl<'a> Shared<'a> {
     }
 
     /// How far the instrument is, as it is shown: as long as the mechanism's angles are not valid, they are being sought.
-    pub(crate) fn shown_status(&self) -> Status {
+    pub fn shown_status(&self) -> Status {
         let status = self.status.get();
         if self.homed.signaled() { status } else { status.before_homing() }
     }

@@ -19,11 +19,14 @@ use host::report::{Grade, Verbosity};
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
+use crate::command::doctor;
 use crate::command::emulate::EmulateOptions;
 use crate::command::log::LogOptions;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
+use crate::command::send::SendOptions;
+use crate::command::settings::SettingsOptions;
 use crate::command::shell::{self, CompletionsOptions, ManOptions};
 use crate::command::stated::Stated;
 use crate::command::{Answer, Failure, OUTPUT, Output, examples, mistyped, print, taken};
@@ -101,6 +104,15 @@ enum Command {
     /// of an alignment.
     #[command(after_help = examples::LOG)]
     Log(LogOptions),
+    /// Sends a command to an instrument over its link and prints its answer.
+    #[command(after_help = examples::SEND)]
+    Send(SendOptions),
+    /// Shows and changes the settings of an instrument over its link, keeps them in a file, and loads them from one.
+    #[command(after_help = examples::SETTINGS)]
+    Settings(SettingsOptions),
+    /// Looks for what is needed to build the firmware, to flash a board and to talk to it; says how to get what is missing.
+    #[command(after_help = examples::DOCTOR)]
+    Doctor,
     /// Prints what a shell needs to complete commands, options and their values.
     #[command(after_help = examples::COMPLETIONS)]
     Completions(CompletionsOptions),
@@ -258,6 +270,9 @@ fn answer(command: &Command, stated: &Stated, manner: Manner) -> Result<bool, Fa
         Command::Campaign(options) => command::campaign::run(options, manner)?,
         Command::Emulate(options) => command::emulate::run(options, manner)?,
         Command::Log(options) => command::log::run(options, manner)?,
+        Command::Send(options) => command::send::run(options, manner)?,
+        Command::Settings(options) => command::settings::run(options, manner)?,
+        Command::Doctor => doctor::run(manner)?,
         Command::Completions(options) => shell::completions(options, program(), manner)?,
         Command::Man(options) => shell::man(options, program(), manner)?,
     };

@@ -1,9 +1,9 @@
 //! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 64 MHz).
 //!
 //! `cargo board` flashes it through the board's own ST-LINK and shows the log; what the link says is
-//! sent by the virtual COM port, 115 200 baud. The carrier is chosen by a feature, as in `cargo board
-//! --features vehicle`; latitude, gyro and schedule are in `firmware/stm32/src/settings.rs`, unless a record in
-//! the flash states them, the rest of the configuration in `configuration.rs` beside it.
+//! sent by the virtual COM port, 115 200 baud unless its settings state another rate. The carrier is chosen by a feature, as
+//! in `cargo board --features vehicle`; what is not soldered is a setting, in a record in the flash, the rest is in
+//! `firmware/stm32/src/configuration.rs`.
 //!
 //! The wiring is in `firmware/README.md`: which pin of which connector has which signal on which carrier, what the chips
 //! need beside it, and how the board is mounted. A test holds its pins to those of `pins.rs`.
@@ -28,16 +28,15 @@ use embassy_stm32::interrupt;
 use embassy_time::{Duration, Instant, block_for};
 use firmware::check_ins::{Checked, Part};
 use firmware::kept_lines::Weight;
-use firmware::link;
 use firmware::platform::Platform;
 use firmware::ports::Observer as _;
 use firmware::postmortem::{Last, Line};
 use heapless::String;
+use programs::{Executors, spinning, stepwise, stops, turning};
+use stm32::link::Link;
 use stm32::watchdog::Reason;
-use stm32::wiring::{Clock, Link};
-use stm32::{
-    BoardLog, Executors, PLATFORM, brown_out, once, spinning, stepwise, stops, turning, watchdog,
-};
+use stm32::wiring::Clock;
+use stm32::{BoardLog, PLATFORM, brown_out, once, watchdog};
 
 use crash::RUN;
 use pins::Board;
@@ -81,10 +80,11 @@ fn RNG() {
     }
 }
 
-/// Starts the executors above the thread.
-fn executors() -> Executors {
+/// The thread's executor, and those above it, which are started.
+fn executors(thread: Spawner) -> Executors {
     let [acquisition, control, link] = priorities::EXECUTORS;
     Executors {
+        thread,
         acquisition: ACQUISITION.start(acquisition),
         control: CONTROL.start(control),
         link: LINK.start(link),
@@ -176,33 +176,33 @@ async fn tell(last: Option<&Last>, reason: Reason, records: u32, link: &mut Link
         let place = if text.is_empty() { "" } else { " at " };
         let [what, part] = [how.brief(), last.part(how)];
         let words = format_args!("last reset: {what} in {part}{place}{text}{registers}");
-        link::announce(&mut link.sender, &words).await;
+        conversation::announce(link, &words).await;
     }
     if records > 0 {
         defmt::info!("board: {} records of the log in flash", records);
-        link::announce(&mut link.sender, &"log in flash").await;
+        conversation::announce(link, &"log in flash").await;
     }
 }
 
 /// Runs the program of the carrier.
 fn run(spawner: Spawner, board: Board, link: Link) {
-    let above = executors();
+    let executors = executors(spawner);
     // Tasks that are never spawned are not in the image.
     match PLATFORM {
         Platform::Stage => {
-            spawner.spawn(once(stepwise::on_a_stage(above, board.axis(), link)));
+            spawner.spawn(once(stepwise::on_a_stage(executors, board.axis(), link)));
         }
         Platform::TwoFrame => {
-            spawner.spawn(once(stepwise::on_two_frames(above, board.two_frames(), link)));
+            spawner.spawn(once(stepwise::on_two_frames(executors, board.two_frames(), link)));
         }
         Platform::Turntable => {
-            spawner.spawn(once(turning::align(above, board.axis(), link)));
+            spawner.spawn(once(turning::align(executors, board.axis(), link)));
         }
         Platform::Vehicle => {
-            spawner.spawn(once(stops::align(above, board.vehicle(), link)));
+            spawner.spawn(once(stops::align(executors, board.vehicle(), link)));
         }
         Platform::Spin => {
-            spawner.spawn(once(spinning::follow(above, board.spinning_body(), link)));
+            spawner.spawn(once(spinning::follow(executors, board.spinning_body(), link)));
         }
     }
 }

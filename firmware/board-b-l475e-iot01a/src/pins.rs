@@ -1,23 +1,28 @@
 //! Pins, DMA channels and interrupts: from the controller's peripherals to the wires of each carrier.
 
+use core::mem;
+
+use embassy_stm32::dma::{ReadableRingBuffer, TransferOptions};
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::interrupt::{Interrupt, InterruptExt};
 use embassy_stm32::peripherals::{
     DMA1_CH5, DMA2_CH6, DMA2_CH7, EXTI0, EXTI1, EXTI3, EXTI4, I2C2, PA2, PA3, PA4, PA15, PB0, PB1,
-    PB2, PB4, PB10, PB11, PC3, PC4, PD0, PD2, PD5, USART1,
+    PB2, PB4, PB6, PB7, PB10, PB11, PC3, PC4, PD0, PD2, PD5, USART1,
 };
 use embassy_stm32::spi::Spi;
 use embassy_stm32::usart::{self, ConfigError, Uart};
-use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt};
+use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma, interrupt, pac};
 use firmware::platform::Platform;
 use firmware::ports::Frames;
+use static_cell::StaticCell;
 use stm32::edges::{self, Line};
 use stm32::flash;
 use stm32::i2c::{BaseBus, serve};
+use stm32::link::{self, Link};
 use stm32::spi::Bus;
 use stm32::wiring::{
-    AxisPlatformWires, Buses, Clock, FramesWires, Link, Outlets, PlatformWires, SpinWires,
-    VehicleWires, sensor_settings, stage_settings,
+    AxisPlatformWires, Buses, Clock, FramesWires, Outlets, PlatformWires, SpinWires, VehicleWires,
+    sensor_settings, stage_settings,
 };
 use stm32::{BoardLog, PLATFORM, UpperBank, chain};
 
@@ -128,12 +133,18 @@ impl Board {
         unsafe {
             edges::NOTIFIER.enable();
         }
-        let (send, receive) = (p.DMA2_CH6, p.DMA2_CH7);
-        let port = Uart::new(p.USART1, p.PB7, p.PB6, send, receive, Interrupts, link_settings())?;
+        let flash = flash::take(p.FLASH);
+        let port = LinkPins {
+            port: p.USART1,
+            pins: (p.PB7, p.PB6),
+            sender: p.DMA2_CH6,
+            receiver: p.DMA2_CH7,
+        };
+        let link = port.connect(programs::output(flash).baud)?;
         let board = Self {
             buses,
             converter: (p.PA2, ready),
-            outlets: Outlets { flash: flash::take(p.FLASH), log, clock: timing },
+            outlets: Outlets { flash, log, clock: timing },
             accelerometer: p.PA15,
             axis: (p.PD0, p.PD5),
             motor_enable: p.PD2,
@@ -142,7 +153,7 @@ impl Board {
             ready: (p.PB0, p.PB1, p.PC4, p.PC3),
             lines: (p.EXTI0, p.EXTI1, p.EXTI4, p.EXTI3),
         };
-        Ok((board, Link::new(port)))
+        Ok((board, link))
     }
 
     /// Flash of the controller.
@@ -209,13 +220,49 @@ impl Board {
     }
 }
 
-/// Settings of the link's port: 115 200 baud, eight bits, no parity, one stop bit. A pull-up has a line that nothing
-/// drives read as one at rest.
-fn link_settings() -> usart::Config {
-    let mut settings = usart::Config::default();
-    settings.rx_pull = Pull::Up;
-    settings
+/// Pins of the link, and its direct memory access both ways.
+struct LinkPins {
+    port: Peri<'static, USART1>,
+    pins: (Peri<'static, PB7>, Peri<'static, PB6>),
+    sender: Peri<'static, DMA2_CH6>,
+    receiver: Peri<'static, DMA2_CH7>,
 }
+
+impl LinkPins {
+    /// Opens the port at this rate, baud: eight bits, no parity, one stop bit. A pull-up has a line that nothing drives read
+    /// as one at rest.
+    ///
+    /// # Errors
+    /// A rate that the port does not have.
+    fn connect(self, baud: u32) -> Result<Link, ConfigError> {
+        static RING: StaticCell<[u8; link::RECEIVED]> = StaticCell::new();
+        let Self { port, pins: (receive, send), sender, receiver } = self;
+        let mut settings = usart::Config::default();
+        settings.baudrate = baud;
+        settings.rx_pull = Pull::Up;
+        #[expect(unsafe_code, reason = "the channel that embassy's receiver has is used by hand")]
+        // SAFETY: the receiver that has it is never used, and never dropped.
+        let channel = unsafe { receiver.clone_unchecked() };
+        let port = Uart::new(port, receive, send, sender, receiver, Interrupts, settings)?;
+        let (sender, receiver) = port.split();
+        mem::forget(receiver);
+        let channel = dma::Channel::new(channel, Interrupts);
+        let data = pac::USART1.rdr().as_ptr().cast::<u8>();
+        let ring = RING.init([0; link::RECEIVED]);
+        #[expect(unsafe_code, reason = "a channel is set up by hand")]
+        // SAFETY: the request of this channel and the register are those of the port's received bytes (RM0351, table 45),
+        // and nothing else reads them.
+        let mut ring = unsafe {
+            ReadableRingBuffer::new(channel, REQUEST, data, ring, TransferOptions::default())
+        };
+        ring.start();
+        pac::USART1.cr3().modify(|control| control.set_dmar(true));
+        Ok(Link::new(ring, sender))
+    }
+}
+
+/// Request of direct memory access by received bytes of USART1 on channel 7 of DMA2 (RM0351, table 45).
+const REQUEST: u8 = 2;
 
 /// Pins of the IMU on the base.
 struct BasePins {

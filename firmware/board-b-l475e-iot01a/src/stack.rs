@@ -24,6 +24,9 @@ const WORD: usize = size_of::<u32>();
 /// The guard: 64 KiB up to the beginning of RAM, as base address and as attributes (ARMv7-M Architecture Reference
 /// Manual, B3.5): valid, region 0; no execution, no access, 2^(15 + 1) bytes, on.
 const GUARD: [u32; 2] = [0x1FFF_0000 | 1 << 4, 1 << 28 | 15 << 1 | 1];
+/// The 32 bytes within it that have the unique number of the controller (RM0351, 49.1): valid, region 1, which goes before
+/// region 0; no execution, reads alone, 2^(4 + 1) bytes, on.
+const IDENTITY: [u32; 2] = [0x1FFF_7580 | 1 << 4 | 1, 1 << 28 | 5 << 24 | 4 << 1 | 1];
 /// The unit is on, with the default map for what no region has; faults themselves are handled without it.
 const ON: u32 = 1 << 2 | 1;
 
@@ -36,13 +39,15 @@ mod symbols {
     }
 }
 
-/// Forbids the memory below the stack.
+/// Forbids the memory below the stack, but for reads of the controller's number.
 pub fn guard() {
     // SAFETY: nothing uses that memory, and the rest keeps its default map.
     unsafe {
         let unit = &*MPU::PTR;
-        unit.rbar.write(GUARD[0]);
-        unit.rasr.write(GUARD[1]);
+        for [base, attributes] in [GUARD, IDENTITY] {
+            unit.rbar.write(base);
+            unit.rasr.write(attributes);
+        }
         unit.ctrl.write(ON);
     }
     asm::dsb();

@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 
 use embassy_time::Instant;
 use firmware::platform::Platform;
-use firmware::settings::{CarrierSchedule, Settings, save};
+use firmware::settings::{CarrierSchedule, Serial, Settings, save};
 use firmware::storage::FlashStore;
 use hal_mock::flash::Cells;
 use hal_mock::flash::nor::PoweredFlash;
@@ -18,10 +18,14 @@ use simulated::scenario::Scenario;
 use simulated::vehicle::VehicleScenario;
 
 use crate::controller::flash::{Flash, STORE};
+use crate::controller::identity;
 use crate::wiring::board::{
     BaseImu, Board, Carrier, FRAMES, Lines, ONE_LINE, SPIN, SPIN_LINES, STAGE, Selects, VEHICLE,
     VEHICLE_LINES,
 };
+
+/// Serial number of the board's controller, to which the records in its store belong.
+pub const SERIAL: Serial = Serial(identity::NUMBER);
 
 /// A carrier's chips and world.
 pub struct World {
@@ -108,7 +112,7 @@ impl World {
     ) -> Result<Self, String> {
         let settings = settings.ok_or("the latitude is none")?;
         let store = stored(async |store| {
-            let saved = save(store, &settings).await;
+            let saved = save(store, &settings, &SERIAL).await;
             saved.map_err(|error| format!("the record of settings: {error}"))
         })?;
         let carrier = Rc::new(RefCell::new(carrier));

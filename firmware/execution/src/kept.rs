@@ -5,7 +5,7 @@ use std::fmt;
 
 use defmt_decoder::Table;
 use firmware::kept_lines::IMAGE;
-use firmware::storage::records;
+use firmware::storage::{CONTENT, records};
 use object::read::elf::ElfFile32;
 use object::{Object, ObjectSection};
 use serde::Serialize;
@@ -47,13 +47,21 @@ struct Piece {
 /// # Errors
 /// Where the file is no image of a board with a log.
 pub fn lines(elf: &[u8], pages: &[u8]) -> Result<Vec<Line>, String> {
+    lines_of(elf, records(pages).map(|(record, content)| (record, *content)).collect())
+}
+
+/// The lines in records with their numbers, in the order of time, by the words of an image.
+///
+/// # Errors
+/// As [`lines`].
+pub fn lines_of(elf: &[u8], records: Vec<(u32, [u8; CONTENT])>) -> Result<Vec<Line>, String> {
     let table = match Table::parse(elf) {
         Ok(Some(table)) => table,
         Ok(None) => return Err("the image has no strings of a log".to_owned()),
         Err(error) => return Err(format!("the image's strings cannot be read: {error:#}")),
     };
     let image = identity(elf)?;
-    Ok(pieces(pages).iter().map(|piece| read(piece, image, &table)).collect())
+    Ok(pieces(records).iter().map(|piece| read(piece, image, &table)).collect())
 }
 
 /// The identity of an image: the first bytes of the hash in the linker's note (`--build-id`).
@@ -64,9 +72,8 @@ fn identity(elf: &[u8]) -> Result<[u8; IMAGE], String> {
     hash.ok_or_else(|| "no image of a board: it states no identity".to_owned())
 }
 
-/// What the records in these pages have, put together in the order of their numbers.
-fn pieces(pages: &[u8]) -> Vec<Piece> {
-    let mut found: Vec<_> = records(pages).collect();
+/// What these records have, put together in the order of their numbers.
+fn pieces(mut found: Vec<(u32, [u8; CONTENT])>) -> Vec<Piece> {
     found.sort_by_key(|(record, _)| *record);
     let mut pieces: Vec<Piece> = Vec::new();
     for (record, content) in found {

@@ -41,6 +41,27 @@ pub enum Device {
     Base,
 }
 
+impl Device {
+    /// All of them.
+    pub const ALL: [Self; 15] = [
+        Self::Gyro,
+        Self::ForwardGyro,
+        Self::RightGyro,
+        Self::DownGyro,
+        Self::UpGyro,
+        Self::UpAccelerometer,
+        Self::RightAccelerometer,
+        Self::Accelerometer,
+        Self::Encoder,
+        Self::Stage,
+        Self::OuterEncoder,
+        Self::InnerEncoder,
+        Self::OuterFrame,
+        Self::InnerFrame,
+        Self::Base,
+    ];
+}
+
 /// The gyros about the axes forward, right, down of a body.
 pub const TRIAD: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 

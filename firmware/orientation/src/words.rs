@@ -112,6 +112,35 @@ impl defmt::Format for Shortened {
     }
 }
 
+/// A number that is printed with this many decimal places at most, rounded to nearest, without zeros at their end and
+/// without a power of ten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decimal {
+    /// The number.
+    pub number: f64,
+    /// Decimal places, up to 19.
+    pub places: u8,
+}
+
+// In integers, as `Rounded`.
+impl fmt::Display for Decimal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { number, places } = *self;
+        if !number.is_finite() {
+            return Rounded::<0>(number).fmt(f);
+        }
+        let (whole, mut part) = decimals(number.abs(), places.into());
+        let mut width = usize::from(places);
+        while width > 0 && part.is_multiple_of(10) {
+            (part, width) = (part / 10, width - 1);
+        }
+        if number < 0.0 && (whole, part) != (0, 0) {
+            f.write_str("-")?;
+        }
+        if width == 0 { write!(f, "{whole}") } else { write!(f, "{whole}.{part:0width$}") }
+    }
+}
+
 /// Gives a type its sentences: `words! { Type: pattern => "sentence {}", argument; … }`.
 ///
 /// The patterns match `*self`; the arguments are [`core::fmt::Display`], and `defmt::Format` where

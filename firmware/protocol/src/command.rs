@@ -1,7 +1,8 @@
-//! Commands as lines of text, and the answers to them.
+//! Commands as lines of text; [`answer`](crate::answer) has what the instrument says to them.
 //!
 //! A person types a command as words, `set latitude 47.58`; a program sends it as a sentence with a checksum,
-//! `$PMRDC,set,latitude,47.58*hh`. Both are answered by a sentence: `$PMRDR,set,ok*hh`, or the reason why not in its place.
+//! `$PMRDC,set,latitude,47.58*hh`. Both are answered by a sentence: `$PMRDR,set,latitude,47.58*hh`, or the reason why not in its
+//! place.
 //!
 //! | command | what |
 //! |---|---|
@@ -19,7 +20,7 @@
 
 use orientation::words;
 
-use crate::nmea::checksum;
+use crate::nmea::{Sentence, Writer, checksum};
 
 /// The address of a command as a sentence.
 const COMMAND: &str = "PMRDC";
@@ -49,6 +50,26 @@ pub enum Command<'c> {
     Log,
     /// Starts the instrument anew.
     Reboot,
+}
+
+impl Command<'_> {
+    /// Its first word, which an answer repeats.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Stop => "stop",
+            Self::Realign => "realign",
+            Self::Azimuth(..) => "azimuth",
+            Self::Get(_) => "get",
+            Self::Set(..) => "set",
+            Self::Save => "save",
+            Self::Restore => "restore",
+            Self::Test => "test",
+            Self::Log => "log",
+            Self::Reboot => "reboot",
+        }
+    }
 }
 
 /// Why a line is no command.
@@ -81,10 +102,20 @@ pub fn parse(line: &str) -> Option<Result<Command<'_>, NoCommand>> {
         return (!line.starts_with('!')).then(|| of_words(line));
     };
     let words = sentence.strip_prefix(COMMAND)?.strip_prefix(',')?;
-    Some(content(sentence).map_or(Err(NoCommand::Checksum), |_| {
-        // The checksum has three characters.
-        of_words(&words[..words.len() - 3])
-    }))
+    // The checksum has three characters.
+    let words = content(sentence).and_then(|_| words.get(..words.len().checked_sub(3)?));
+    Some(words.map_or(Err(NoCommand::Checksum), of_words))
+}
+
+/// `$PMRDC,set,latitude,47.58*hh`: a command of these words; [`None`] where it is too long for a sentence. That no word has a
+/// character which a sentence may not have is the caller's to see ([`is_allowed`](crate::nmea::is_allowed)).
+#[must_use]
+pub fn sentence<'w>(words: impl IntoIterator<Item = &'w str>) -> Option<Sentence> {
+    let mut writer = Writer::new(COMMAND);
+    for word in words {
+        writer.words(word);
+    }
+    writer.finish()
 }
 
 /// The content of a sentence without `$`, where its checksum is right.

@@ -6,6 +6,7 @@
 //! | [`nmea`] | sentences of NMEA 0183 |
 //! | [`mavlink`] | messages of MAVLink 2 |
 //! | [`command`] | commands as lines of text |
+//! | [`answer`] | the answers to them |
 //! | [`position`] | the latitude that a satellite receiver states |
 //! | [`receiver`] | lines and frames among the bytes that are received |
 //! | [`words`] | words for people, in parts that a sentence or a message takes |
@@ -14,6 +15,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod answer;
 pub mod command;
 pub mod mavlink;
 pub mod nmea;

@@ -45,11 +45,12 @@ const fn taken<M: MessageData>() -> (u32, u8) {
 
 /// What was received.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 pub enum Received<'r> {
     /// A line of printable ASCII characters, without its end.
     Line(&'r str),
     /// A frame whose checksum is right.
-    Frame(&'r Frame),
+    Frame(Frame),
 }
 
 /// A frame of MAVLink 2 that was received.
@@ -70,26 +71,25 @@ enum Beginning {
 /// Searches for lines and frames.
 #[derive(Clone, Debug)]
 pub struct Receiver {
-    /// Bytes that wait.
+    /// Bytes that wait, behind those that are done with.
     waiting: heapless::Vec<u8, ROOM>,
-    /// How many of them have been handed out.
+    /// How many of them are done with.
     done: usize,
-    /// Whether a line may begin with the first of them that was not.
+    /// Whether a line may begin with the first of them that is not.
     is_at_start: bool,
-    /// The frame that was handed out last.
-    frame: Frame,
 }
 
 impl Default for Receiver {
     fn default() -> Self {
-        Self { waiting: heapless::Vec::new(), done: 0, is_at_start: true, frame: Frame::new() }
+        Self { waiting: heapless::Vec::new(), done: 0, is_at_start: true }
     }
 }
 
 impl Receiver {
     /// Takes as many bytes as there is room for, at least one after [`next`](Self::next) has returned nothing; how many.
     pub fn take(&mut self, bytes: &[u8]) -> usize {
-        self.drop_done();
+        let done = core::mem::take(&mut self.done);
+        self.waiting.drain(..done);
         let count = bytes.len().min(ROOM - self.waiting.len());
         // There is room for them.
         let _ = self.waiting.extend_from_slice(&bytes[..count]);
@@ -98,8 +98,7 @@ impl Receiver {
 
     /// Notes that nothing has come for some time: a frame that waits for its end is none. A line may be typed slowly.
     pub fn pause(&mut self) {
-        self.drop_done();
-        if self.waiting.first() == Some(&MAV_STX_V2) {
+        if self.waiting.get(self.done) == Some(&MAV_STX_V2) {
             self.skip(1, false);
         }
     }
@@ -107,34 +106,30 @@ impl Receiver {
     /// The next line or frame; [`None`] until more bytes have come.
     #[expect(clippy::should_implement_trait, reason = "what it returns borrows from it")]
     pub fn next(&mut self) -> Option<Received<'_>> {
-        self.drop_done();
         loop {
-            match beginning(&self.waiting, self.is_at_start) {
+            let begin = self.done;
+            match beginning(&self.waiting[begin..], self.is_at_start) {
                 Beginning::Incomplete => return None,
                 Beginning::Void(count, is_at_start) => self.skip(count, is_at_start),
                 Beginning::Line(length) => {
-                    (self.done, self.is_at_start) = (length + 1, true);
-                    let line = self.waiting.get(..length)?;
+                    self.skip(length + 1, true);
+                    let line = self.waiting.get(begin..begin + length)?;
                     return str::from_utf8(line).ok().map(Received::Line);
                 }
                 Beginning::Frame(length) => {
-                    (self.done, self.is_at_start) = (length, true);
-                    self.frame.as_mut_slice()[..length].copy_from_slice(&self.waiting[..length]);
-                    return Some(Received::Frame(&self.frame));
+                    self.skip(length, true);
+                    let mut frame = Frame::new();
+                    let whole = &self.waiting[begin..begin + length];
+                    frame.as_mut_slice()[..length].copy_from_slice(whole);
+                    return Some(Received::Frame(frame));
                 }
             }
         }
     }
 
-    /// Drops what was handed out.
-    fn drop_done(&mut self) {
-        let done = core::mem::take(&mut self.done);
-        self.waiting.drain(..done);
-    }
-
-    /// Drops bytes that are nothing.
-    fn skip(&mut self, count: usize, is_at_start: bool) {
-        self.waiting.drain(..count);
+    /// Is done with bytes. Whether a line may begin after them.
+    const fn skip(&mut self, count: usize, is_at_start: bool) {
+        self.done += count;
         self.is_at_start = is_at_start;
     }
 }

@@ -4,8 +4,9 @@
 //! was not edited.
 
 use firmware::settings::{
-    Gyro, Settings, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
-    VehicleSchedule,
+    CarrierSchedule, Felt, FramesCalibration, Geometry, Gyro, Output, PlatformCalibration,
+    Settings, SpinCalibration, SpinSchedule, StageSchedule, TurntableCalibration,
+    TurntableSchedule, TwoFrameSchedule, VehicleCalibration, VehicleSchedule,
 };
 use orientation::alignment::stepwise::mount::TwoFrame;
 use orientation::earth::Latitude;
@@ -67,10 +68,16 @@ pub fn spin(seed: u64) -> SpinScenario {
 }
 
 impl Scenario {
-    /// The settings of this board with a schedule; none where the latitude is none.
-    fn settings_with<C>(&self, schedule: C) -> Option<Settings<C>> {
+    /// The settings of this board with a schedule and a calibration; none where the latitude is none.
+    fn settings_with<C: CarrierSchedule>(
+        &self,
+        schedule: C,
+        calibration: C::Calibration,
+    ) -> Option<Settings<C>> {
         Some(Settings {
-            latitude: Latitude::from_degrees(self.latitude_deg)?,
+            output: Output::default(),
+            latitude: Some(Latitude::from_degrees(self.latitude_deg)?),
+            starts: true,
             gyro: Gyro {
                 volts_per_rad_per_s: scenario::VOLTS,
                 limit: RadiansPerSecond(f64::from(scenario::LIMIT.0) * 1e-9),
@@ -79,19 +86,33 @@ impl Scenario {
             required_sigma: self.site()?.required_sigma,
             holds: true,
             schedule,
+            calibration,
         })
+    }
+
+    /// What was measured of gyro, accelerometer and encoder on a platform that turns them.
+    fn calibration(&self) -> Option<PlatformCalibration> {
+        let site = self.site()?;
+        let felt = Felt {
+            g_sensitivity: site.g_sensitivity,
+            g_sensitivity_sigma: site.g_sensitivity_sigma,
+            force_bias_sigma: site.accelerometer_bias_sigma,
+        };
+        let encoder = self.configuration().encoder;
+        Some(PlatformCalibration { felt, encoder, encoder_sigma: site.encoder_sigma })
     }
 
     /// The settings of a stage; none where the latitude is none.
     #[must_use]
     pub fn settings(&self) -> Option<Settings<StageSchedule>> {
-        self.settings_with(StageSchedule {
+        let schedule = StageSchedule {
             positions: self.positions as u8,
             dwell: Seconds(self.dwell_s),
             survey: (self.survey_s > 0.0).then_some(Seconds(self.survey_s)),
             allowed: None,
             half: self.half,
-        })
+        };
+        self.settings_with(schedule, self.calibration()?)
     }
 }
 
@@ -100,8 +121,30 @@ impl FramesScenario {
     #[must_use]
     pub fn settings(&self) -> Option<Settings<TwoFrameSchedule>> {
         let Self { base, passes, .. } = self;
-        let (dwell, half) = (Seconds(base.dwell_s), base.half);
-        base.settings_with(TwoFrameSchedule { passes: *passes as u8, dwell, half })
+        let schedule = TwoFrameSchedule {
+            passes: *passes as u8,
+            dwell: Seconds(base.dwell_s),
+            half: base.half,
+        };
+        base.settings_with(schedule, self.calibration()?)
+    }
+
+    /// What was measured of gyro, accelerometer, encoders and mount.
+    fn calibration(&self) -> Option<FramesCalibration> {
+        let mut platform = self.base.calibration()?;
+        let inner = platform.encoder;
+        platform.felt.force_bias_sigma = self.setting()?.site.accelerometer_bias_sigma;
+        let stated = self.frames().ok()?.geometry();
+        let geometry = Geometry {
+            azimuth: stated.azimuth.0 as f32,
+            pitch: stated.pitch.0 as f32,
+            frames: stated.frames.0 as f32,
+            gyro: stated.gyro.0 as f32,
+            outer_zero: stated.outer_zero.0 as f32,
+            inner_zero: stated.inner_zero.0 as f32,
+        };
+        let orthogonality_sigma = Radians(self.orthogonality_sigma);
+        Some(FramesCalibration { platform, inner, geometry, orthogonality_sigma })
     }
 }
 
@@ -110,28 +153,38 @@ impl TurntableScenario {
     #[must_use]
     pub fn settings(&self) -> Option<Settings<TurntableSchedule>> {
         let speeds = self.speeds_hz.iter().filter(|speed| **speed > 0.0);
-        self.base.settings_with(TurntableSchedule {
+        let schedule = TurntableSchedule {
             speeds: speeds.map(|speed| RadiansPerSecond(speed * TURN)).collect(),
             turns: self.turns,
             modulated_turns: self.modulated_turns,
-        })
+        };
+        let platform = self.base.calibration()?;
+        let is_molecular = self.molecular.is_some();
+        let calibration =
+            TurntableCalibration { platform, is_molecular, ..TurntableCalibration::default() };
+        self.base.settings_with(schedule, calibration)
     }
 }
 
 impl VehicleScenario {
-    /// The settings of a vehicle; none where the latitude is none.
+    /// The settings of a vehicle, which has no calibration; none where the latitude is none.
     #[must_use]
     pub fn settings(&self) -> Option<Settings<VehicleSchedule>> {
-        let (stops, stop) = (self.stops as u8, Seconds(self.stop_s));
-        self.base.settings_with(VehicleSchedule { stops, stop, realigns: self.base.hold.realigns })
+        let schedule = VehicleSchedule {
+            stops: self.stops as u8,
+            stop: Seconds(self.stop_s),
+            realigns: self.base.hold.realigns,
+            aligns_known: true,
+        };
+        self.base.settings_with(schedule, VehicleCalibration::default())
     }
 }
 
 impl SpinScenario {
-    /// The settings of a spinning body, which uses the start of its flight alone: level, northwards.
+    /// The settings of a spinning body: its flight starts level, northwards, and its sensors are the usual ones.
     #[must_use]
     pub fn settings(&self) -> Option<Settings<SpinSchedule>> {
-        Scenario::usual(self.seed)
-            .settings_with(SpinSchedule { course: Radians(0.0), pitch: Radians(0.0) })
+        let schedule = SpinSchedule { course: Radians(0.0), pitch: Radians(0.0) };
+        Scenario::usual(self.seed).settings_with(schedule, SpinCalibration::default())
     }
 }

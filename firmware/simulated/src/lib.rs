@@ -2,7 +2,7 @@
 //!
 //! A scenario says what is true and what the board is given: a stage ([`scenario`]), two frames ([`mount`]),
 //! a [`turntable`], a [`vehicle`], a spinning body ([`spin`]). [`Wires`] connects the drivers to its chips,
-//! [`fault`] is the catalogue of what may go wrong, [`hold`] how a run goes on after its alignment, and
+//! [`flood`] is what a link brings that is no command, [`fault`] the catalogue of what may go wrong, [`hold`] how a run goes on after its alignment, and
 //! [`trace`] what is compared. Host and emulator run exactly this, so that their results can be compared
 //! bit for bit.
 #![no_std]
@@ -13,6 +13,7 @@ pub mod coarse;
 pub mod executed;
 pub mod fault;
 pub mod flash;
+pub mod flood;
 pub mod hold;
 pub mod keep;
 pub mod line;

@@ -1,53 +1,55 @@
-//! Settings of an instrument, which a record in its store states without a new image: latitude, the
-//! precise gyro, and the schedule of its carrier. Without a record the image's own settings hold.
+//! Settings of an instrument, which a record in its store states without a new image: what it sends, its latitude, the
+//! precise gyro, the schedule of its carrier, and what was measured of it. Without a record the factory settings hold,
+//! which are the defaults.
 //!
-//! A record takes 192 bytes, so that later versions with more fields are of the same size:
-//!
-//! | bytes | content |
+//! | file | what it is |
 //! |---|---|
-//! | 0 | version of the layout, [`VERSION`] |
-//! | 1 | carrier: its index in [`Platform::ALL`] |
-//! | 2… | [`Settings`] as postcard serialises it: the fields in their order, an `f64` as eight bytes little-endian, an integer of more than a byte as a variable-length one, an option or a choice behind its index |
-//! | …187 | zeros |
-//! | 188…191 | CRC-32 (IEEE 802.3) of all bytes before it, little-endian |
-//!
-//! A record that is damaged, of another version, for another carrier, or out of range is refused as a
-//! whole: an instrument must not begin with other values than its user believes in.
+//! | `output.rs` | what the link sends, and how often |
+//! | `schedule.rs` | schedules of the carriers |
+//! | `calibration.rs` | calibrations of the carriers |
+//! | `factory.rs` | factory settings |
+//! | `board.rs` | those of a board at work |
+//! | `record.rs` | the record, its versions, and why one is refused |
+//! | `names.rs` | every setting by a name, in its user's unit |
 
+mod board;
+mod calibration;
+mod factory;
+mod names;
 mod output;
+mod record;
 mod schedule;
 
+pub use board::{BoardSettings, SharedSettings};
+pub use calibration::{
+    Analogue, Calibration, Felt, FramesCalibration, Geometry, PlatformCalibration, SpinCalibration,
+    TurntableCalibration, VehicleCalibration,
+};
+pub use names::{
+    CALIBRATIONS, EditError, Editable, Entry, LONGEST, List, NONE, Named, Start, Stated,
+};
 pub use output::{FASTEST, Format, ITEMS, Item, Output};
+pub use record::{BYTES, FIRST_BYTES, SLOT, Serial, SettingsError, VERSION, load, save};
 pub use schedule::{
-    CarrierSchedule, SpinSchedule, StageSchedule, TurntableSchedule, TwoFrameSchedule,
-    VehicleSchedule,
+    CarrierSchedule, FirstVehicleSchedule, SpinSchedule, StageSchedule, TurntableSchedule,
+    TwoFrameSchedule, VehicleSchedule,
 };
 
 use drivers::ads1262::configuration::Gain;
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
-use drivers::fault::Fault;
 use orientation::alignment::setup::{GREATEST, Quantity, SetupError, check_ranges};
 use orientation::alignment::site::Site;
 use orientation::attitude;
-use orientation::checksum::crc32_of_bytes;
 use orientation::earth::{EARTH_RATE, HIGHEST_LATITUDE, Latitude};
 use orientation::noise::model::StatedNoise;
-use orientation::units::{AngularRate, Radians, RadiansPerSecond};
-use orientation::words;
+use orientation::units::{
+    ARCSECOND, AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN,
+    Radians, RadiansPerSecond,
+};
 use serde::{Deserialize, Serialize};
 
-use crate::platform::Platform;
-use crate::ports::Store;
+use names::{DEGREES, PARTS, Unit, put};
 
-/// Version of the record's layout.
-pub const VERSION: u8 = 1;
-/// Size of a record of any version, bytes.
-pub const BYTES: usize = 192;
-/// The slot of the record in the store.
-pub const SLOT: u8 = 0x81;
-
-/// Size of the checksum at a record's end, bytes.
-const CHECKSUM: usize = 4;
 /// Least and greatest limit of a gyro, rad/s: below the Earth rate there is nothing to measure, and an
 /// [`AngularRate`] holds no more.
 const LIMITS: [f64; 2] = [EARTH_RATE, i32::MAX as f64 * 1e-9];
@@ -55,14 +57,34 @@ const LIMITS: [f64; 2] = [EARTH_RATE, i32::MAX as f64 * 1e-9];
 /// 2⁻³² nrad/s, the limits of a [`Scale`].
 const SCALE_FACTORS: [f64; 2] =
     [INTERNAL_REFERENCE_VOLTS * 1e9 / (1_u64 << 61) as f64, INTERNAL_REFERENCE_VOLTS * 1e9 * 2.0];
-// A checksum is that of whole words.
-const _: () = assert!((BYTES - CHECKSUM).is_multiple_of(4));
+/// Decimal places of a latitude, °: a centimetre.
+const LATITUDE_PLACES: u8 = 7;
+/// Scale factor of a gyro: V per °/s, to a billionth of the usual tenth.
+const GYRO_SCALE: Unit = Unit { places: 10, si: DEGREES_PER_RADIAN };
+/// Limit of a gyro, °/s.
+const GYRO_LIMIT: Unit = Unit { places: 4, si: DEGREE };
+/// Q of a gyro, ″; N, °/√h, to a thousandth of the best; B, °/h; K, °/h/√h; R, °/h².
+const GYRO_NOISE: [Unit; 5] = [
+    Unit { places: 5, si: ARCSECOND },
+    Unit { places: 7, si: DEGREE_PER_SQRT_HOUR },
+    Unit { places: 6, si: DEGREE_PER_HOUR },
+    Unit { places: 6, si: DEGREE_PER_HOUR / 60.0 },
+    Unit { places: 6, si: DEGREE_PER_HOUR / 3600.0 },
+];
+/// σ of a gyro's bias, °/h.
+const GYRO_BIAS: Unit = Unit { places: 5, si: DEGREE_PER_HOUR };
 
 /// Settings of an instrument on the carrier of the schedule `C`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings<C> {
-    /// Geodetic latitude, up to ±85°. A spinning body does not use it.
-    pub latitude: Latitude,
+#[serde(bound = "")]
+pub struct Settings<C: CarrierSchedule> {
+    /// What the link sends.
+    pub output: Output,
+    /// Geodetic latitude, up to ±85°; [`None`] until it is stated. A spinning body does not use it, and nothing else
+    /// begins without one.
+    pub latitude: Option<Latitude>,
+    /// Whether an alignment begins at power-on without an order.
+    pub starts: bool,
     /// The precise gyro, in a vehicle each of the three. A spinning body has others.
     pub gyro: Gyro,
     /// Greatest standard deviation of the azimuth that is accepted, 1σ.
@@ -72,6 +94,8 @@ pub struct Settings<C> {
     pub holds: bool,
     /// Schedule of the session.
     pub schedule: C,
+    /// What was measured of the instrument.
+    pub calibration: C::Calibration,
 }
 
 /// A precise gyro behind its converter.
@@ -105,16 +129,23 @@ impl Gyro {
 }
 
 impl<C: CarrierSchedule> Settings<C> {
-    /// Site of an alignment with these settings; what they do not state is that of an ideal
+    /// Site of an alignment with these settings at this latitude, theirs; what they do not state is that of an ideal
     /// instrument ([`Site::at`]).
     #[must_use]
-    pub fn site(&self) -> Site {
+    pub fn site(&self, latitude: Latitude) -> Site {
         let attitude::Gyro { noise, scale_sigma, .. } = self.gyro.errors;
+        let ideal = Site::at(latitude);
+        let felt = self.calibration.felt();
         Site {
             noise: StatedNoise::Whole(noise),
             scale_sigma,
+            g_sensitivity: felt.map_or(ideal.g_sensitivity, |felt| felt.g_sensitivity),
+            g_sensitivity_sigma: felt
+                .map_or(ideal.g_sensitivity_sigma, |felt| felt.g_sensitivity_sigma),
+            accelerometer_bias_sigma: felt
+                .map_or(ideal.accelerometer_bias_sigma, |felt| felt.force_bias_sigma),
             required_sigma: self.required_sigma,
-            ..Site::at(self.latitude)
+            ..ideal
         }
     }
 
@@ -123,125 +154,89 @@ impl<C: CarrierSchedule> Settings<C> {
     /// # Errors
     /// [`SetupError::OutOfRange`], which names the first field that is not.
     pub fn check(&self) -> Result<(), SetupError> {
+        self.output.check()?;
         let Gyro { limit, errors, .. } = self.gyro;
+        let latitude = self.latitude.unwrap_or(Latitude::EQUATOR);
         check_ranges(&[
-            ("latitude", self.latitude.rad(), [-HIGHEST_LATITUDE, HIGHEST_LATITUDE]),
+            ("latitude", latitude.rad(), [-HIGHEST_LATITUDE, HIGHEST_LATITUDE]),
             ("limit", limit.0, LIMITS),
             ("bias_sigma", errors.bias_sigma.0, [0.0, GREATEST]),
         ])?;
         self.gyro.scale(Gain::X1)?;
-        self.site().check()?;
-        self.schedule.check()
+        self.site(latitude).check()?;
+        self.schedule.check()?;
+        self.calibration.check()
     }
+}
 
-    /// Record of these settings.
-    ///
-    /// # Errors
-    /// [`SettingsError::OutOfRange`]; [`SettingsError::Layout`] for a schedule of another crate that
-    /// does not fit.
-    pub fn to_record(&self) -> Result<[u8; BYTES], SettingsError> {
-        self.check().map_err(SettingsError::OutOfRange)?;
-        let mut record = [0; BYTES];
-        let [version, carrier, content @ .., _, _, _, _] = &mut record;
-        (*version, *carrier) = (VERSION, C::PLATFORM as u8);
-        postcard::to_slice(self, content).map_err(|_| SettingsError::Layout)?;
-        let checksum = crc32_of_bytes(&record[..BYTES - CHECKSUM]);
-        record[BYTES - CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());
-        Ok(record)
+impl Named for Gyro {
+    fn list(&mut self, list: &mut List<'_>) {
+        let attitude::Gyro { noise, bias_sigma, scale_sigma } = &mut self.errors;
+        let [q, n, b, k, r] = GYRO_NOISE;
+        list.number("gyro_scale", GYRO_SCALE, &mut self.volts_per_rad_per_s);
+        list.number("gyro_scale_sigma", PARTS, scale_sigma);
+        list.number("gyro_limit", GYRO_LIMIT, &mut self.limit.0);
+        list.number("gyro_q", q, &mut noise.quantisation.0);
+        list.number("gyro_n", n, &mut noise.angle_random_walk.0);
+        list.number("gyro_b", b, &mut noise.bias_instability.0);
+        list.number("gyro_k", k, &mut noise.rate_random_walk.0);
+        list.number("gyro_r", r, &mut noise.rate_ramp.0);
+        list.number("gyro_bias_sigma", GYRO_BIAS, &mut bias_sigma.0);
     }
+}
 
-    /// Settings of a record.
-    ///
-    /// # Errors
-    /// Every [`SettingsError`] but those of a store.
-    pub fn from_record(record: &[u8]) -> Result<Self, SettingsError> {
-        let record: &[u8; BYTES] = record.try_into().map_err(|_| SettingsError::Damaged)?;
-        let [sound @ .., a, b, c, d] = record;
-        if crc32_of_bytes(sound) != u32::from_le_bytes([*a, *b, *c, *d]) {
-            return Err(SettingsError::Damaged);
+/// Lists a latitude.
+fn list_latitude(list: &mut List<'_>, latitude: &mut Option<Latitude>) {
+    let value = latitude.map_or(f64::NAN, |latitude| Radians(latitude.rad()).degrees());
+    list.optional("latitude", LATITUDE_PLACES, value, &mut |stated| {
+        *latitude = stated.and_then(Latitude::from_degrees);
+        latitude.is_some() == stated.is_some()
+    });
+}
+
+impl<C: CarrierSchedule> Named for Settings<C> {
+    /// Lists those that its carrier uses.
+    fn list(&mut self, list: &mut List<'_>) {
+        self.output.list(list);
+        list.flag("autostart", &mut self.starts);
+        if C::PLATFORM.has_azimuth() {
+            list_latitude(list, &mut self.latitude);
+            list.number("accuracy", DEGREES, &mut self.required_sigma.0);
+            list.flag("hold", &mut self.holds);
+            self.gyro.list(list);
         }
-        let [version, carrier, content @ ..] = sound;
-        if *version != VERSION {
-            return Err(SettingsError::UnknownVersion(*version));
-        }
-        check_carrier(*carrier, C::PLATFORM)?;
-        let (settings, rest): (Self, _) =
-            postcard::take_from_bytes(content).map_err(|_| SettingsError::Layout)?;
-        if rest.iter().any(|byte| *byte != 0) {
-            return Err(SettingsError::Layout);
-        }
-        settings.check().map_err(SettingsError::OutOfRange)?;
-        Ok(settings)
+        self.schedule.list(list);
+        self.calibration.list(list);
     }
 }
 
-/// Refuses the carrier of a record unless it is the instrument's own.
-fn check_carrier(carrier: u8, own: Platform) -> Result<(), SettingsError> {
-    match Platform::ALL.get(usize::from(carrier)) {
-        Some(found) if *found == own => Ok(()),
-        Some(found) => Err(SettingsError::OtherCarrier { found: *found, own }),
-        None => Err(SettingsError::Layout),
+impl<C: CarrierSchedule> Editable for Settings<C> {
+    fn set(&mut self, name: &str, value: f64) -> Result<(), EditError> {
+        let mut changed = self.clone();
+        put(&mut changed, name, value)?;
+        changed.check().map_err(EditError::OutOfRange)?;
+        *self = changed;
+        Ok(())
     }
-}
 
-/// Settings of the record in a store; [`None`] if it has none.
-///
-/// # Errors
-/// [`SettingsError`], if there is a record that must not be used, or if the store does not show
-/// whether there is one.
-pub async fn load<C: CarrierSchedule>(
-    store: &mut impl Store,
-) -> Result<Option<Settings<C>>, SettingsError> {
-    let record: Option<[u8; BYTES]> = store.load(SLOT).await.map_err(SettingsError::Unreadable)?;
-    record.map(|record| Settings::from_record(&record)).transpose()
-}
+    fn to_record(&self, serial: &Serial) -> Result<[u8; BYTES], SettingsError> {
+        self.to_record(serial)
+    }
 
-/// Writes the record of settings into a store; it takes the place of an earlier one.
-///
-/// # Errors
-/// [`SettingsError::OutOfRange`] and [`SettingsError::NotSaved`]; an earlier record stays then.
-pub async fn save<C: CarrierSchedule>(
-    store: &mut impl Store,
-    settings: &Settings<C>,
-) -> Result<(), SettingsError> {
-    let record = settings.to_record()?;
-    store.save(SLOT, &record).await.map_err(SettingsError::NotSaved)
-}
+    fn restore(&mut self) {
+        *self = Self::default();
+    }
 
-/// Reason for which settings are not used, or not saved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SettingsError {
-    /// The store cannot be read, so that it is unknown whether there is a record.
-    Unreadable(Fault),
-    /// The store does not take the record.
-    NotSaved(Fault),
-    /// The record has another length, or fails its checksum.
-    Damaged,
-    /// The record has this version, which the image does not know.
-    UnknownVersion(u8),
-    /// The record is for another carrier.
-    OtherCarrier {
-        /// Carrier of the record.
-        found: Platform,
-        /// Carrier of the instrument.
-        own: Platform,
-    },
-    /// The record is sound, but its content has not the layout of its version.
-    Layout,
-    /// A quantity is out of its range.
-    OutOfRange(SetupError),
-}
+    fn carrier(&self) -> &'static str {
+        C::PLATFORM.name()
+    }
 
-impl core::error::Error for SettingsError {}
+    fn output(&self) -> Output {
+        self.output
+    }
 
-words! { SettingsError:
-    Self::Unreadable(fault) => "the store that may have a record cannot be read: {}", fault;
-    Self::NotSaved(fault) => "the store does not take the record: {}", fault;
-    Self::Damaged => "the record fails its checksum";
-    Self::UnknownVersion(version) =>
-        "the record has version {}, and this image knows version {} alone", version, VERSION;
-    Self::OtherCarrier { found, own } =>
-        "the record is for the carrier {}, and this image for {}", found.name(), own.name();
-    Self::Layout => "the record has not the layout of its version";
-    Self::OutOfRange(error) => "{}", error;
+    fn start(&self) -> Start {
+        let needs_latitude = C::PLATFORM.has_azimuth();
+        Start { latitude: self.latitude, needs_latitude, is_at_power_on: self.starts }
+    }
 }

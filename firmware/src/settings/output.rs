@@ -3,8 +3,12 @@
 use orientation::alignment::setup::{SetupError, check_ranges};
 use serde::{Deserialize, Serialize};
 
+use super::names::{List, Named};
+
 /// Greatest rate of anything that is sent, Hz: that of the navigator's attitudes.
 pub const FASTEST: u8 = 10;
+/// Rates of what is sent, Hz: a whole number of looks lies between two.
+const RATES: [u8; 5] = [0, 1, 2, 5, FASTEST];
 /// Bits of a byte on the link: with its start and its stop.
 const BITS: u32 = 10;
 /// Slowest and fastest link, baud: that of NMEA 0183, and that of an autopilot's fastest port.
@@ -74,6 +78,23 @@ impl Item {
         }
     }
 
+    /// The name of the setting of its rate.
+    #[must_use]
+    pub const fn rate_name(self) -> &'static str {
+        match self {
+            Self::Hdt => "hdt_rate",
+            Self::Ths => "ths_rate",
+            Self::Rot => "rot_rate",
+            Self::Phtro => "phtro_rate",
+            Self::Phinf => "phinf_rate",
+            Self::Pmrds => "pmrds_rate",
+            Self::Pmrdl => "pmrdl_rate",
+            Self::Attitude => "attitude_rate",
+            Self::Vision => "vision_rate",
+            Self::SysStatus => "sysstatus_rate",
+        }
+    }
+
     /// Most bytes that it has on the link.
     #[must_use]
     pub const fn bytes(self) -> u32 {
@@ -89,6 +110,17 @@ impl Item {
         }
     }
 
+    /// The item that is this message of MAVLink.
+    #[must_use]
+    pub const fn of_message(number: u32) -> Option<Self> {
+        match number {
+            ATTITUDE_QUATERNION => Some(Self::Attitude),
+            VISION_POSITION_ESTIMATE => Some(Self::Vision),
+            SYS_STATUS => Some(Self::SysStatus),
+            _ => None,
+        }
+    }
+
     /// How often it is sent unless that is set, Hz.
     const fn usual_rate(self) -> u8 {
         match self {
@@ -99,6 +131,11 @@ impl Item {
         }
     }
 }
+
+/// Numbers of the messages.
+const ATTITUDE_QUATERNION: u32 = 31;
+const VISION_POSITION_ESTIMATE: u32 = 102;
+const SYS_STATUS: u32 = 1;
 
 /// Bytes of a message beside its payload.
 const FRAME: u32 = 12;
@@ -140,27 +177,52 @@ impl Output {
         periodic.iter().sum::<u32>() + if self.format == Format::Mavlink { HEARTBEAT } else { 0 }
     }
 
+    /// Bytes of answers that the link takes in the time from one look to the next: what periodic output leaves.
+    #[must_use]
+    pub const fn room_at_a_look(&self) -> usize {
+        (self.baud / BITS * (100 - SHARE) / 100 / FASTEST as u32) as usize
+    }
+
     /// Checks that every number is possible, and that the link can carry what is to be sent.
     ///
     /// # Errors
-    /// [`SetupError::OutOfRange`], which names the first field that is not.
+    /// [`SetupError::OutOfRange`] and [`SetupError::NotAmong`], which name the first field that is not.
     pub fn check(&self) -> Result<(), SetupError> {
         let [slowest, fastest] = BAUD.map(f64::from);
         check_ranges(&[
             ("baud", self.baud.into(), [slowest, fastest]),
             ("system", self.system.into(), [1.0, 254.0]),
         ])?;
-        for rate in self.rates {
-            let is_divisor = rate == 0 || (rate <= FASTEST && FASTEST.is_multiple_of(rate));
-            let nearest = if is_divisor { f64::from(rate) } else { 0.0 };
-            check_ranges(&[("rate, 0, 1, 2, 5 or 10 Hz", rate.into(), [nearest; 2])])?;
+        for (item, rate) in Item::ALL.into_iter().zip(self.rates) {
+            let (is_possible, choices) = match item {
+                // PX4 begins with an azimuth only where two follow one another within 200 ms.
+                Item::Vision => ([0, FASTEST].contains(&rate), "0 or 10 Hz"),
+                _ => (RATES.contains(&rate), "0, 1, 2, 5 or 10 Hz"),
+            };
+            if !is_possible {
+                return Err(SetupError::NotAmong {
+                    name: item.rate_name(),
+                    value: rate.into(),
+                    choices,
+                });
+            }
         }
-        // PX4 begins with an azimuth only where two follow one another within 200 ms.
-        let vision = self.rates[Item::Vision as usize];
-        let nearest = if vision > 0 { FASTEST } else { 0 };
-        check_ranges(&[("vision_rate, 0 or 10 Hz", vision.into(), [nearest.into(); 2])])?;
         let room = self.baud / BITS * SHARE / 100;
         let load = self.bytes_per_second();
         check_ranges(&[("bytes a second on the link", load.into(), [0.0, room.into()])])
+    }
+}
+
+impl Named for Output {
+    fn list(&mut self, list: &mut List<'_>) {
+        const FORMATS: [Format; 2] = [Format::Nmea, Format::Mavlink];
+        let format = &mut self.format;
+        let index = *format as usize;
+        list.choice("output", &["nmea", "mavlink"], index, &mut |index| *format = FORMATS[index]);
+        list.count("baud", &mut self.baud);
+        list.few("mav_system", &mut self.system);
+        for (item, rate) in Item::ALL.into_iter().zip(&mut self.rates) {
+            list.few(item.rate_name(), rate);
+        }
     }
 }

@@ -385,19 +385,17 @@ impl<F: NorFlash> FlashStore<F> {
 }
 
 impl<F: NorFlash> Store for FlashStore<F> {
-    /// The latest item of a slot.
+    /// Reads the latest item of a slot.
     ///
     /// # Errors
-    /// [`Fault::Checksum`] for an item that is damaged; [`Fault::Bus`] for one of another length, and for pages that hold
-    /// something else than a store.
-    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
+    /// [`Fault::Checksum`] for an item that is damaged; [`Fault::Bus`] for a longer one, and for pages that hold something
+    /// else than a store.
+    async fn read(&mut self, slot: u8, item: &mut [u8]) -> Result<Option<usize>, Fault> {
         let Some(record) = self.held(slot).await? else { return Ok(None) };
-        if usize::from(record.mark.length) != N {
-            return Err(Fault::Bus);
-        }
-        let mut item = [0; N];
-        self.item(record, &mut item).await?;
-        Ok(Some(item))
+        let length = usize::from(record.mark.length);
+        let item = item.get_mut(..length).ok_or(Fault::Bus)?;
+        self.item(record, item).await?;
+        Ok(Some(length))
     }
 
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {

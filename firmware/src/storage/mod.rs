@@ -9,7 +9,7 @@ mod flash;
 mod ring;
 
 pub use flash::FlashStore;
-pub use ring::{CONTENT, PAGE, Pages, Ring, Row, records};
+pub use ring::{CONTENT, LogRecord, PAGE, Pages, Ring, Row, record_after, records};
 
 use drivers::fault::Fault;
 use embassy_futures::select::select;
@@ -31,8 +31,8 @@ use crate::shared::{Channels, Shared, discard};
 pub type SharedStore<T> = Mutex<NoopRawMutex, T>;
 
 impl<T: Store> Store for &SharedStore<T> {
-    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
-        self.lock().await.load(slot).await
+    async fn read(&mut self, slot: u8, item: &mut [u8]) -> Result<Option<usize>, Fault> {
+        self.lock().await.read(slot, item).await
     }
 
     async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
@@ -41,6 +41,10 @@ impl<T: Store> Store for &SharedStore<T> {
 
     async fn forget(&mut self, slot: u8) -> Result<(), Fault> {
         self.lock().await.forget(slot).await
+    }
+
+    async fn record_after(&mut self, number: u32) -> Option<LogRecord> {
+        self.lock().await.record_after(number).await
     }
 }
 

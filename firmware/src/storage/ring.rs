@@ -109,7 +109,7 @@ impl<F: Pages> Ring<F> {
 
     /// First byte of a place.
     const fn offset(&self, place: u32) -> u32 {
-        self.pages.start + place / RECORDS * PAGE as u32 + place % RECORDS * RECORD as u32
+        offset_of(&self.pages, place)
     }
 
     /// Begins to append a record, which is written by [`Self::step`]. The one before must be.
@@ -168,6 +168,47 @@ fn head(number: u32) -> Row {
     let number = number.to_le_bytes();
     let [[a, b, c, d], [e, f, g, h]] = [number, crc32_of_bytes(&number).to_le_bytes()];
     [a, b, c, d, e, f, g, h]
+}
+
+/// A record of the log with its number.
+pub type LogRecord = (u32, [u8; CONTENT]);
+
+/// The whole record with the least number above this one in these pages of a flash.
+pub fn record_after(flash: &impl Pages, pages: Range<u32>, number: u32) -> Option<LogRecord> {
+    let mut above = number;
+    loop {
+        let (least, offset) = least_above(flash, &pages, above)?;
+        // One that is torn is passed over.
+        if let Some(content) = content(flash, offset, least) {
+            return Some((least, content));
+        }
+        above = least;
+    }
+}
+
+/// The least number above this one that is stated in these pages, with the offset of its record.
+fn least_above(flash: &impl Pages, pages: &Range<u32>, above: u32) -> Option<(u32, u32)> {
+    let places = (pages.end - pages.start) / PAGE as u32 * RECORDS;
+    let stated = (0..places).filter_map(|place| {
+        let offset = offset_of(pages, place);
+        flash.row(offset).and_then(number).map(|number| (number, offset))
+    });
+    stated.filter(|(number, _)| *number > above).min()
+}
+
+/// The content of the record of this number at this offset; [`None`] where it is not whole.
+fn content(flash: &impl Pages, offset: u32, number: u32) -> Option<[u8; CONTENT]> {
+    let mut found = [0; RECORD];
+    for (place, row) in found.as_chunks_mut::<ROW>().0.iter_mut().enumerate() {
+        *row = flash.row(offset + (place * ROW) as u32)?;
+    }
+    let content = found[ROW..].first_chunk()?;
+    (record(number, content) == found).then_some(*content)
+}
+
+/// First byte of a place in these pages.
+const fn offset_of(pages: &Range<u32>, place: u32) -> u32 {
+    pages.start + place / RECORDS * PAGE as u32 + place % RECORDS * RECORD as u32
 }
 
 /// The number in the first row of a record; [`None`] in any other row.

@@ -17,6 +17,7 @@ use core::cell::RefCell;
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
+use drivers::fault::Fault;
 use embassy_futures::yield_now;
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, FLASH_SIZE, Flash, MAX_ERASE_SIZE, WRITE_SIZE};
@@ -27,7 +28,7 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use firmware::storage;
-use firmware::storage::{FlashStore, Pages, Row};
+use firmware::storage::{FlashStore, LogRecord, Pages, Row, record_after};
 use static_cell::StaticCell;
 
 /// Store in flash.
@@ -50,6 +51,8 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Milliseconds after which an erasure counts as failed: twice what the slowest known one took (30 ms, Zephyr's issue
 /// 16934; 24.47 ms by the data sheet).
 const LONGEST_MILLISECONDS: u32 = 60;
+/// Time between two looks whether an erasure is over, ms.
+const POLLED_MILLISECONDS: u64 = 2;
 /// Rows that are read before other tasks run, about 3 µs each.
 const ROWS_AT_ONCE: u32 = 16;
 /// No offset.
@@ -112,6 +115,34 @@ pub struct UpperBank {
     rows_read: u32,
 }
 
+/// The store, and beside it the records of the ring.
+pub struct Archive {
+    store: Store,
+    bank: UpperBank,
+}
+
+impl firmware::ports::Store for Archive {
+    async fn read(&mut self, slot: u8, item: &mut [u8]) -> Result<Option<usize>, Fault> {
+        self.store.read(slot, item).await
+    }
+
+    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
+        self.store.save(slot, item).await
+    }
+
+    async fn forget(&mut self, slot: u8) -> Result<(), Fault> {
+        self.store.forget(slot).await
+    }
+
+    async fn record_after(&mut self, number: u32) -> Option<LogRecord> {
+        // The core would wait for an erasure of the ring.
+        while !self.bank.is_idle() {
+            Timer::after_millis(POLLED_MILLISECONDS).await;
+        }
+        record_after(&self.bank, LINES, number)
+    }
+}
+
 /// The data cache is off, and emptied before it is on again.
 struct WithoutCache;
 
@@ -151,6 +182,12 @@ impl UpperBank {
     #[must_use]
     pub const fn store(self) -> Store {
         FlashStore::new(self, STORE)
+    }
+
+    /// The store in it, and beside it the records of the ring.
+    #[must_use]
+    pub const fn archive(self) -> Archive {
+        Archive { store: self.store(), bank: self }
     }
 
     /// The ring in it. No erasure may be under way: the core would wait for it.

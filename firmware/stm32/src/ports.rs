@@ -14,6 +14,7 @@ use firmware::chips::{AnalogueGyro, BaseImu};
 use firmware::platform::Platform;
 use firmware::ports::{Frames, Sensors, SpinSensors, VehicleSensors};
 use firmware::settings;
+use firmware::sway::SwayCompensation;
 use orientation::alignment::setup::SetupError;
 
 use crate::chain::ChainReader;
@@ -36,6 +37,8 @@ type AxisEncoder = Mt6835<Device, Delay>;
 pub type AxisMotor = Tmc5160<Device, Delay>;
 /// IMU of the board on the base.
 pub type Base = BaseImu<BaseBus, Delay>;
+/// The IMU on the base, which measures its motion.
+pub type OnBase = SwayCompensation<'static, Base>;
 /// Sensors of a stage or a turntable, and of their base.
 pub type Inputs<B> = Sensors<Gyro, Accelerometer, AxisEncoder, B>;
 /// Sensors of a two-frame mount and of its base.

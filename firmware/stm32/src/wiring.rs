@@ -8,46 +8,14 @@
 use drivers::{ads1262, adxl355, mt6835, tmc5160};
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Pin, Pull, Speed};
-use embassy_stm32::mode::Async;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode};
-use embassy_stm32::usart::{RingBufferedUartRx, Uart, UartTx};
 use firmware::ports::Frames;
-use static_cell::StaticCell;
 
 use crate::chain;
 use crate::edges::Line;
 use crate::i2c::BaseBus;
 use crate::spi::{Bus, Device};
 use crate::{BoardLog, UpperBank};
-
-/// Bytes that the link receives before the first of them is written over: 115 200 baud bring 11.5 a millisecond at most
-/// (ten bits each), so that they last 22 ms.
-const RECEIVED: usize = 256;
-
-/// The serial port, both ways.
-pub struct Link {
-    /// What it receives, in a ring buffer that direct memory access fills without end, whatever the core does.
-    /// It is to be read before the ring is full, at least every 22 ms while bytes come. A ring that is not read is
-    /// written over and over, which disturbs nothing else.
-    pub receiver: RingBufferedUartRx<'static>,
-    /// What it sends.
-    pub sender: UartTx<'static, Async>,
-}
-
-impl Link {
-    /// A link that receives from now on.
-    ///
-    /// # Panics
-    /// Where there is one already: its ring buffer is at a place of its own in memory.
-    #[must_use]
-    pub fn new(port: Uart<'static, Async>) -> Self {
-        static RING: StaticCell<[u8; RECEIVED]> = StaticCell::new();
-        let (sender, receiver) = port.split();
-        let mut receiver = receiver.into_ring_buffered(RING.init([0; RECEIVED]));
-        receiver.start_uart();
-        Self { receiver, sender }
-    }
-}
 
 /// Connections of a platform that turns the gyro, with the axes `A`.
 pub struct PlatformWires<A> {

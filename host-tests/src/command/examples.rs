@@ -113,7 +113,67 @@ Examples:
 pub const LOG: &str = "\
 Examples:
   meridian log board.elf pages.bin
-      The lines that the board kept.";
+      The lines that the board kept, of a dump of its flash.
+  meridian log board.elf /dev/ttyACM0
+      The same, asked for over its link.";
+
+/// Of `send`.
+pub const SEND: &str = "\
+Examples:
+  meridian send /dev/ttyACM0 start
+      Begins an alignment.
+  meridian send COM3 azimuth 213.7 0.5
+      States an azimuth and its 1σ from outside.
+  meridian send tcp:5000 log --json
+      The log that is kept in flash, of an emulated board.";
+
+/// Of `settings`.
+pub const SETTINGS: &str = "\
+Examples:
+  meridian settings /dev/ttyACM0 get
+      All settings.
+  meridian settings /dev/ttyACM0 set latitude -47.58
+      Changes one until the instrument is switched off.
+  meridian settings /dev/ttyACM0 save board.toml
+      Keeps all in a file.
+  meridian settings /dev/ttyACM0 load board.toml
+      Takes them from a file, and keeps them in flash.";
+
+/// Of `settings get`.
+pub const SETTINGS_GET: &str = "\
+Examples:
+  meridian settings /dev/ttyACM0 get latitude carrier
+      One setting, and what carries the instrument.";
+
+/// Of `settings set`.
+pub const SETTINGS_SET: &str = "\
+Examples:
+  meridian settings COM3 set latitude 47.58 dwell 10
+      Two settings.
+  meridian settings COM3 set latitude=47.58
+      The same in another way.";
+
+/// Of `settings save`.
+pub const SETTINGS_SAVE: &str = "\
+Examples:
+  meridian settings tcp:5000 save board.toml
+      The settings of an emulated board.";
+
+/// Of `settings load`.
+pub const SETTINGS_LOAD: &str = "\
+Examples:
+  meridian settings /dev/ttyACM0 load board.toml
+      What this board had before.
+  meridian settings /dev/ttyACM0 load board.toml --other-board
+      The settings of another board, without its calibrations.";
+
+/// Of `doctor`.
+pub const DOCTOR: &str = "\
+Examples:
+  meridian doctor
+      What is there, what is missing, and the commands that bring it.
+  meridian doctor --json
+      The same for a program.";
 
 /// Of `completions`.
 pub const COMPLETIONS: &str = "\

@@ -40,6 +40,11 @@ impl Written {
         Self::of("--flash", "the flash", &[], path)
     }
 
+    /// The settings of an instrument.
+    pub fn settings(path: &Path) -> Self {
+        Self::of("FILE.toml", "the settings", &[".toml"], Some(&path.to_path_buf()))
+    }
+
     fn of(
         option: &'static str,
         what: &'static str,

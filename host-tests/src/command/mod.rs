@@ -2,15 +2,19 @@
 
 pub mod allan;
 pub mod campaign;
+pub mod doctor;
 pub mod emulate;
 pub mod examples;
 pub mod faults;
 pub mod files;
+pub mod link;
 pub mod log;
 pub mod mistyped;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod send;
+pub mod settings;
 pub mod shell;
 mod source;
 pub mod stated;

@@ -5,6 +5,7 @@ use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use clap_mangen::Man;
 use host::campaign::disturbed;
+use host::link::words::commands;
 use host::output::manner::Manner;
 use serde_json::json;
 use simulated::fault::Platform;
@@ -57,6 +58,9 @@ fn naming_values(program: Command) -> Command {
         })
         .mut_subcommand("emulate", |emulate| {
             naming(emulate, "board", platforms().chain(["all".to_owned()]))
+        })
+        .mut_subcommand("send", |send| {
+            naming(send, "words", commands().iter().map(|word| (*word).to_owned()))
         })
 }
 

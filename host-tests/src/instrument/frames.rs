@@ -52,14 +52,14 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     journey: Option<JourneyConfiguration<'_>>,
     trial: Trial<'_, FramesScenario, R, T>,
 ) -> Result<FramesRun, RunError> {
-    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+    let Trial { carrier: scenario, plan, watch, traffic, recorder, store } = trial;
     let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Latest::of(Session::new(setting, scenario.procedure())?);
     let frames = scenario.frames()?;
     let board = RefCell::new(scenario.board(journey, injection));
-    let harness = Harness::new(watch);
+    let harness = Harness::new(watch, traffic);
     let channels = harness.channels();
     let configuration = scenario.base.configuration();
     let wires = Wires(&board, injection);

@@ -5,14 +5,16 @@ use std::future::poll_fn;
 use std::pin::pin;
 use std::task::Poll;
 
+use conversation::{Conversation, Listening};
+use embassy_sync::mutex::Mutex;
 use embassy_time::Instant;
-use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::keep::Keep;
 use firmware::mechanism::Mechanism;
 use firmware::ports::{Aiding, BaseReading, Observer, Recorder, Store};
-use firmware::run::{Outside, navigate};
+use firmware::run::{navigate, store};
+use firmware::settings::{BoardSettings, Serial, Settings, StageSchedule};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
 use orientation::alignment::{Azimuth, Method, Progress};
@@ -23,6 +25,7 @@ use orientation::units;
 
 use super::kept::Kept;
 use super::latest::Latest;
+use super::wire::{Traffic, Wire};
 use super::{Run, RunError};
 use crate::methods::Course;
 use crate::output::seconds;
@@ -40,6 +43,7 @@ pub(super) struct Harness<'w> {
     /// Whether the run was interrupted.
     is_interrupted: Cell<bool>,
     watch: &'w dyn Observer,
+    traffic: Option<&'w dyn Traffic>,
 }
 
 impl Observer for Harness<'_> {
@@ -75,29 +79,11 @@ impl Observer for Harness<'_> {
     }
 }
 
-/// The wire of the link: it takes everything.
-struct Wire<'d>(&'d RefCell<Vec<u8>>);
-
-impl ErrorType for Wire<'_> {
-    type Error = core::convert::Infallible;
-}
-
-impl Write for Wire<'_> {
-    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Self::Error> {
-        self.0.borrow_mut().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    async fn flush(&mut self) -> Result<(), Self::Error> {
-        Ok(())
-    }
-}
-
 impl<'w> Harness<'w> {
     /// An empty one; what a board reports goes on to `watch`.
-    pub(super) fn new(watch: &'w dyn Observer) -> Self {
+    pub(super) fn new(watch: &'w dyn Observer, traffic: Option<&'w dyn Traffic>) -> Self {
         let (events, reports, base, bytes, found, earlier, is_interrupted) = Default::default();
-        Self { events, reports, base, bytes, found, earlier, is_interrupted, watch }
+        Self { events, reports, base, bytes, found, earlier, is_interrupted, watch, traffic }
     }
 
     /// The channels of the board's parts, whose world is a simulated one.
@@ -117,12 +103,18 @@ impl<'w> Harness<'w> {
         acquisition: impl Future<Output = ()>,
         mechanism: &mut impl Mechanism,
         (method, keeping): (&mut dyn Method<S>, impl Keep),
-        (aiding, mut recorder, store): (&dyn Aiding, impl Recorder<S>, impl Store),
+        (aiding, mut recorder, memory): (&dyn Aiding, impl Recorder<S>, impl Store),
         channels: &Channels<'_, S>,
     ) -> Result<(Health, Instant), RunError> {
         let instrument = async {
-            let outside = Outside { link: &mut Wire(&self.bytes), recorder: &mut recorder, store };
-            let run = navigate(mechanism, method, keeping, aiding, outside, channels);
+            let shared = &channels.shared;
+            let settings = Mutex::new(Settings::<StageSchedule>::default());
+            let kept = BoardSettings { settings: &settings, serial: Serial([0; 12]) };
+            let listener = self.traffic.map(|_| Listening::new(kept, || ()));
+            let link = Wire::new(&self.bytes, self.traffic);
+            let mut conversation = Conversation::new(link, listener, shared);
+            let beside = (store(memory, Some(kept), shared), conversation.until_over());
+            let run = navigate(mechanism, method, keeping, aiding, &mut recorder, beside, channels);
             let health = self.until_interrupted(run).await;
             (health.unwrap_or_else(|| channels.shared.health.get()), Instant::now())
         };

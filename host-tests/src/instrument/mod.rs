@@ -12,6 +12,7 @@ mod stage;
 mod trial;
 mod turntable;
 mod vehicle;
+mod wire;
 
 pub use frames::FramesRun;
 pub use spinning::{FlightPlan, SpinRun};
@@ -19,6 +20,7 @@ pub use stage::align_on;
 pub use trial::{Carrier, Trial};
 pub use turntable::TurntableRun;
 pub use vehicle::{VehiclePlan, VehicleRun};
+pub use wire::Traffic;
 
 use embassy_time::Instant;
 use firmware::event::Event;

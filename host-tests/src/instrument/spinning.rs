@@ -71,12 +71,12 @@ impl Carrier for SpinScenario {
     fn run<R: Recorder<SpinSample>, T: Store>(
         trial: Trial<'_, Self, R, T>,
     ) -> Result<SpinRun, RunError> {
-        let Trial { carrier: scenario, plan, watch, recorder, .. } = trial;
+        let Trial { carrier: scenario, plan, watch, traffic, recorder, .. } = trial;
         let FlightPlan { course, chips: injection } = &plan;
         let configuration = scenario.configuration().ok_or(RunError::Scale)?;
         let board = RefCell::new(scenario.board(course, injection));
         let (mut flight, mut kept) = (scenario.flight(), Samples::default());
-        let harness = Harness::new(watch);
+        let harness = Harness::new(watch, traffic);
         let channels = harness.channels();
         let mut sensors = Wires(&board, injection).spinning();
         let ended = harness.run(

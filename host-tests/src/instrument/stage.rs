@@ -52,13 +52,13 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     journey: Option<JourneyConfiguration<'_>>,
     trial: Trial<'_, Scenario, R, T>,
 ) -> Result<Run, RunError> {
-    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+    let Trial { carrier: scenario, plan, watch, traffic, recorder, store } = trial;
     let injection = &plan.chips;
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Latest::of(Session::new(setting, scenario.procedure())?);
     let board = RefCell::new(simulated::board(scenario, journey, injection));
-    let harness = Harness::new(watch);
+    let harness = Harness::new(watch, traffic);
     let channels = harness.channels();
     let configuration = scenario.configuration();
     let wires = Wires(&board, injection);

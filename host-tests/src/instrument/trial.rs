@@ -4,6 +4,7 @@ use firmware::ports::{NoRecorder, Observer, Recorder, Store};
 use simulated::fault::Fault;
 
 use super::RunError;
+use super::wire::Traffic;
 
 /// A scenario by which the simulated board of a carrier is run.
 pub trait Carrier: Sized {
@@ -32,6 +33,7 @@ pub struct Trial<'t, C: Carrier, R = NoRecorder, T = ()> {
     pub(super) carrier: &'t C,
     pub(super) plan: C::Plan,
     pub(super) watch: &'t dyn Observer,
+    pub(super) traffic: Option<&'t dyn Traffic>,
     pub(super) recorder: R,
     pub(super) store: T,
 }
@@ -40,7 +42,7 @@ impl<'t, C: Carrier> Trial<'t, C> {
     /// The run of a scenario.
     pub fn of(carrier: &'t C) -> Self {
         let plan = carrier.plan(None);
-        Self { carrier, plan, watch: &(), recorder: NoRecorder, store: () }
+        Self { carrier, plan, watch: &(), traffic: None, recorder: NoRecorder, store: () }
     }
 }
 
@@ -60,16 +62,21 @@ impl<'t, C: Carrier, R, T> Trial<'t, C, R, T> {
         Self { watch, ..self }
     }
 
+    /// With what comes over its link, to which a console listens.
+    pub fn traffic(self, traffic: &'t dyn Traffic) -> Self {
+        Self { traffic: Some(traffic), ..self }
+    }
+
     /// With a recorder of the samples.
     pub fn record<S: Recorder<C::Sample>>(self, recorder: S) -> Trial<'t, C, S, T> {
-        let Self { carrier, plan, watch, store, .. } = self;
-        Trial { carrier, plan, watch, recorder, store }
+        let Self { carrier, plan, watch, traffic, store, .. } = self;
+        Trial { carrier, plan, watch, traffic, recorder, store }
     }
 
     /// With a store that outlasts a loss of supply.
     pub fn store<U: Store>(self, store: U) -> Trial<'t, C, R, U> {
-        let Self { carrier, plan, watch, recorder, .. } = self;
-        Trial { carrier, plan, watch, recorder, store }
+        let Self { carrier, plan, watch, traffic, recorder, .. } = self;
+        Trial { carrier, plan, watch, traffic, recorder, store }
     }
 }
 

@@ -53,13 +53,13 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
     journey: Option<JourneyConfiguration<'_>>,
     trial: Trial<'_, TurntableScenario, R, T>,
 ) -> Result<TurntableRun, RunError> {
-    let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+    let Trial { carrier: scenario, plan, watch, traffic, recorder, store } = trial;
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let mut setting = scenario.setting().ok_or_else(outside)?;
     let mut procedure = scenario.procedure();
     let injection = &plan.chips;
     let board = RefCell::new(scenario.board(journey, injection));
-    let harness = Harness::new(watch);
+    let harness = Harness::new(watch, traffic);
     let channels = &harness.channels();
     let store = &SharedStore::new(store);
     if let Some(today) = scenario.today {

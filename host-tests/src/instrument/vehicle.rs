@@ -51,12 +51,12 @@ impl Carrier for VehicleScenario {
     fn run<R: Recorder<InertialSample>, T: Store>(
         trial: Trial<'_, Self, R, T>,
     ) -> Result<VehicleRun, RunError> {
-        let Trial { carrier: scenario, plan, watch, recorder, store } = trial;
+        let Trial { carrier: scenario, plan, watch, traffic, recorder, store } = trial;
         let VehiclePlan { day, chips: injection } = &plan;
         let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
         let mut session = Latest::of(stops::Session::new(setting, scenario.procedure())?);
         let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
-        let harness = Harness::new(watch);
+        let harness = Harness::new(watch, traffic);
         let channels = harness.channels();
         let mut sensors = Wires(&board, injection).triad(scenario);
         let aiding = VehicleAiding::new(&board, scenario);

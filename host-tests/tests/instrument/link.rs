@@ -2,11 +2,11 @@
 
 use std::cell::RefCell;
 
+use conversation::{Conversation, Deaf};
 use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
-use embedded_io_async::{ErrorKind, ErrorType, Write};
+use embedded_io_async::{ErrorKind, ErrorType, Read, Write};
 use firmware::event::Event;
-use firmware::link;
 use firmware::ports::Observer;
 use firmware::settings::{Format, Item, Output};
 use firmware::shared::Shared;
@@ -43,6 +43,12 @@ impl ErrorType for SickLink {
     type Error = ErrorKind;
 }
 
+impl Read for SickLink {
+    async fn read(&mut self, _: &mut [u8]) -> Result<usize, Self::Error> {
+        core::future::pending().await
+    }
+}
+
 impl Write for SickLink {
     async fn write(&mut self, _: &[u8]) -> Result<usize, ErrorKind> {
         match self {
@@ -62,6 +68,12 @@ struct Heard(Vec<u8>);
 
 impl ErrorType for Heard {
     type Error = ErrorKind;
+}
+
+impl Read for Heard {
+    async fn read(&mut self, _: &mut [u8]) -> Result<usize, Self::Error> {
+        core::future::pending().await
+    }
 }
 
 impl Write for Heard {
@@ -88,7 +100,8 @@ fn sent(looks: u64, shared: &Shared<'_>) -> Vec<u8> {
         }
         Timer::after(Duration::from_millis(20)).await;
     };
-    virtual_time::run(select(link::serve(&mut heard, shared), looking)).expect("time goes on");
+    let talking = async { Conversation::new(&mut heard, Deaf, shared).without_end().await };
+    virtual_time::run(select(talking, looking)).expect("time goes on");
     heard.0
 }
 
@@ -333,7 +346,7 @@ fn a_sick_link_costs_what_it_was_sent_and_is_reported_once() {
         let shared = Shared::new(&reported);
         virtual_time::run(async {
             let passing = Timer::after(Duration::from_millis(3500));
-            select(link::serve(&mut sick, &shared), passing).await;
+            select(Conversation::new(&mut sick, Deaf, &shared).without_end(), passing).await;
         })
         .expect("time wakes everybody");
         let unsent = shared.health.get().unsent;

@@ -7,6 +7,7 @@ mod support;
 mod carriers;
 mod catalogue;
 mod clocks;
+mod console;
 mod instrument;
 mod instrument_parts;
 mod keeping_instrument;

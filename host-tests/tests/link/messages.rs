@@ -9,6 +9,7 @@ use protocol::mavlink::{
     Sender, attitude_quaternion, heartbeat, statustext, sys_status, vision_position_estimate,
 };
 use protocol::report::{Degradation, Level, Report, State};
+use protocol::words::Words;
 
 /// 1σ of azimuth and of level, rad.
 const SIGMAS: [f64; 2] = [0.7e-3, 0.2e-3];
@@ -157,15 +158,15 @@ fn the_status_says_which_sensors_work_and_whether_the_azimuth_is_valid() {
 }
 
 #[test]
-fn words_of_fifty_bytes_are_whole_and_longer_ones_are_cut() {
-    let text = |words: &str| {
-        let sent = statustext(MavSeverity::MAV_SEVERITY_NOTICE, [0, 0], words);
+fn words_of_fifty_bytes_are_whole_and_longer_ones_go_in_parts() {
+    let text = |words: &str, part: u8| {
+        let sent = statustext(MavSeverity::MAV_SEVERITY_NOTICE, [0, part], Words(&words));
         let (_, MavMessage::STATUSTEXT(read)) = read(&mut Sender::of_system(1), &sent) else {
             panic!("it is another message")
         };
         read.text.to_str().expect("it is text").to_owned()
     };
-    assert_eq!(text("azimuth found"), "azimuth found");
-    assert_eq!(text(&"x".repeat(50)), "x".repeat(50));
-    assert_eq!(text(&"x".repeat(51)), "x".repeat(50));
+    assert_eq!(text("azimuth found", 0), "azimuth found");
+    assert_eq!(text(&"x".repeat(50), 0), "x".repeat(50));
+    assert_eq!([0, 1].map(|part| text(&"x".repeat(51), part)), ["x".repeat(50), "x".to_owned()]);
 }

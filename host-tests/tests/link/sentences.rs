@@ -41,7 +41,7 @@ fn ready() -> Report {
 
 /// A sentence as text, without the end of its line; an empty one where none is sent.
 fn text(sentence: Option<Sentence>) -> String {
-    let sentence = sentence.map_or(String::new(), |sentence| sentence.as_str().to_owned());
+    let sentence = sentence.map_or(String::new(), |sentence| sentence.to_string());
     sentence.strip_suffix("\r\n").map_or(sentence.clone(), str::to_owned)
 }
 
@@ -169,14 +169,14 @@ fn devices_that_have_failed_are_bits_of_the_status() {
 
 #[test]
 fn words_lose_what_a_sentence_may_not_have() {
-    assert_eq!(text(txt([1, 1], "last reset: panic")), "$HETXT,01,01,00,last reset: panic*65");
-    let odd = text(txt([1, 1], "a,b*c$d\\e^f!g\r\n° é"));
-    assert!(odd.starts_with("$HETXT,01,01,00,a;b c d e f g     "), "{odd}");
-    assert_eq!(text(txt([12, 4], &"x".repeat(WORDS))).len(), LONGEST - 2);
-    assert_eq!(txt([1, 1], &"x".repeat(WORDS + 1)), None);
-    for numbers in [[0, 0], [1, 0], [1, 2], [100, 1]] {
-        assert_eq!(txt(numbers, "words"), None, "{numbers:?}");
-    }
+    let whole = txt(Words(&"last reset: panic"), 0);
+    assert_eq!(text(whole), "$HETXT,01,01,00,last reset: panic*65");
+    let odd = text(txt(Words(&"a,b*c$d\\e^f!g\r\n° é"), 0));
+    assert!(odd.starts_with("$HETXT,01,01,00,a;b c d e f g   deg  *"), "{odd}");
+    let long = "x".repeat(3 * WORDS + 1);
+    assert_eq!(text(txt(Words(&long), 2)).len(), LONGEST - 2);
+    assert!(text(txt(Words(&long), 3)).starts_with("$HETXT,04,04,00,x*"));
+    assert_eq!(txt(Words(&long), 4), None);
 }
 
 /// Any report that types allow.
@@ -252,7 +252,7 @@ fn a_heading_that_is_not_valid_reads_back_as_none() {
 
 #[test]
 fn words_read_back_as_they_were() {
-    let sentence = text(txt([1, 1], "last reset: panic"));
+    let sentence = text(txt(Words(&"last reset: panic"), 0));
     let ParseResult::TXT(read) = nmea::parse_str(&sentence).expect("it is a sentence") else {
         panic!("it is another sentence")
     };
@@ -279,21 +279,25 @@ fn the_roll_of_a_spinning_body_is_told_with_what_it_rests_on() {
 
 proptest! {
     #[test]
-    fn words_of_any_kind_come_in_parts_of_plain_letters(words in "\\PC{0,400}", of in 4..100_usize) {
-        let all = Words::new(&words);
-        let parts: String = (0..all.count(of)).map(|number| all.part(of, number)).collect();
+    fn words_of_any_kind_come_in_parts_of_plain_letters(words in "\\PC{0,400}") {
+        const OF: usize = 50;
+        let all = Words(&words);
+        let parts: Vec<_> =
+            (0..all.count(OF)).map(|number| all.part::<OF>(number).to_string()).collect();
+        let (_, before) = parts.split_last().expect("there is one at least");
+        prop_assert!(before.iter().all(|part| part.len() == OF));
+        let parts = parts.concat();
         prop_assert!(parts.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
-        prop_assert!((0..all.count(of)).all(|number| all.part(of, number).len() <= of));
         let plain: String = words.chars().filter(|letter| (' '..='~').contains(letter)).collect();
         if plain == words {
             prop_assert!(words.starts_with(&parts) && parts.len() == words.len().min(6 * WORDS));
         }
-        prop_assert_eq!(all.part(of, all.count(of)), "");
+        prop_assert_eq!(all.part::<OF>(all.count(OF)), "");
     }
 }
 
 #[test]
 fn signs_of_quantities_are_spelt() {
-    let words = Words::new("213.702° ± 0.033° (1σ), 5 µg");
-    assert_eq!(words.part(100, 0), "213.702 deg +- 0.033 deg (1sigma), 5 ug");
+    let words = Words(&"213.702° ± 0.033° (1σ), 5 µg");
+    assert_eq!(words.part::<100>(0), "213.702 deg +- 0.033 deg (1sigma), 5 ug");
 }

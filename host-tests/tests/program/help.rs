@@ -10,7 +10,7 @@ use crate::support::files::{Scratch, stored};
 use crate::support::program::{assert_misuse, code, command, meridian, object, text};
 
 /// The commands, and the platforms of `run`.
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 22] = [
     "",
     "run",
     "run stage",
@@ -24,6 +24,13 @@ const COMMANDS: [&str; 15] = [
     "campaign",
     "emulate",
     "log",
+    "send",
+    "settings",
+    "settings get",
+    "settings set",
+    "settings save",
+    "settings load",
+    "doctor",
     "completions",
     "man",
 ];
@@ -158,14 +165,20 @@ fn run(scratch: &Scratch, example: &str) -> Output {
     command.output().expect("it starts")
 }
 
+/// Whether a command needs more than the program: an emulator, an image, an instrument.
+fn needs_more(name: &str) -> bool {
+    ["emulate", "log", "send", "settings"].iter().any(|command| name.starts_with(command))
+}
+
 #[test]
 fn every_example_runs() {
     let scratch = named();
-    for name in COMMANDS.iter().filter(|name| !matches!(**name, "emulate" | "log")) {
+    for name in COMMANDS.iter().filter(|name| !needs_more(name)) {
         for example in examples(&help(name)) {
             let output = run(&scratch, &example);
-            // A fault is refused, and so is a class of a campaign with few runs.
-            let fails = example.contains("--fault") || example.starts_with("campaign");
+            // A fault is refused, and so is a class of a campaign with few runs; a computer may lack something.
+            let begins = ["campaign", "doctor"].iter().any(|command| example.starts_with(command));
+            let fails = example.contains("--fault") || begins;
             let most = i32::from(fails);
             let said = text(&output.stderr);
             assert!((0..=most).contains(&code(&output)), "meridian {example}: {said}");
@@ -179,7 +192,8 @@ fn examples_that_need_more_than_the_program_are_no_misuse() {
     let scratch = named();
     let output = run(&scratch, &examples(&help("log"))[0]);
     assert_eq!(code(&output), 1, "{}", text(&output.stderr));
-    for example in examples(&help("emulate")) {
+    let others = COMMANDS.iter().filter(|name| needs_more(name));
+    for example in others.flat_map(|name| examples(&help(name))) {
         assert_misuse(&[&words(&example)[..], &["--no-such-option"]].concat(), "--no-such-option");
     }
 }
@@ -249,6 +263,7 @@ fn a_shell_completes_the_names_of_every_closed_list() {
         ("campaign --platform", "two-frame"),
         ("campaign --class", "base-turn"),
         ("emulate --board", "all"),
+        ("send", "realign"),
     ] {
         let line = [&["meridian"][..], &words(line), &[""]].concat();
         assert!(completed(&scratch, &line).contains(some), "{line:?}");

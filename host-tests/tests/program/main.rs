@@ -7,10 +7,12 @@ mod support;
 
 mod angles;
 mod command_line;
+mod doctor;
 mod documents;
 mod emulate;
 mod help;
 mod interrupted;
+mod link;
 mod log;
 mod many;
 mod measured_again;

@@ -8,6 +8,8 @@ use super::dma::CHANNELS;
 pub enum Peripheral {
     /// A serial peripheral interface, SPI1 being 0.
     Spi(usize),
+    /// The unique number of the device.
+    Identity,
     /// The interface I2C2.
     I2c,
     /// Power control.
@@ -52,6 +54,7 @@ impl Peripheral {
 /// The peripheral at an address, and what gives it its clock: offset of a register of [`Rcc`] and bit.
 pub const fn peripheral(address: u32) -> Option<(Peripheral, Option<(u32, u32)>)> {
     Some(match address & !0x3FF {
+        0x1FFF_7400 => (Peripheral::Identity, None),
         0x4000_3000 => (Peripheral::Watchdog, None),
         0x4000_3800 => (Peripheral::Spi(1), Some((0x58, 14))),
         0x4000_5800 => (Peripheral::I2c, Some((0x58, 22))),

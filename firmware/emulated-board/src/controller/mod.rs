@@ -8,6 +8,7 @@ mod exti;
 pub mod flash;
 mod gpio;
 mod i2c;
+pub mod identity;
 mod map;
 mod pins;
 mod power;

@@ -7,7 +7,7 @@ use super::map::{Peripheral, peripheral};
 use super::power::Power;
 
 use super::timer::Timer;
-use super::{Controller, Memory, Refused, ResetReason};
+use super::{Controller, Memory, Refused, ResetReason, identity};
 use crate::time::Time;
 
 impl Controller {
@@ -26,6 +26,7 @@ impl Controller {
         let offset = address & 0x3FC;
         let word = match self.clocked(address)? {
             Peripheral::Spi(bus) => self.spi[bus].read(offset, size),
+            Peripheral::Identity => identity::read(offset),
             Peripheral::I2c if offset == 0x18 => {
                 Ok(self.i2c.status(is_data_low(&mut *self.wiring, now)))
             }
@@ -100,6 +101,7 @@ impl Controller {
         let offset = address & 0x3FF;
         match peripheral {
             Peripheral::Spi(bus) => self.spi[bus].write(offset, value, size),
+            Peripheral::Identity => Err(Refused::NotModelled("a write to the device's number")),
             Peripheral::I2c => {
                 if offset == 0 && value & 1 == 0 {
                     self.i2c.let_go(now, self.hertz, &mut *self.wiring);

@@ -7,6 +7,7 @@ mod clocks;
 mod core;
 mod edges;
 mod flash;
+mod identity;
 mod pins;
 mod power;
 mod resets;

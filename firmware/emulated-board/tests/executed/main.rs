@@ -5,9 +5,11 @@
 mod budget;
 mod clocks;
 mod conclusion;
+mod console;
 mod cost;
 mod course;
 mod hearing;
+mod load;
 mod rules;
 mod settings;
 mod sound;

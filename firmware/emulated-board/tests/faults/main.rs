@@ -7,6 +7,7 @@
 
 #[path = "../support/board.rs"]
 mod board;
+mod changing;
 #[path = "../support/figure.rs"]
 mod figure;
 mod held;

@@ -20,7 +20,7 @@ const STARTED: &str = "keeping: level";
 const STARTS: f64 = 1.0;
 
 /// Has the supply be lost within the operation after so many, counted from now on.
-fn cut(board: &Board, after: u32, reached: f64) {
+pub fn cut(board: &Board, after: u32, reached: f64) {
     board.controller(|controller| {
         let before = controller.flash.used.rows + controller.flash.used.pages;
         controller.flash.cut =

@@ -4,9 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use emulated_board::world::World;
+use emulated_board::world::{SERIAL, World, stored};
 use firmware::platform::Platform;
-use hal_mock::flash::PAGE;
+use firmware::settings::{Settings, StageSchedule, save};
+use orientation::earth::Latitude;
 
 use crate::board::Board;
 
@@ -21,10 +22,18 @@ fn page() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")
 }
 
-/// The log of a board that is flashed for the first time: nothing is in its store.
+/// The latitude of the world, which is all that was stated of the settings, °.
+const LATITUDE: f64 = 47.58;
+
+/// The log of a board that has the factory settings and a latitude.
 fn logged() -> String {
-    let mut world = World::new(Platform::Stage, 1).expect("its settings are possible");
-    world.store = vec![0xFF; 2 * PAGE];
+    let latitude = Latitude::from_degrees(LATITUDE);
+    let settings = Settings::<StageSchedule> { latitude, ..Settings::default() };
+    let store = stored(async |store| {
+        save(store, &settings, &SERIAL).await.map_err(|error| error.to_string())
+    });
+    let world = World::new(Platform::Stage, 1).expect("its settings are possible");
+    let world = world.with_store(store.expect("a store takes settings"));
     let mut board = Board::within(Platform::Stage, world);
     board.until(LAST, 60.0);
     let last = board.printed.iter().position(|line| line.contains(LAST)).expect("it has come");

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use drivers::fault::Fault;
 use emulated_board::wiring::board::Carrier;
-use emulated_board::world::{Driver, World, at_once, erased, nothing, pages, store};
+use emulated_board::world::{Driver, SERIAL, World, at_once, erased, nothing, pages, store};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
 use firmware::settings::{self, Settings, VehicleSchedule, save};
@@ -111,7 +111,7 @@ impl Items {
         let saved = at_once(async {
             match place {
                 0 => store.save(HEADING, &self.heading.to_bytes()).await,
-                RECORD => save(&mut store, &self.settings).await.map_err(|_| Fault::Bus),
+                RECORD => save(&mut store, &self.settings, &SERIAL).await.map_err(|_| Fault::Bus),
                 // The vehicle never reads them.
                 _ => store.save(place as u8 - 1, &[1; misalignment::BYTES]).await,
             }
@@ -124,7 +124,8 @@ impl Items {
 
 /// The heading of the vehicle, which stands level.
 fn heading(scenario: &VehicleScenario, biases: [f64; 3]) -> Remembered {
-    let latitude = scenario.settings().expect("the latitude is one").latitude;
+    let settings = scenario.settings().expect("the latitude is one");
+    let latitude = settings.latitude.expect("it is stated");
     let azimuth = scenario.base.azimuth_deg.to_radians();
     let (north, down) = (latitude.horizontal_rate().0, latitude.vertical_rate().0);
     let rates = [north * azimuth.cos(), -north * azimuth.sin(), -down.abs()];

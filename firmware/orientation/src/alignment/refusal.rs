@@ -75,6 +75,8 @@ pub enum Refusal {
     },
     /// The time allowed for the whole session ran out.
     TimeExhausted,
+    /// It was ordered to end.
+    Stopped,
     /// The base was in motion after a rest, before the alignment was complete.
     MovedDuringAlignment,
     /// The time stamps contradict the configured sample period.
@@ -135,6 +137,7 @@ crate::words! { Refusal:
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
         Rounded::<3>(ratio), Rounded::<3>(sigma);
     Self::TimeExhausted => "the time allowed ran out";
+    Self::Stopped => "it was ordered to end";
     Self::MovedDuringAlignment => "it was in motion after a rest before it was aligned: the vehicle drove on, or it sways";
     Self::PeriodContradicted { stated, found } =>
         "samples come every {} ms, not every {} ms as stated: correct the sample rate or the times",

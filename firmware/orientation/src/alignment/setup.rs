@@ -9,6 +9,15 @@ use crate::words::{Rounded, Shortened};
 pub enum SetupError {
     /// A quantity of the configuration is out of its range, or not a number.
     OutOfRange(Quantity),
+    /// A quantity is none of those that it can be.
+    NotAmong {
+        /// Name of its field.
+        name: &'static str,
+        /// What it is.
+        value: u32,
+        /// What it can be, in words.
+        choices: &'static str,
+    },
     /// The filter cannot be designed for this sample rate.
     Filter(DesignError),
     /// Dwells of this many samples are too short for the filter's lag.
@@ -70,6 +79,7 @@ crate::words! { SetupError:
     Self::OutOfRange(Quantity { name, value, range: [least, greatest] }) =>
         "{} is {}, which is not from {} to {}",
         name, Shortened(value), Shortened(least), Shortened(greatest);
+    Self::NotAmong { name, value, choices } => "{} is {}, not {}", name, value, choices;
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;

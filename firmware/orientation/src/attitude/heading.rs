@@ -13,7 +13,7 @@ use super::setting::Gyro;
 use super::vertical::Vertical;
 use crate::alignment::Azimuth;
 use crate::earth::Latitude;
-use crate::math::quaternion::{Attitude, angles};
+use crate::math::quaternion::{Matrix, angles};
 use crate::units::{Instant, MetresPerSecond, Radians, TURN, wrapped};
 
 /// Significance, in σ, at which an alignment and the held azimuth contradict each other, and at which an
@@ -61,12 +61,11 @@ struct Slope {
 impl Slope {
     /// The present one.
     fn of(vertical: &Vertical) -> Self {
-        Self::of_attitude(&vertical.attitude(), vertical.sigma())
+        Self::of_level(&vertical.attitude().rough_matrix(), vertical.sigma())
     }
 
-    /// That of an attitude whose level has an error, 1σ, rad. Upright, the roll is zero.
-    fn of_attitude(attitude: &Attitude, sigma: f32) -> Self {
-        let [.., [forward, right, down]] = attitude.rough_matrix();
+    /// That of a rotation matrix of the body, whose level has an error, 1σ, rad. Upright, the roll is zero.
+    fn of_level([.., [forward, right, down]]: &Matrix, sigma: f32) -> Self {
         let cosine = libm::sqrtf(right * right + down * down);
         let roll = if cosine > 0.0 { [right / cosine, down / cosine] } else { [0.0, 1.0] };
         Self { cosine, tangent: -forward / cosine, roll, variance: sigma * sigma }
@@ -131,18 +130,14 @@ impl Heading {
     pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
         let attitude = vertical.attitude();
         let [course, ..] = angles(attitude.parts());
-        self.azimuth_of(&attitude, course, vertical)
+        self.azimuth_of(&attitude.rough_matrix(), course, vertical)
     }
 
-    /// The same of the vertical's present attitude, and the course of body x on the level frame, rad, which is that attitude's.
-    pub(super) fn azimuth_of(
-        &self,
-        attitude: &Attitude,
-        course: f64,
-        vertical: &Vertical,
-    ) -> Azimuth {
+    /// The same of the vertical's present rotation matrix, and the course of body x on the level frame, rad, which is that
+    /// matrix's.
+    pub(super) fn azimuth_of(&self, matrix: &Matrix, course: f64, vertical: &Vertical) -> Azimuth {
         let angle = Radians(wrapped(self.frame + course));
-        let slope = Slope::of_attitude(attitude, vertical.sigma());
+        let slope = Slope::of_level(matrix, vertical.sigma());
         let of_level = slope.variance_since(&self.slope);
         let sigma = libm::sqrt(self.variance(vertical) + of_level);
         Azimuth { angle, sigma: Radians(if slope.is_upright() { PI } else { sigma.min(PI) }) }

@@ -6,11 +6,17 @@ use super::report::{Report, State};
 use super::restart::{self, RecallRefusal, Remembered};
 use super::setting::{Gyro, Setting};
 use super::vertical::{Trust, Vertical, rates};
-use crate::math::quaternion::{angles, quaternion};
+use crate::math::quaternion::{angles, angles_of, quaternion};
 use crate::signal::InertialSample;
-use crate::units::{Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds, wrapped};
+use crate::units::{
+    DEGREE, Instant, MetresPerSecond, MetresPerSecondSquared, Radians, Seconds, wrapped,
+};
 
 use crate::alignment::Azimuth;
+
+/// Greatest 1σ of the gyros' biases with which a rate of turn is stated, rad/s: half a degree a minute, which is what a
+/// ship's indicator of it may err by at rest.
+const KNOWN: f32 = (0.5 / 60.0 * DEGREE) as f32;
 
 /// Standard deviation at which an azimuth carries no information, 1σ: it is withdrawn.
 const NOWHERE: Radians = Radians(0.5);
@@ -269,9 +275,9 @@ impl Keeper {
     /// What is shown to users of the present attitude, ten times a second: angles to within 3·10⁻⁶ rad.
     pub(crate) fn show(&self) -> Shown {
         let vertical = &self.vertical;
-        let attitude = vertical.attitude();
-        let [course, pitch, roll] = attitude.rough_angles().map(f64::from);
-        let azimuth = |heading: &Heading| heading.azimuth_of(&attitude, course, vertical);
+        let matrix = vertical.attitude().rough_matrix();
+        let [course, pitch, roll] = angles_of(&matrix).map(f64::from);
+        let azimuth = |heading: &Heading| heading.azimuth_of(&matrix, course, vertical);
         Shown {
             time: vertical.time(),
             level: [pitch, roll].map(Radians),
@@ -281,20 +287,14 @@ impl Keeper {
         }
     }
 
-    /// Mean rates of the body about its axes forward, right and down since they were taken last, rad/s, less the biases;
-    /// [`None`] where nothing was measured, or a gyro was at the limit of its range.
-    pub(crate) fn take_rates(&mut self) -> Option<[f32; 3]> {
-        self.vertical.take_rates()
-    }
-
-    /// Rate of the azimuth of body x, rad/s, at these rates of the body about its axes; [`None`] where body x is upright.
-    pub(crate) fn turn_rate(&self, body: &[f32; 3]) -> Option<f32> {
-        self.vertical.turn_rate(body)
-    }
-
-    /// Greatest standard deviation of the gyros' biases, 1σ, rad/s.
-    pub(crate) fn bias_sigma(&self) -> f32 {
-        self.vertical.bias_sigmas().into_iter().fold(0.0, f32::max)
+    /// Mean rates of the body about its axes forward, right and down since they were taken last, rad/s, less the biases, and
+    /// what they make of the rate of the azimuth of body x; [`None`] where nothing was measured, or a gyro was at the limit of
+    /// its range. There is no rate of the azimuth while the biases are not known well enough for it, or where body x is
+    /// upright.
+    pub(crate) fn take_rates(&mut self) -> Option<([f32; 3], Option<f32>)> {
+        let body = self.vertical.take_rates()?;
+        let is_known = self.vertical.bias_sigmas().into_iter().all(|sigma| sigma <= KNOWN);
+        Some((body, self.vertical.turn_rate(&body).filter(|_| is_known)))
     }
 
     /// State to be saved against a loss of supply; only at rest, and with an azimuth.

@@ -1,15 +1,11 @@
 //! How fast the body turns, for those who steer by it.
 
 use crate::attitude::Keeper;
-use crate::units::{DEGREE, RadiansPerSecond};
+use crate::units::RadiansPerSecond;
 
 /// Part that the rate of turn since the latest look has in its mean: with ten looks a second, the mean is that of about
 /// a second.
 const SHARE: f32 = 0.1;
-/// Greatest 1σ of the gyros' biases with which a rate of turn is stated, rad/s: half a degree a minute, which is what a
-/// ship's indicator of it may err by at rest.
-const KNOWN: f32 = (0.5 / 60.0 * DEGREE) as f32;
-
 /// Rate of turn, look by look.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rates {
@@ -29,9 +25,8 @@ pub(super) struct Shown {
 impl Rates {
     /// The rates since the latest look.
     pub fn look(&mut self, keeper: &mut Keeper) -> Shown {
-        let body = keeper.take_rates();
-        let steady = body.filter(|_| keeper.bias_sigma() <= KNOWN);
-        let turn = steady.and_then(|body| keeper.turn_rate(&body));
+        let (body, turn) =
+            keeper.take_rates().map_or((None, None), |(body, turn)| (Some(body), turn));
         let mean = |turn: f32| self.turn.map_or(turn, |mean| mean + SHARE * (turn - mean));
         self.turn = turn.map(mean);
         let rate = |rate: f32| RadiansPerSecond(rate.into());

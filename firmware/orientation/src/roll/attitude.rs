@@ -4,7 +4,7 @@
 use super::phase_accumulator::sine_and_cosine;
 use super::spin::Spin;
 use crate::signal::SpinSample;
-use crate::units::{Angle, AngleIncrement, Radians, TURN, wrapped};
+use crate::units::{Angle, AngleIncrement, Radians, wrapped};
 
 /// Number of samples over which the transverse rotation is summed before course and pitch are
 /// updated.
@@ -63,9 +63,7 @@ impl Attitude {
             // Within a quarter of a turn, so that it fits.
             let middle = Angle(((middle * STEPS) as i32).cast_unsigned());
             let [_, cosine] = sine_and_cosine(middle);
-            let course = self.course.0 + f64::from(right / cosine);
-            let is_whole = (0.0..TURN).contains(&course);
-            self.course = Radians(if is_whole { course } else { wrapped(course) });
+            self.course = Radians(wrapped(self.course.0 + f64::from(right / cosine)));
         }
     }
 }

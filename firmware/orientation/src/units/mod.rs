@@ -38,9 +38,12 @@ pub const DEGREE_PER_HOUR: f64 = TURN / 360.0 / 3600.0;
 /// One degree per square root of an hour (angle random walk), in rad/√s.
 pub const DEGREE_PER_SQRT_HOUR: f64 = TURN / 360.0 / 60.0;
 
-/// Wraps an angle, rad, to [0, 2π).
+/// Wraps an angle, rad, to [0, 2π). One that is within stays as it is.
 #[must_use]
 pub fn wrapped(angle: f64) -> f64 {
+    if (0.0..TURN).contains(&angle) {
+        return angle;
+    }
     let wrapped = angle - TURN * libm::floor(angle / TURN);
     if wrapped < TURN { wrapped } else { 0.0 }
 }

@@ -8,17 +8,26 @@
 //! | [`vision_position_estimate`] | azimuth, pitch and roll for an autopilot to fuse | it is not sent |
 //! | [`statustext`] | words | |
 //!
+//! What it is asked, and its answers, are in `requests.rs`.
+//!
 //! An autopilot fuses the azimuth of [`vision_position_estimate`] alone, which none of the others carries to it; the message
 //! has no sign of its validity.
 
+mod payload;
+mod requests;
 mod telemetry;
 
+pub use payload::Acknowledgement;
+pub use requests::{
+    Action, Command, MavResult, Name, Request, acknowledgement, interval, parameter, request,
+};
 pub use telemetry::{
     WORDS, attitude_quaternion, heartbeat, statustext, sys_status, vision_position_estimate,
 };
 
+pub use mavlink::MessageData;
 pub use mavlink::dialects::common::MavSeverity;
-use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader};
 
 /// A frame as it is sent.
 pub type Frame = MAVLinkV2MessageRaw;

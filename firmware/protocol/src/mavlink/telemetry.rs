@@ -11,6 +11,7 @@ use orientation::math::quaternion::quaternion;
 use orientation::units::wrapped;
 
 use crate::report::{Degradation, Report, State};
+use crate::words::Words;
 
 /// Version of the protocol that a heartbeat states: that of all dialects with `common`.
 const VERSION: u8 = 3;
@@ -158,15 +159,15 @@ pub fn vision_position_estimate(report: &Report) -> Option<VISION_POSITION_ESTIM
 /// Most bytes of words in a message.
 pub const WORDS: usize = 50;
 
-/// Words for people, in the part of this number of a text of this identity; without one, zero, they are whole. Bytes beyond
-/// [`WORDS`] are left out.
+/// The part of this number from zero of words for people, which are a text of this identity, or, where they are whole, none:
+/// zero.
 #[must_use]
 pub fn statustext(
     severity: MavSeverity,
     [identity, part]: [u8; 2],
-    words: &str,
+    words: Words<'_>,
 ) -> STATUSTEXT_DATA {
     let mut text = [0; WORDS];
-    text.iter_mut().zip(words.bytes()).for_each(|(place, byte)| *place = byte);
+    text.iter_mut().zip(words.part::<WORDS>(part).bytes()).for_each(|(place, byte)| *place = byte);
     STATUSTEXT_DATA { severity, text: text.into(), id: identity.into(), chunk_seq: part }
 }

@@ -4,7 +4,7 @@ use orientation::units::Radians;
 
 /// A decimal fraction of `PLACES` places, as an integer of its last place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Fixed<const PLACES: usize>(i32);
+pub(crate) struct Fixed<const PLACES: usize>(i32);
 
 /// Units of the last of so many decimal places in one.
 const fn unit(places: usize) -> i32 {

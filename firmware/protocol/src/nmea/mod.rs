@@ -17,25 +17,39 @@
 mod fixed;
 mod heading;
 mod inclination;
+mod sentence;
 mod status;
 mod writer;
 
 pub use heading::{hdt, rot, ths};
 pub use inclination::phtro;
+pub use sentence::Sentence;
 pub use status::{WORDS, phinf, pmrdl, pmrds, txt};
 
-use heapless::String;
+pub(crate) use writer::Writer;
 
 /// Most characters of a sentence, `$` and the end of the line included.
 pub const LONGEST: usize = 82;
 /// Characters of a sentence beside its content: `$`, `*`, two digits, carriage return and line feed.
-const FRAME: usize = 6;
-
-/// A sentence with its frame and the end of its line.
-pub type Sentence = String<LONGEST>;
+pub(crate) const FRAME: usize = 6;
 
 /// The checksum of a sentence's content: all its bytes, added modulo two.
 #[must_use]
 pub fn checksum(content: &[u8]) -> u8 {
     content.iter().fold(0, |sum, byte| sum ^ byte)
+}
+
+/// Whether a field of a sentence may have this character: printable ASCII without those that have a meaning there.
+#[must_use]
+pub fn is_allowed(letter: char) -> bool {
+    matches!(letter, ' '..='}') && !"$!*,\\^".contains(letter)
+}
+
+/// A character as a field may have it: a comma becomes a semicolon, and what else it may not have a space.
+pub(crate) fn plain(letter: char) -> char {
+    match letter {
+        ',' => ';',
+        _ if is_allowed(letter) => letter,
+        _ => ' ',
+    }
 }

@@ -4,10 +4,11 @@ use orientation::device::Device;
 use orientation::roll::Condition;
 use orientation::units::Seconds;
 
-use super::Sentence;
 use super::fixed::Fixed;
 use super::writer::Writer;
+use super::{Sentence, plain};
 use crate::report::{Report, State};
+use crate::words::Words;
 
 /// Bits of `$PHINF`, as Octans and what emulates it set them: heading, roll and pitch are not valid; an alignment runs;
 /// gyros 1 to 3 and accelerometers 1 to 3 have failed.
@@ -108,26 +109,15 @@ const fn word_of(condition: Condition) -> &'static str {
 /// Most characters of words in a sentence: what is left of one beside its frame, its address and its numbers.
 pub const WORDS: usize = super::LONGEST - super::FRAME - "HETXT,01,01,00,".len();
 
-/// `$HETXT,02,01,00,words*hh`: words for people, of which this is the `number`th sentence of so `many`. A comma
-/// becomes a semicolon, and what else a sentence may not have a space; [`None`] for more than [`WORDS`] of them, or more than 99 sentences.
+/// `$HETXT,02,01,00,words*hh`: words for people, of which this sentence has the part of this number from zero. A comma
+/// becomes a semicolon, and what else a sentence may not have a space; [`None`] beyond the last part.
 #[must_use]
-pub fn txt([many, number]: [u8; 2], words: &str) -> Option<Sentence> {
-    let allowed = |letter: char| match letter {
-        ',' => ';',
-        '$' | '!' | '*' | '\\' | '^' => ' ',
-        ' '..='}' => letter,
-        _ => ' ',
-    };
-    let plain: heapless::String<WORDS> = words
-        .chars()
-        .take(WORDS + 1)
-        .map(allowed)
-        .try_fold(heapless::String::new(), |mut plain, letter| {
-            plain.push(letter).ok().map(|()| plain)
-        })?;
-    if !(1..=many).contains(&number) || many >= 100 {
+pub fn txt(words: Words<'_>, number: u8) -> Option<Sentence> {
+    let many = words.count(WORDS);
+    if number >= many {
         return None;
     }
-    let [many, number] = [many, number].map(u32::from);
-    Writer::new("HETXT").padded(many, 2).padded(number, 2).padded(0, 2).words(&plain).finish()
+    let part: heapless::String<WORDS> = words.part::<WORDS>(number).chars().map(plain).collect();
+    let [many, number] = [many, number + 1].map(u32::from);
+    Writer::new("HETXT").padded(many, 2).padded(number, 2).padded(0, 2).words(&part).finish()
 }

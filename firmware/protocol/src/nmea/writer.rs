@@ -1,11 +1,10 @@
 //! Writes a sentence field by field. It takes a quarter of the instructions that formatting it would take.
 
 use core::fmt::{self, Display, Write};
-
-use heapless::{String, Vec};
+use core::mem;
 
 use super::fixed::Fixed;
-use super::{LONGEST, Sentence, checksum};
+use super::{Sentence, checksum};
 
 /// The digits.
 const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
@@ -13,7 +12,7 @@ const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
 /// A sentence that is being written.
 pub(crate) struct Writer {
     /// From `$` on.
-    letters: Vec<u8, LONGEST>,
+    sentence: Sentence,
     /// Whether something did not fit.
     is_cut: bool,
 }
@@ -21,7 +20,7 @@ pub(crate) struct Writer {
 impl Writer {
     /// Begins a sentence with its address.
     pub fn new(address: &str) -> Self {
-        let mut writer = Self { letters: Vec::new(), is_cut: false };
+        let mut writer = Self { sentence: Sentence::default(), is_cut: false };
         writer.push(b'$');
         writer.extend(address);
         writer
@@ -90,17 +89,26 @@ impl Writer {
         self
     }
 
+    /// Adds a field of bytes, two hexadecimal digits each.
+    pub fn bytes(&mut self, bytes: &[u8]) -> &mut Self {
+        self.push(b',');
+        for byte in bytes {
+            self.digit(byte >> 4);
+            self.digit(byte & 0xF);
+        }
+        self
+    }
+
     /// The sentence with its checksum and the end of its line; [`None`] if it is too long for one, which no sentence is that the
     /// instrument sends.
     pub fn finish(&mut self) -> Option<Sentence> {
-        let sum = checksum(self.letters.get(1..)?);
+        let sum = checksum(self.sentence.as_bytes().get(1..)?);
         self.push(b'*');
         self.digit(sum >> 4);
         self.digit(sum & 0xF);
         self.push(b'\r');
         self.push(b'\n');
-        let letters = core::mem::take(&mut self.letters);
-        String::from_utf8(letters).ok().filter(|_| !self.is_cut)
+        (!self.is_cut).then(|| mem::take(&mut self.sentence))
     }
 
     /// Adds a number in decimal digits, with zeros before it up to so many.
@@ -130,7 +138,7 @@ impl Writer {
 
     /// Adds a character of ASCII.
     fn push(&mut self, letter: u8) {
-        self.is_cut |= self.letters.push(letter).is_err();
+        self.is_cut |= !self.sentence.push(letter);
     }
 }
 

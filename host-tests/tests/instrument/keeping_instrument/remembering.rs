@@ -47,7 +47,7 @@ impl Failing<'_> {
 }
 
 impl Store for Failing<'_> {
-    async fn load<const N: usize>(&mut self, _: u8) -> Result<Option<[u8; N]>, Fault> {
+    async fn read(&mut self, _: u8, _: &mut [u8]) -> Result<Option<usize>, Fault> {
         if self.is_readable { Ok(None) } else { Err(Fault::NotReady) }
     }
 
@@ -81,7 +81,7 @@ fn asked((failures, is_readable): (usize, bool), given: &[(u64, Saving)]) -> (Ve
         Timer::after(Duration::from_secs(120)).await;
     };
     let remembering = async {
-        remember(&mut store, &shared).await;
+        remember(&mut store, None, &shared).await;
     };
     virtual_time::run_beside(remembering, driving).expect("time wakes both");
     (asked.take(), reported.0.get())

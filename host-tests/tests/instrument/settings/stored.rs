@@ -7,9 +7,10 @@ use host::virtual_time::run;
 use orientation::attitude::restart::Remembered;
 use simulated::flash::Flash;
 
+use super::first::{aligning, migrated, of_a_vehicle};
 use super::{
-    BYTES, SLOT, Settings, SettingsError, StageSchedule, TurntableSchedule, VehicleSchedule, load,
-    record, sealed, settings, stage, turntable, vehicle,
+    BYTES, SERIAL, SLOT, Settings, SettingsError, StageSchedule, TurntableSchedule,
+    VehicleSchedule, load, record, sealed, settings, stage, turntable, vehicle,
 };
 
 /// A store in the board's flash.
@@ -24,11 +25,11 @@ fn got<const N: usize>(store: &mut InFlash, slot: u8) -> Option<[u8; N]> {
 }
 
 fn keep(store: &mut InFlash, settings: &Settings<TurntableSchedule>) {
-    run(super::save(store, settings)).expect("it ends").expect("there is room");
+    run(super::save(store, settings, &SERIAL)).expect("it ends").expect("there is room");
 }
 
 fn kept(store: &mut InFlash) -> Result<Option<Settings<TurntableSchedule>>, SettingsError> {
-    run(load(store)).expect("it ends")
+    run(load(store, &SERIAL)).expect("it ends")
 }
 
 /// Settings that differ by a number.
@@ -87,7 +88,7 @@ fn a_loss_of_supply_at_any_moment_leaves_the_old_settings_or_the_new_ones() {
             let mut flash = begun();
             flash.left = Some(cut);
             let mut store = flash.store();
-            let result = run(super::save(&mut store, &numbered(500))).expect("it ends");
+            let result = run(super::save(&mut store, &numbered(500), &SERIAL)).expect("it ends");
             let mut flash = store.into_flash();
             flash.left = None;
             let mut store = flash.store();
@@ -107,7 +108,7 @@ fn a_loss_of_supply_at_any_moment_leaves_the_old_settings_or_the_new_ones() {
 fn settings_out_of_range_are_not_saved_and_the_old_ones_stay() {
     let mut store = Flash::default().store();
     keep(&mut store, &numbered(0));
-    let result = run(super::save(&mut store, &numbered(1000))).expect("it ends");
+    let result = run(super::save(&mut store, &numbered(1000), &SERIAL)).expect("it ends");
     assert!(matches!(result, Err(SettingsError::OutOfRange(_))), "{result:?}");
     assert_eq!(kept(&mut store), Ok(Some(numbered(0))));
 }
@@ -116,26 +117,43 @@ fn settings_out_of_range_are_not_saved_and_the_old_ones_stay() {
 fn a_record_that_must_not_be_used_is_refused_and_not_passed_over() {
     let mut store = Flash::default().store();
     put(&mut store, SLOT, record(&settings(stage())));
-    let refused = run(load::<VehicleSchedule>(&mut store)).expect("it ends");
+    let refused = run(load::<VehicleSchedule>(&mut store, &SERIAL)).expect("it ends");
     assert!(matches!(refused, Err(SettingsError::OtherCarrier { .. })), "{refused:?}");
     let mut newer = record(&settings(stage()));
-    newer[0] = 2;
+    newer[0] = 3;
     put(&mut store, SLOT, sealed(newer));
-    let refused = run(load::<StageSchedule>(&mut store)).expect("it ends");
-    assert_eq!(refused, Err(SettingsError::UnknownVersion(2)));
+    let refused = run(load::<StageSchedule>(&mut store, &SERIAL)).expect("it ends");
+    assert_eq!(refused, Err(SettingsError::UnknownVersion(3)));
     put(&mut store, SLOT, [0; BYTES]);
-    let refused = run(load::<StageSchedule>(&mut store)).expect("it ends");
+    let refused = run(load::<StageSchedule>(&mut store, &SERIAL)).expect("it ends");
     assert_eq!(refused, Err(SettingsError::Damaged));
     put(&mut store, SLOT, [0; 16]);
-    let refused = run(load::<StageSchedule>(&mut store)).expect("it ends");
+    let refused = run(load::<StageSchedule>(&mut store, &SERIAL)).expect("it ends");
+    assert_eq!(refused, Err(SettingsError::Damaged));
+    put(&mut store, SLOT, [0; 255]);
+    let refused = run(load::<StageSchedule>(&mut store, &SERIAL)).expect("it ends");
     assert_eq!(refused, Err(SettingsError::Unreadable(Fault::Bus)));
     let right = settings(vehicle());
-    run(super::save(&mut store, &right)).expect("it ends").expect("there is room");
-    assert_eq!(run(load(&mut store)).expect("it ends"), Ok(Some(right)));
+    run(super::save(&mut store, &right, &SERIAL)).expect("it ends").expect("there is room");
+    assert_eq!(run(load(&mut store, &SERIAL)).expect("it ends"), Ok(Some(right)));
 }
 
 #[test]
 fn pages_of_another_program_are_no_lack_of_a_record() {
     let mut store = Flash::holding([0x5A; simulated::flash::BYTES]).store();
     assert_eq!(kept(&mut store), Err(SettingsError::Unreadable(Fault::Bus)));
+}
+
+/// The first save by an image of today takes its place.
+#[test]
+fn a_record_of_version_1_in_a_store_is_loaded_and_written_over_by_one_of_today() {
+    let mut store = Flash::default().store();
+    put(&mut store, SLOT, of_a_vehicle());
+    let found: Option<Settings<VehicleSchedule>> =
+        run(load(&mut store, &SERIAL)).expect("it ends").expect("it is sound");
+    assert_eq!(found, Some(migrated(aligning())));
+    let right = settings(vehicle());
+    run(super::save(&mut store, &right, &SERIAL)).expect("it ends").expect("there is room");
+    assert_eq!(got(&mut store, SLOT), Some(record(&right)));
+    assert_eq!(run(load(&mut store, &SERIAL)).expect("it ends"), Ok(Some(right)));
 }

@@ -1,6 +1,6 @@
 //! The supply is lost at every row and page of a save, between them and within them.
 
-use super::{Board, SLOTS, Slot, erased};
+use super::{BY_FIRST, BY_TODAY, Board, SLOTS, Slot, erased};
 use hal_mock::flash::nor::{Interrupt, Loss};
 
 /// The item that a slot holds before the supply is lost.
@@ -27,7 +27,7 @@ struct Tally {
     unwritable: u32,
 }
 
-/// A flash in whose store so many items were saved, and then this slot's old one. About 20 fill a page.
+/// A flash in whose store so many items were saved, and then this slot's old one. About 15 fill a page.
 fn used(saves: usize, slot: Slot, seed: u64) -> Board {
     let mut flash = erased(seed);
     for (number, slot) in (0..).zip(SLOTS.iter().cycle().take(saves)) {
@@ -67,14 +67,26 @@ fn cut(mut flash: Board, slot: Slot, loss: Loss, tally: &mut Tally) {
 /// and erased. The losses depend on how much the save writes and erases.
 fn cuts(interrupt: Interrupt, losses: impl Fn(u32) -> Vec<Loss>) -> Tally {
     let mut tally = Tally::default();
-    for (slot, saves) in SLOTS.iter().flat_map(|slot| (0..40).map(move |saves| (*slot, saves))) {
-        let mut flash = used(saves, slot, saves as u64);
-        flash.interrupt = interrupt;
-        for loss in losses(effort(flash.clone(), slot)) {
-            cut(flash.clone(), slot, loss, &mut tally);
-        }
+    for slot in SLOTS {
+        cuts_over((slot, slot), interrupt, &losses, &mut tally);
     }
     tally
+}
+
+/// The same for one slot, whose old item was saved otherwise than the new one is.
+fn cuts_over(
+    (old, new): (Slot, Slot),
+    interrupt: Interrupt,
+    losses: &dyn Fn(u32) -> Vec<Loss>,
+    tally: &mut Tally,
+) {
+    for saves in 0..40 {
+        let mut flash = used(saves, old, saves as u64);
+        flash.interrupt = interrupt;
+        for loss in losses(effort(flash.clone(), new)) {
+            cut(flash.clone(), new, loss, tally);
+        }
+    }
 }
 
 /// Before the first row or page, and after each.
@@ -92,9 +104,26 @@ fn a_loss_of_supply_between_rows_leaves_the_old_item_or_the_new_one() {
     let tally = cuts(Interrupt::Notes, between);
     let Tally { cuts, old, new, unwritable, .. } = tally;
     assert!(old + new == cuts && unwritable == 0, "{tally:?}");
-    // 40 saves of 12, 11, 11 and 27 rows in their slots. Nine of them change pages: one item of each slot is carried
+    // 40 saves of 12, 11, 11 and 34 rows in their slots. Eleven of them change pages: one item of each slot is carried
     // along, the header is written twice, and a page is erased.
-    assert_eq!(cuts, 40 * (13 + 12 + 12 + 28) + 9 * (12 + 11 + 11 + 27 + 3));
+    assert_eq!(cuts, 40 * (13 + 12 + 12 + 35) + 11 * (12 + 11 + 11 + 34 + 3));
+}
+
+/// Settings of either version under a record of today: between any two rows, and within each.
+#[test]
+fn a_loss_of_supply_while_settings_are_saved_leaves_the_old_ones_of_either_version_or_the_new_ones()
+{
+    for before in [BY_FIRST, BY_TODAY] {
+        let mut tally = Tally::default();
+        cuts_over((before, BY_TODAY), Interrupt::Notes, &between, &mut tally);
+        let Tally { cuts, old, new, unwritable, .. } = tally;
+        assert!(old + new == cuts && old > 0 && new > 0 && unwritable == 0, "{tally:?}");
+        assert!(cuts > 40 * 34, "{cuts} moments: a record of 248 bytes has 34 rows");
+        let mut tally = Tally::default();
+        cuts_over((before, BY_TODAY), Interrupt::Notes, &within, &mut tally);
+        let Tally { cuts, old, new, unreadable, unwritable, .. } = tally;
+        assert!(old + new == cuts && unreadable + unwritable == 0, "{tally:?}");
+    }
 }
 
 #[test]

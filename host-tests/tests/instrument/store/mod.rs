@@ -8,10 +8,10 @@ mod forgetting;
 mod remains;
 mod sequences;
 
-use crate::settings::{settings, vehicle};
+use crate::settings::{SERIAL, first_record_of_stops, settings, vehicle};
 use drivers::fault::Fault;
 use firmware::ports::Store as _;
-use firmware::settings::{self, Settings, VehicleSchedule};
+use firmware::settings::{self, Settings, SettingsError, VehicleSchedule};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::flash::nor::PoweredFlash;
 use hal_mock::flash::{Cells, Flash, PAGE, SIZE, Times};
@@ -87,19 +87,38 @@ impl Item<BYTES> for Misalignment {
     }
 }
 
+/// A stop of 10 s is the shortest: that of a record is as much longer as its number says.
+const SHORTEST: f64 = 10.0;
+
 /// The settings of a vehicle.
 struct Record;
 
 impl Item<{ settings::BYTES }> for Record {
     fn bytes(number: u64) -> [u8; settings::BYTES] {
-        // A stop of 10 s is the shortest.
-        let schedule = VehicleSchedule { stop: Seconds(10.0 + number as f64), ..vehicle() };
-        settings(schedule).to_record().expect("they are in range")
+        let schedule = VehicleSchedule { stop: Seconds(SHORTEST + number as f64), ..vehicle() };
+        settings(schedule).to_record(&SERIAL).expect("they are in range")
     }
 
     fn number(bytes: &[u8; settings::BYTES]) -> Option<u64> {
-        let settings = Settings::<VehicleSchedule>::from_record(bytes).ok()?;
-        Some(settings.schedule.stop.0 as u64 - 10)
+        Some(number_of(&Settings::from_record(bytes, &SERIAL).ok()?))
+    }
+}
+
+/// The number of the settings of a vehicle.
+fn number_of(settings: &Settings<VehicleSchedule>) -> u64 {
+    (settings.schedule.stop.0 - SHORTEST) as u64
+}
+
+/// The settings of a vehicle as version 1 of the record has them.
+struct FirstRecord;
+
+impl Item<{ settings::FIRST_BYTES }> for FirstRecord {
+    fn bytes(number: u64) -> [u8; settings::FIRST_BYTES] {
+        first_record_of_stops(SHORTEST + number as f64)
+    }
+
+    fn number(bytes: &[u8; settings::FIRST_BYTES]) -> Option<u64> {
+        Some(number_of(&Settings::from_record(bytes, &SERIAL).ok()?))
     }
 }
 
@@ -118,6 +137,25 @@ const SLOTS: [Slot; 4] = [
     Slot::of::<Misalignment, BYTES>(1),
     Slot::of::<Record, { settings::BYTES }>(settings::SLOT),
 ];
+
+/// The slot of the record, into which one of version 1 is saved. A record of any version is loaded from it.
+const BY_FIRST: Slot = Slot {
+    key: settings::SLOT,
+    save: save::<FirstRecord, { settings::FIRST_BYTES }>,
+    load: load_settings,
+};
+
+/// The same, into which one of today is saved.
+const BY_TODAY: Slot = Slot { save: save::<Record, { settings::BYTES }>, ..BY_FIRST };
+
+/// The number of the settings in the store, as an instrument loads them.
+fn load_settings(flash: &mut Board, _: u8) -> Result<Option<u64>, Fault> {
+    match run(settings::load(&mut store(flash), &SERIAL)).expect("it ends") {
+        Ok(found) => Ok(found.as_ref().map(number_of)),
+        Err(SettingsError::Unreadable(fault)) => Err(fault),
+        Err(error) => panic!("the record is whole: {error}"),
+    }
+}
 
 impl Slot {
     const fn of<I: Item<N>, const N: usize>(key: u8) -> Self {

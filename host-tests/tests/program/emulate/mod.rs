@@ -3,7 +3,7 @@
 
 mod cores;
 mod executed;
-mod handmade;
+pub mod handmade;
 mod limits;
 mod log;
 mod programs;

@@ -72,20 +72,32 @@ pub fn execute_in(order: &Order, world: World) -> Executed {
 
 /// The order's image in a world whose other side of the link sends these bytes every millisecond.
 pub fn execute_spoken_to(order: &Order, world: World, bytes: &[u8]) -> Executed {
-    execute_image(&image(order.carrier), order, world, bytes)
+    execute_told(order, world, || bytes.to_vec())
 }
 
-/// An image in a world whose other side of the link sends these bytes every millisecond.
-fn execute_image(image: &Rc<Image>, order: &Order, world: World, bytes: &[u8]) -> Executed {
+/// The order's image in a world whose other side of the link sends what it is given every millisecond.
+pub fn execute_told(order: &Order, world: World, told: impl FnMut() -> Vec<u8>) -> Executed {
+    execute_image(&image(order.carrier), order, world, told)
+}
+
+/// An image in a world whose other side of the link sends what it is given every millisecond.
+pub fn execute_image(
+    image: &Rc<Image>,
+    order: &Order,
+    world: World,
+    mut told: impl FnMut() -> Vec<u8>,
+) -> Executed {
     let (mut log, mut link) = (Vec::new(), Vec::new());
     let on_link = |sent: &[u8]| {
         link.extend_from_slice(sent);
-        bytes.to_vec()
+        told()
     };
     let report = execute(image, order, world, |line| log.push(Entry::of(line)), on_link);
     let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
     let link = String::from_utf8(link).expect("the link carries text");
-    Executed { report, log, link: link.lines().map(str::to_owned).collect() }
+    // The end may come amid a line.
+    let whole = link.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+    Executed { report, log, link: whole.map(|line| line.trim_end().to_owned()).collect() }
 }
 
 /// The order's image in its usual world, without looking whether it was executed before.
@@ -116,12 +128,19 @@ pub fn executed(carrier: Platform, seed: u64) -> Arc<Executed> {
     executed_by(&Order::usual(carrier, seed))
 }
 
+/// The feature of an image with 2 400 samples a second.
+const FAST: &str = "sps2400";
+
+/// A carrier's image with 2 400 samples a second.
+pub fn fast_image(carrier: Platform) -> Rc<Image> {
+    read(&found(carrier, Some(FAST)), carrier)
+}
+
 /// The usual execution of a carrier's image with 2 400 samples a second.
 pub fn sampled_fast(carrier: Platform) -> Arc<Executed> {
-    const FEATURE: &str = "sps2400";
-    once(format!("{carrier} {FEATURE}"), || {
-        let image = read(&found(carrier, Some(FEATURE)), carrier);
+    once(format!("{carrier} {FAST}"), || {
+        let image = fast_image(carrier);
         let world = World::new(carrier, 1).expect("the usual world can be made");
-        execute_image(&image, &Order::usual(carrier, 1), world, &[])
+        execute_image(&image, &Order::usual(carrier, 1), world, Vec::new)
     })
 }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use embassy_time::Instant;
 use emulated_board::run::Order;
 use emulated_board::wiring::board::BaseImu;
-use emulated_board::world::{World, stored};
+use emulated_board::world::{SERIAL, World, stored};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
-use firmware::settings::{CarrierSchedule, Settings, save};
+use firmware::settings::{CarrierSchedule, FASTEST, ITEMS, Output, Settings, save};
 use firmware::storage::HEADING;
 use hal_mock::chip::Single;
 use hal_mock::lsm6dsl::Lsm6dsl;
@@ -32,13 +32,21 @@ const CALIBRATED: CoarseConfiguration = CoarseConfiguration {
 };
 
 /// Headings that fill the page of the store that has the settings.
-pub const FULL: usize = 18;
+pub const FULL: usize = 17;
 /// Bytes of a heading in the store: a version, eight numbers, a checksum.
 const HEADING_BYTES: usize = 72;
 
 /// The usual world of a carrier.
 pub fn usual(carrier: Platform) -> World {
     World::new(carrier, 1).expect("the usual world can be made")
+}
+
+/// A stage with three positions of so many seconds.
+pub fn stage_of_dwells(seconds: f64) -> World {
+    let usual_stage = simulated::executed::stage(1);
+    let settings = Scenario { positions: 3, dwell_s: seconds, ..usual_stage }.settings();
+    let settings = settings.expect("the scenario has a latitude");
+    usual(Platform::Stage).with_store(worn_store(&settings, 0))
 }
 
 /// A stage with three positions of two seconds, which holds its result or does not, and in whose store a void heading
@@ -53,13 +61,33 @@ pub fn short_stage(holds: bool, headings: usize) -> World {
 /// A store with these settings, in which a void heading was written so many times.
 pub fn worn_store<C: CarrierSchedule>(settings: &Settings<C>, headings: usize) -> Vec<u8> {
     let store = stored(async |store| {
-        save(store, settings).await.map_err(|error| error.to_string())?;
+        save(store, settings, &SERIAL).await.map_err(|error| error.to_string())?;
         for _ in 0..headings {
             store.save(HEADING, &[0; HEADING_BYTES]).await.map_err(|fault| format!("{fault:?}"))?;
         }
         Ok(())
     });
     store.expect("a store takes settings and headings")
+}
+
+/// The usual world of a carrier, whose settings have its link send all sentences at each look.
+pub fn at_full_load(carrier: Platform) -> World {
+    let store = match carrier {
+        Platform::Stage => full(simulated::executed::stage(1).settings()),
+        Platform::Turntable => full(simulated::executed::turntable(1).settings()),
+        Platform::TwoFrame => full(simulated::executed::two_frames(1).settings()),
+        Platform::Vehicle => full(simulated::executed::vehicle(1).settings()),
+        Platform::Spin => full(simulated::executed::spin(1).settings()),
+    };
+    usual(carrier).with_store(store)
+}
+
+/// A store with these settings, by which the link sends all sentences at each look.
+fn full<C: CarrierSchedule>(settings: Option<Settings<C>>) -> Vec<u8> {
+    let mut settings = settings.expect("the usual settings are some");
+    settings.output = Output { rates: [FASTEST; ITEMS], ..settings.output };
+    settings.check().expect("the link carries all that it may send");
+    worn_store(&settings, 0)
 }
 
 /// Two frames on a base whose IMU has accelerometers as calibrated as their image states, until the result.

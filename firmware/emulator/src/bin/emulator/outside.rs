@@ -15,7 +15,7 @@ use embassy_time::Instant;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{self, I2c};
 use embedded_hal_async::spi::{ErrorType as SpiErrorType, Operation, SpiDevice};
-use embedded_io_async::{ErrorType, Write};
+use embedded_io_async::{ErrorType, Read, Write};
 use firmware::event::Event;
 use firmware::log::DefmtLog;
 use firmware::ports::Observer;
@@ -141,11 +141,17 @@ fn is_step(progress: &Progress) -> bool {
     )
 }
 
-/// A link that accepts and discards every byte: the emulated board has no serial port.
+/// A link that accepts and discards every byte, and brings none: the emulated board has no serial port.
 pub struct NoLink;
 
 impl ErrorType for NoLink {
     type Error = Infallible;
+}
+
+impl Read for NoLink {
+    async fn read(&mut self, _: &mut [u8]) -> Result<usize, Self::Error> {
+        core::future::pending().await
+    }
 }
 
 impl Write for NoLink {

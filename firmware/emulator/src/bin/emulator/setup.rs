@@ -6,6 +6,7 @@
 
 use core::cell::RefCell;
 
+use conversation::{Conversation, Deaf};
 use defmt::println;
 use drivers::tmc5160::configuration::Configuration as Motor;
 use firmware::acquire::{SpinAcquisition, TriadAcquisition, acquire, on_mount, on_stage};
@@ -14,7 +15,7 @@ use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
 use firmware::mechanism::{Mechanism, Strapdown};
 use firmware::ports::{Aiding, NoBase, NoRecorder};
-use firmware::run::{Outside, navigate};
+use firmware::run::{navigate, store};
 use firmware::shared::Channels;
 use firmware::spin::configuration::SpinConfiguration;
 use firmware::stage::Stage;
@@ -168,8 +169,10 @@ async fn run<M: Mechanism, S: Timed>(
     aiding: &dyn Aiding,
     channels: &Channels<'_, S>,
 ) {
-    let outside = Outside { link: &mut NoLink, recorder: &mut NoRecorder, store: () };
-    navigate(mechanism, method, keeping, aiding, outside, channels).await;
+    let shared = &channels.shared;
+    let mut conversation = Conversation::new(NoLink, Deaf, shared);
+    let beside = (store((), None, shared), conversation.until_over());
+    navigate(mechanism, method, keeping, aiding, &mut NoRecorder, beside, channels).await;
 }
 
 /// Logs the rows of a method and its verdict. Values are the bits of 64-bit numbers, without any

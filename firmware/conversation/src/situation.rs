@@ -7,8 +7,8 @@ use orientation::roll::Condition;
 use orientation::units::{self, Radians};
 use protocol::report::{Degradation, Level, Origin, Report, Roll, State};
 
-use crate::shared::Shared;
-use crate::status::Status;
+use firmware::shared::Shared;
+use firmware::status::Status;
 
 /// The report of this moment.
 pub(super) fn report(shared: &Shared<'_>) -> Report {

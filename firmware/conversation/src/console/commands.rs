@@ -1,0 +1,199 @@
+//! What a command does, whatever its form.
+
+use core::fmt::{self, Display};
+
+use firmware::not_begun::NotBegun;
+use firmware::settings::{EditError, Editable};
+use firmware::shared::Shared;
+use orientation::alignment::Azimuth;
+use orientation::alignment::refusal::Refusal;
+use orientation::units::{Radians, wrapped};
+
+use super::{Asker, Console};
+
+/// Greatest standard deviation of an azimuth that is stated from outside, 1σ: beyond it, it says nothing.
+const LEAST_KNOWN: Radians = Radians::from_degrees(30.0);
+
+/// Why a command is not done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refused {
+    /// Nothing begins, for this reason.
+    NotBegun(NotBegun),
+    /// An alignment runs.
+    Runs,
+    /// No alignment runs.
+    NothingRuns,
+    /// Settings were changed that count from the next start on.
+    Changed,
+    /// The instrument has ended.
+    Over,
+    /// No attitude is kept to which an azimuth could be given.
+    NotKept,
+    /// The azimuth is none, or its σ.
+    Azimuth,
+    /// A setting is not given a value.
+    Setting(EditError),
+    /// The settings are being kept.
+    Busy,
+}
+
+impl Display for Refused {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotBegun(reason) => return reason.fmt(formatter),
+            Self::Runs => "an alignment runs",
+            Self::NothingRuns => "no alignment runs",
+            Self::Changed => "settings were changed: save and reboot",
+            Self::Over => "it has ended: reboot",
+            Self::NotKept => "no attitude is kept",
+            Self::Azimuth => "not an azimuth, or not a sigma up to 30",
+            Self::Setting(error) => return error.fmt(formatter),
+            Self::Busy => "the store is busy",
+        })
+    }
+}
+
+impl Console {
+    /// Begins an alignment.
+    ///
+    /// # Errors
+    /// Why not.
+    pub(super) fn start(
+        &mut self,
+        settings: &dyn Editable,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
+        if shared.is_waiting() {
+            let stated = settings.start();
+            let is_placed = stated.latitude.or(shared.latitude.get()).is_some();
+            if stated.needs_latitude && !is_placed {
+                return Err(Refused::NotBegun(NotBegun::NoLatitude));
+            }
+            shared.begin.signal(());
+            return Ok(());
+        }
+        self.check_again(shared)?;
+        if !shared.is_idle() {
+            return Err(Refused::Runs);
+        }
+        shared.begin_again();
+        Ok(())
+    }
+
+    /// Begins an alignment, anew where one runs.
+    ///
+    /// # Errors
+    /// Why not.
+    pub(super) fn realign(
+        &mut self,
+        settings: &dyn Editable,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
+        if shared.is_waiting() || shared.is_idle() {
+            return self.start(settings, shared);
+        }
+        self.check_again(shared)?;
+        shared.fail(Refusal::Stopped);
+        self.begins_again = true;
+        Ok(())
+    }
+
+    /// Whether an alignment may begin once more.
+    fn check_again(&self, shared: &Shared<'_>) -> Result<(), Refused> {
+        if let Some(reason) = shared.not_begun.get() {
+            return Err(Refused::NotBegun(reason));
+        }
+        if shared.is_over() {
+            return Err(Refused::Over);
+        }
+        if self.is_changed { Err(Refused::Changed) } else { Ok(()) }
+    }
+
+    /// Ends the alignment that runs. None begins but by an order.
+    ///
+    /// # Errors
+    /// [`Refused::NothingRuns`].
+    pub(super) fn stop(&mut self, shared: &Shared<'_>) -> Result<(), Refused> {
+        self.begins_again = false;
+        if shared.is_waiting() || shared.is_idle() {
+            return Err(Refused::NothingRuns);
+        }
+        shared.stop();
+        Ok(())
+    }
+
+    /// Gives a setting a value in its user's unit. What the link sends changes at once, all else counts from the next start
+    /// on.
+    ///
+    /// # Errors
+    /// [`Refused::Setting`] and [`Refused::Busy`].
+    pub(super) fn set(
+        &mut self,
+        name: &str,
+        value: f64,
+        settings: &mut dyn Editable,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
+        self.check_saved()?;
+        let of_name =
+            |settings: &mut dyn Editable| settings.get(name).map(|stated| stated.value.to_bits());
+        let before = (settings.output(), of_name(settings));
+        settings.set(name, value).map_err(Refused::Setting)?;
+        let after = (settings.output(), of_name(settings));
+        shared.output.set(after.0);
+        self.is_changed |= before.0 == after.0 && before.1 != after.1 && !shared.is_waiting();
+        Ok(())
+    }
+
+    /// Takes the factory settings.
+    ///
+    /// # Errors
+    /// [`Refused::Busy`].
+    pub(super) fn restore(
+        &mut self,
+        settings: &mut dyn Editable,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
+        self.check_saved()?;
+        settings.restore();
+        shared.output.set(settings.output());
+        self.is_changed |= !shared.is_waiting();
+        Ok(())
+    }
+
+    /// Whether the settings are not being kept: they stay as they are meanwhile.
+    fn check_saved(&self) -> Result<(), Refused> {
+        if self.saving.is_some() { Err(Refused::Busy) } else { Ok(()) }
+    }
+
+    /// Has the store keep the settings; it is answered once that is done.
+    ///
+    /// # Errors
+    /// [`Refused::Busy`].
+    pub(super) fn save(&mut self, asker: Asker, shared: &Shared<'_>) -> Result<(), Refused> {
+        self.check_saved()?;
+        self.saving = Some(asker);
+        shared.kept.reset();
+        shared.keep.signal(());
+        Ok(())
+    }
+}
+
+/// Gives the navigator an azimuth from outside with its 1σ, °.
+///
+/// # Errors
+/// [`Refused::Azimuth`] and [`Refused::NotKept`].
+pub(super) fn state_azimuth([angle, sigma]: [f64; 2], shared: &Shared<'_>) -> Result<(), Refused> {
+    let [angle, sigma] = [angle, sigma].map(Radians::from_degrees);
+    let is_one = (0.0..=LEAST_KNOWN.0).contains(&sigma.0)
+        && sigma.0 > 0.0
+        && angle.0.abs() <= Radians::from_degrees(360.0).0;
+    if !is_one {
+        return Err(Refused::Azimuth);
+    }
+    if !shared.is_kept.get() || shared.attitude.get().is_none() {
+        return Err(Refused::NotKept);
+    }
+    shared.stated.signal(Azimuth { angle: Radians(wrapped(angle.0)), sigma });
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! Program of the board on a body in fast rotation.
+
+use firmware::not_begun::NotBegun;
+use firmware::settings::SpinSchedule;
+use orientation::roll::Flight;
+use orientation::signal::SpinSample;
+use static_cell::StaticCell;
+
+use stm32::link::Link;
+use stm32::sample_path::{Channels, acquire_on_spinning_body, find_on_spinning_body};
+use stm32::wiring::SpinWires;
+use stm32::{once, ports};
+
+use crate::{Executors, Kept, Settled, awaited, connected, methods, refuse, store};
+
+/// Estimates the roll for as long as the sensors give data, then reports how it ended.
+#[embassy_executor::task]
+pub async fn follow(executors: Executors, wires: SpinWires, link: Link) {
+    static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
+    static SETTINGS: StaticCell<Kept<SpinSchedule>> = StaticCell::new();
+    let outlets = wires.outlets;
+    let channels = connected(&CHANNELS, &outlets);
+    let store = store(&outlets);
+    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
+    let begun = settings.and_then(|settings| begin(executors, wires, channels, settings));
+    if let Err(reason) = begun {
+        refuse(reason, &channels.shared);
+    }
+}
+
+/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// frame of the program.
+///
+/// # Errors
+/// Why nothing begins.
+#[inline(never)]
+fn begin(
+    executors: Executors,
+    wires: SpinWires,
+    channels: &'static Channels<SpinSample>,
+    (settings, _): Settled<SpinSchedule>,
+) -> Result<(), NotBegun> {
+    let settings = &*settings;
+    static FLIGHT: StaticCell<Flight> = StaticCell::new();
+    let SpinWires { converters, .. } = wires;
+    let clocks = channels.shared.clocks;
+    let configuration = methods::spinning(settings).ok_or(NotBegun::NoScale)?;
+    let flight = FLIGHT.init_with(|| methods::flight(settings, clocks));
+    let sensors = ports::spinning(converters);
+    executors.acquisition.spawn(once(acquire_on_spinning_body(sensors, configuration, channels)));
+    // Nothing turns: the angles are valid.
+    channels.shared.homed.signal(());
+    executors.thread.spawn(once(find_on_spinning_body(flight, channels)));
+    Ok(())
+}

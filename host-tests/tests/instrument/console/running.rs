@@ -1,0 +1,84 @@
+//! Orders to an instrument that runs.
+
+use firmware::event::Event;
+use host::instrument::Trial;
+use orientation::alignment::Progress;
+use orientation::alignment::refusal::Refusal;
+use simulated::hold::Hold;
+use simulated::scenario::Scenario;
+
+use super::Typed;
+use crate::support::link::{sentences, states};
+
+/// A stage that holds its azimuth for so long, s.
+fn stage(hold_s: f64) -> Scenario {
+    Scenario {
+        hold: Hold::of(hold_s),
+        has_base_imu: true,
+        sample_rate_hz: 100.0,
+        ..Scenario::usual(3)
+    }
+}
+
+/// What came of the alignments of a run in which lines are sent at times, s: azimuth, or the reason for which there is none;
+/// and what the link said.
+fn ran(scenario: &Scenario, lines: &[(u64, &str)]) -> (Vec<Option<Refusal>>, String) {
+    let run = Trial::of(scenario).traffic(&Typed::lines(lines)).run().expect("it begins");
+    let ends = run.events.iter().filter_map(|(_, event)| match event {
+        Event::Alignment(Progress::Concluded(_)) => Some(None),
+        Event::Alignment(Progress::Refused(reason)) => Some(Some(*reason)),
+        _ => None,
+    });
+    (ends.collect(), run.lines)
+}
+
+#[test]
+fn an_alignment_that_is_stopped_ends_without_an_azimuth_and_begins_by_an_order_alone() {
+    let (ends, lines) = ran(&stage(400.0), &[(30, "stop"), (33, "stop"), (36, "start")]);
+    let answers = sentences(&lines, "PMRDR");
+    assert_eq!(ends, [Some(Refusal::Stopped), None], "{answers:?}");
+    let said: Vec<String> = answers.into_iter().map(|fields| fields.join(",")).collect();
+    assert_eq!(said, ["stop,ok", "stop,refused,no alignment runs", "start,ok"]);
+    assert!(states(&lines).iter().any(|state| state[0] == "failed"));
+}
+
+#[test]
+fn an_alignment_is_begun_anew_while_it_runs() {
+    let (ends, lines) = ran(&stage(200.0), &[(40, "realign")]);
+    assert_eq!(ends, [Some(Refusal::Stopped), None]);
+    assert_eq!(sentences(&lines, "PMRDR"), [["realign", "ok"]]);
+}
+
+#[test]
+fn one_that_runs_is_not_started_once_more() {
+    let (ends, lines) = ran(&stage(0.0), &[(100, "start")]);
+    assert_eq!(ends, [None]);
+    assert_eq!(sentences(&lines, "PMRDR"), [["start", "refused", "an alignment runs"]]);
+}
+
+/// It is of a vehicle or a ship whose heading is known, and the alignment confirms it.
+#[test]
+fn an_azimuth_from_outside_is_held_before_an_alignment_has_found_one() {
+    let scenario = stage(10.0);
+    let truth = scenario.azimuth_deg;
+    let (ends, lines) = ran(&scenario, &[(60, &format!("azimuth {truth:.3} 2"))]);
+    assert_eq!(ends, [None]);
+    assert_eq!(sentences(&lines, "PMRDR"), [["azimuth", "ok"]]);
+    let headings = sentences(&lines, "HETHS");
+    let held: Vec<&Vec<&str>> = headings.iter().filter(|fields| fields[1] != "V").collect();
+    assert!(held.len() > 100, "from a minute on: {}", held.len());
+    for fields in held {
+        let off: f64 = fields[0].parse::<f64>().expect("a heading") - truth;
+        assert!(off.abs() < 6.0, "{fields:?}");
+    }
+}
+
+#[test]
+fn settings_that_count_from_the_next_start_on_are_not_taken_for_those_of_this_one() {
+    let lines = [(100, "set dwell 5"), (110, "realign"), (120, "set hdt_rate 5")];
+    let (ends, lines) = ran(&stage(0.0), &lines);
+    assert_eq!(ends, [None]);
+    let answers = sentences(&lines, "PMRDR");
+    assert_eq!(answers[1], ["realign", "refused", "settings were changed: save and reboot"]);
+    assert_eq!(answers[2], ["set", "hdt_rate", "5"]);
+}
