@@ -7,9 +7,9 @@
 //!           └─ samples ──▶ find: aligner ───────────────────────────────────────┘
 //! ```
 //!
-//! What must not wait for the computation of a conclusion is acquisition, [`operate`] and the [`link`]; a board gives them
-//! executors of higher priority, and leaves [`find`] and [`store`] the thread. [`navigate`] is all of them in one executor,
-//! beside acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
+//! What must not wait for the computation of a conclusion is acquisition, [`operate`] and the conversation over
+//! the link; a board gives them executors of higher priority, and leaves [`find`] and [`store`] the thread. [`navigate`] is
+//! all of them in one executor, beside acquisition. Acquisition never returns; [`navigate`] ends within bounded time, whatever the devices do,
 //! unless it is to hold the azimuth, or to track a roll, without end.
 
 use core::convert::Infallible;

@@ -40,8 +40,8 @@ fn begin(
     channels: &'static Channels<SpinSample>,
     (settings, _): Settled<SpinSchedule>,
 ) -> Result<(), NotBegun> {
-    let settings = &*settings;
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
+    let settings = &*settings;
     let SpinWires { converters, .. } = wires;
     let clocks = channels.shared.clocks;
     let configuration = methods::spinning(settings).ok_or(NotBegun::NoScale)?;

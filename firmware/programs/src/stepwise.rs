@@ -100,8 +100,8 @@ fn begin_on_two_frames(
     channels: &'static Channels,
     (settings, latitude): Settled<TwoFrameSchedule>,
 ) -> Result<(), NotBegun> {
-    let settings = &*settings;
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
+    let settings = &*settings;
     let FramesWires { converter, accelerometer, axes, base, motor_enable, .. } = wires;
     let latitude = latitude.ok_or(NotBegun::NoLatitude)?;
     let frames = methods::frames(settings)?;

@@ -56,7 +56,6 @@ pub fn timebase(Clock { has_crystal }: Clock) -> Timebase {
 }
 
 /// Sample period of the converter that takes the precise gyros.
-#[must_use]
 pub fn period() -> Seconds {
     Seconds(1.0 / CONVERTER.rate.hertz())
 }

@@ -63,11 +63,13 @@ pub fn inputs<E, B>(
 }
 
 /// Encoder of an axis.
+#[must_use]
 pub fn encoder(wires: Device) -> AxisEncoder {
     Mt6835::new(wires, Delay, mt6835::Configuration::default())
 }
 
 /// Connects the IMU of the board.
+#[must_use]
 pub fn base(bus: BaseBus) -> Base {
     let configuration = lsm6dsl::Configuration {
         output: configuration::BASE_OUTPUT,
@@ -96,6 +98,7 @@ pub fn triad(
 
 /// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
 /// along y and z.
+#[must_use]
 pub fn spinning(converters: [ConverterWires; 5]) -> Spinning {
     let reader = ChainReader::new(converters[0].bus.control());
     let converter = |wires| converter(wires, configuration::SPIN_CONVERTER).clocked();
@@ -119,6 +122,7 @@ fn accelerometer(bus: Device) -> Accelerometer {
 }
 
 /// Connects the motor to its wires.
+#[must_use]
 pub fn motor(wires: Device) -> AxisMotor {
     Tmc5160::new(wires, Delay, drive())
 }
