@@ -28,7 +28,7 @@ pub async fn follow(executors: Executors, wires: SpinWires, link: Link) {
     }
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
 /// frame of the program.
 ///
 /// # Errors

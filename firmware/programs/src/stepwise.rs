@@ -41,7 +41,7 @@ pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, link: Li
     }
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
 /// frame of the program.
 ///
 /// # Errors
@@ -88,7 +88,7 @@ pub async fn on_two_frames(executors: Executors, wires: FramesWires, link: Link)
     }
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
 /// frame of the program.
 ///
 /// # Errors

@@ -33,7 +33,7 @@ pub async fn align(executors: Executors, wires: VehicleWires, link: Link) {
     }
 }
 
-/// Spawns what runs above the thread; the rest is for the thread. Not inlined, so that what is made on the way is in no
+/// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
 /// frame of the program.
 ///
 /// # Errors
