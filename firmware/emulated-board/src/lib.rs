@@ -18,6 +18,7 @@ pub mod image;
 pub mod link;
 pub mod measure;
 pub mod observation;
+pub mod pace;
 pub mod probe;
 pub mod processor;
 pub mod run;

@@ -1,4 +1,4 @@
-//! The link as a byte stream for a client, which may be slow and may go.
+//! The link as a byte stream for clients, of which one at a time may come, be slow, and go.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -9,6 +9,49 @@ use std::time::Duration;
 pub const WAITING: usize = 1 << 16;
 /// How long the client may take for some of the bytes that wait at the end.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The link at a port of this computer, for one client after the other.
+pub struct Clients {
+    listener: TcpListener,
+    /// The one that is there.
+    client: Option<Client>,
+}
+
+impl Clients {
+    /// Waits for the first client at a port of this computer; 0 is any that is free. Standard error says which.
+    ///
+    /// # Errors
+    /// What the system says, as where the port is taken.
+    pub fn wait(port: u16) -> Result<Self, String> {
+        let failed = |error: io::Error| format!("--link tcp:{port}: {error}");
+        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
+        eprintln!("waiting for a client at {}", listener.local_addr().map_err(failed)?);
+        let client = listener.accept().and_then(|(stream, _)| Client::new(stream));
+        listener.set_nonblocking(true).map_err(failed)?;
+        Ok(Self { client: Some(client.map_err(failed)?), listener })
+    }
+
+    /// Hands over bytes of the link, and takes what the client sends, without waiting for it. Without a client, the bytes
+    /// are lost, as on a wire that nobody reads; standard error says why one hears nothing any more.
+    pub fn exchange(&mut self, sent: &[u8]) -> Vec<u8> {
+        if self.client.is_none() {
+            self.client = self.listener.accept().and_then(|(stream, _)| Client::new(stream)).ok();
+        }
+        let exchanged = self.client.as_mut().map_or(Ok(Vec::new()), |client| client.exchange(sent));
+        exchanged.unwrap_or_else(|error| {
+            eprintln!("link: {error}");
+            self.client = None;
+            Vec::new()
+        })
+    }
+
+    /// Waits until the client that is there has what is left for it; standard error says where it does not take that.
+    pub fn finish(self) {
+        if let Some(Err(error)) = self.client.map(Client::finish) {
+            eprintln!("link: {error}");
+        }
+    }
+}
 
 /// The client of a link.
 pub struct Client {
@@ -24,19 +67,9 @@ impl Client {
     /// What the system says.
     pub fn new(stream: TcpStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
+        // An answer of the board goes at once, as on a wire.
+        stream.set_nodelay(true)?;
         Ok(Self { stream, waiting: VecDeque::new() })
-    }
-
-    /// Waits for a client at a port of this computer; 0 is any that is free. Standard error says which.
-    ///
-    /// # Errors
-    /// What the system says, as where the port is taken.
-    pub fn wait(port: u16) -> Result<Self, String> {
-        let failed = |error: io::Error| format!("--link tcp:{port}: {error}");
-        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
-        eprintln!("waiting for a client at {}", listener.local_addr().map_err(failed)?);
-        let (stream, _) = listener.accept().map_err(failed)?;
-        Self::new(stream).map_err(failed)
     }
 
     /// Hands over bytes of the link, and takes what the client sends, without waiting for it.

@@ -6,14 +6,16 @@
 use std::path::PathBuf;
 use std::process::{self, ExitCode};
 use std::rc::Rc;
+use std::time::Duration;
 use std::{io, thread};
 
 use clap::Parser;
 use emulated_board::controller::rcc::Oscillators;
 use emulated_board::image::Image;
-use emulated_board::link::Client;
+use emulated_board::link::Clients;
+use emulated_board::pace::Pace;
 use emulated_board::probe::Line;
-use emulated_board::run::{Order, execute};
+use emulated_board::run::{LOOK, Order, execute};
 use emulated_board::world::World;
 use execution::options::{afterwards, carrier, cycles, port};
 use execution::report::Report;
@@ -37,9 +39,13 @@ struct Arguments {
     /// How long it goes on after its result, s.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = afterwards)]
     afterwards: Option<f64>,
-    /// The link as a byte stream for a client, which is waited for.
+    /// The link as a byte stream for one client after the other; the first is waited for.
     #[arg(long, value_name = "tcp:PORT", value_parser = port)]
     link: Option<u16>,
+    /// The flash has nothing but the image: the board is set up over its link, for which it has an hour, in which its time
+    /// goes no faster than that of its clients.
+    #[arg(long, requires = "link")]
+    as_shipped: bool,
     /// The board's crystal does not oscillate.
     #[arg(long)]
     dead_crystal: bool,
@@ -50,6 +56,9 @@ struct Arguments {
 
 /// Time that a start with a dead crystal waits for it longer than one with a sound crystal, s.
 const DEAD_CRYSTAL: f64 = 0.5;
+
+/// Time that a board has until its result which is to be set up first, s.
+const SETTING_UP: f64 = 3600.0;
 
 fn main() -> ExitCode {
     match run(&Arguments::parse())
@@ -76,22 +85,20 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
     let image = Rc::new(Image::read(&arguments.image)?);
     execution::carrier::require(&image.elf, arguments.carrier).map_err(named)?;
     let order = order(arguments);
-    let mut client = arguments.link.map(Client::wait).transpose()?;
+    let mut clients = arguments.link.map(Clients::wait).transpose()?;
     let on_line = |line: &Line| {
         eprintln!("{:>12} {:<5} {}", line.time, line.level.unwrap_or("-"), line.words);
     };
+    let mut pace = arguments.as_shipped.then(Pace::begin);
     let on_link = |sent: &[u8]| {
-        let exchanged = client.as_mut().map_or(Ok(Vec::new()), |client| client.exchange(sent));
-        exchanged.unwrap_or_else(|error| {
-            eprintln!("link: {error}");
-            client = None;
-            Vec::new()
-        })
+        pace.iter_mut().for_each(|pace| pace.keep(Duration::from_nanos(LOOK.as_nanoseconds())));
+        clients.as_mut().map_or_else(Vec::new, |clients| clients.exchange(sent))
     };
     let world = World::new(order.carrier, order.seed)?;
+    let world = if arguments.as_shipped { world.with_store(Vec::new()) } else { world };
     let report = execute(&image, &order, world, on_line, on_link).map_err(named)?;
-    if let Some(Err(error)) = client.map(Client::finish) {
-        eprintln!("link: {error}");
+    if let Some(clients) = clients {
+        clients.finish();
     }
     match report.outcome.as_str() {
         "" => Err(named("its log says nothing: is it the image of a board?".to_owned())),
@@ -103,10 +110,11 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
 /// What is executed.
 fn order(arguments: &Arguments) -> Order {
     let usual = Order::usual(arguments.carrier, arguments.seed);
+    let longest = if arguments.as_shipped { SETTING_UP } else { usual.longest };
     Order {
         cycles: arguments.cycles,
         afterwards: arguments.afterwards.unwrap_or(usual.afterwards),
-        longest: usual.longest + if arguments.dead_crystal { DEAD_CRYSTAL } else { 0.0 },
+        longest: longest + if arguments.dead_crystal { DEAD_CRYSTAL } else { 0.0 },
         oscillators: Oscillators { has_crystal: !arguments.dead_crystal, ..usual.oscillators },
         ..usual
     }

@@ -17,7 +17,7 @@ use crate::time::Time;
 use crate::world::World;
 
 /// How often the probe looks, and the link is served.
-const LOOK: Time = Time::microseconds(1000);
+pub const LOOK: Time = Time::microseconds(1000);
 
 /// What the start of an image paints the stack with, where it does (cortex-m-rt, `STACK_PAINT_VALUE`).
 const PAINT: u8 = 0xCC;

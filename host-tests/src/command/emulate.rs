@@ -31,7 +31,7 @@ pub struct EmulateOptions {
     /// With --board: how long it goes on after its result, s; 10 unless stated.
     #[arg(long, value_name = "SECONDS", requires = "board", value_parser = options::afterwards)]
     afterwards: Option<f64>,
-    /// With --board and one carrier: the link as a byte stream for one client, which is waited for.
+    /// With --board and one carrier: the link as a byte stream for one client after the other; the first is waited for.
     #[arg(long, value_name = "tcp:PORT", requires = "board", value_parser = options::port)]
     link: Option<u16>,
 }

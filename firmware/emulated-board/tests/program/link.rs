@@ -1,13 +1,15 @@
-//! A client of the link that is slow, that is too slow, and that goes.
+//! Clients of the link that are slow, that are too slow, that go, and that come after others.
 
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::thread::{sleep, spawn};
 use std::time::Duration;
 
 use emulated_board::link::{Client, WAITING};
+use firmware::platform::Platform;
 
-use crate::started::Waiting;
+use crate::images::path;
+use crate::started::{Waiting, output, text};
 
 /// Bytes that are sent at once.
 const CHUNK: usize = 1024;
@@ -105,7 +107,7 @@ fn what_a_client_sends_is_received_and_one_that_sends_no_more_still_hears() {
 
 #[test]
 fn an_execution_goes_on_without_its_client_and_says_so_once() {
-    let mut waiting = Waiting::new(&[]);
+    let mut waiting = Waiting::new(Platform::Spin, &[]);
     drop(TcpStream::connect(&waiting.address).expect("it listens"));
     let (mut log, mut report) = (String::new(), String::new());
     waiting.log.read_to_string(&mut log).expect("text");
@@ -114,4 +116,43 @@ fn an_execution_goes_on_without_its_client_and_says_so_once() {
     assert!(waiting.child.wait().expect("it ends").success(), "{log}");
     assert_eq!(log.matches("link: the client is gone: ").count(), 1, "{log}");
     assert_eq!(report.lines().count(), 1, "{report}");
+}
+
+/// Asks a board that waits for its latitude to do something, as a client of its own; the fields of the answer, and what the
+/// board says of its state after it.
+fn asked(address: &str, line: &str) -> [String; 2] {
+    let mut stream = TcpStream::connect(address).expect("it listens");
+    stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a connection");
+    let mut lines = BufReader::new(stream.try_clone().expect("a connection")).lines();
+    let mut first = |start: &str| {
+        let found = lines.by_ref().find(|line| line.as_ref().expect("text").starts_with(start));
+        found.expect("it goes on").expect("text")
+    };
+    // It has begun to hear.
+    first("$PMRDS,waiting,");
+    stream.write_all(format!("{line}\r\n").as_bytes()).expect("it is connected");
+    [first("$PMRDR,"), first("$PMRDS,")]
+}
+
+#[test]
+fn a_board_as_it_is_shipped_waits_and_is_set_up_by_one_client_after_the_other() {
+    let waiting = Waiting::new(Platform::Stage, &["--as-shipped"]);
+    let [answer, state] = asked(&waiting.address, "get latitude");
+    assert!(answer.starts_with("$PMRDR,get,latitude,none*"), "{answer}");
+    assert!(state.starts_with("$PMRDS,waiting,"), "{state}");
+    for (asks, answers) in
+        [("set latitude 47.58", "set,latitude,47.58"), ("save", "save,ok"), ("start", "start,ok")]
+    {
+        let [answer, state] = asked(&waiting.address, asks);
+        assert!(answer.starts_with(&format!("$PMRDR,{answers}*")), "{answer}");
+        let expected = if asks == "start" { "$PMRDS,aligning," } else { "$PMRDS,waiting," };
+        assert!(state.starts_with(expected), "{asks}: {state}");
+    }
+}
+
+#[test]
+fn a_board_as_it_is_shipped_is_executed_with_a_link_alone() {
+    let image = path(Platform::Stage).to_str().expect("a name in UTF-8");
+    let said = text(&output(image, Platform::Stage, &["--as-shipped"]).stderr);
+    assert!(said.contains("--link <tcp:PORT>"), "{said}");
 }

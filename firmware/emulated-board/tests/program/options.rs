@@ -113,7 +113,7 @@ fn ends(waiting: &mut Waiting, seconds: u64) -> bool {
 #[test]
 fn the_program_ends_with_the_one_that_started_it_while_it_waits_and_while_it_executes() {
     for connects in [false, true] {
-        let mut waiting = Waiting::new(&["--while-stdin", "--afterwards", "3600"]);
+        let mut waiting = Waiting::new(Platform::Spin, &["--while-stdin", "--afterwards", "3600"]);
         let client = connects.then(|| std::net::TcpStream::connect(&waiting.address));
         assert!(!ends(&mut waiting, 1), "its standard input is open");
         drop(waiting.child.stdin.take());
@@ -124,7 +124,7 @@ fn the_program_ends_with_the_one_that_started_it_while_it_waits_and_while_it_exe
 
 #[test]
 fn the_program_needs_no_standard_input_where_nobody_asks_for_it() {
-    let mut waiting = Waiting::new(&[]);
+    let mut waiting = Waiting::new(Platform::Spin, &[]);
     drop(waiting.child.stdin.take());
     assert!(!ends(&mut waiting, 1));
 }

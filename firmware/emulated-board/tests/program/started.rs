@@ -24,7 +24,7 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("it prints UTF-8")
 }
 
-/// The program, which waits for a client of a spinning body's link; its port is free.
+/// The program, which waits for a client of a board's link; its port is free.
 pub struct Waiting {
     /// The process.
     pub child: Child,
@@ -35,10 +35,10 @@ pub struct Waiting {
 }
 
 impl Waiting {
-    /// Starts it, with further arguments.
-    pub fn new(arguments: &[&str]) -> Self {
-        let image = path(Platform::Spin).to_str().expect("a name in UTF-8");
-        let mut command = program(image, Platform::Spin, &["--link", "tcp:0"]);
+    /// Starts it with the image of a carrier, and further arguments.
+    pub fn new(carrier: Platform, arguments: &[&str]) -> Self {
+        let image = path(carrier).to_str().expect("a name in UTF-8");
+        let mut command = program(image, carrier, &["--link", "tcp:0"]);
         let piped = command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = piped.stderr(Stdio::piped()).spawn().expect("it starts");
         let mut log = BufReader::new(child.stderr.take().expect("it is piped"));
