@@ -68,73 +68,85 @@ pub struct Executors {
     pub link: SendSpawner,
 }
 
-/// Channels of an instrument at their final place in memory.
-fn connected<S: Send>(
-    place: &'static StaticCell<Channels<S>>,
-    outlets: &Outlets,
-) -> &'static Channels<S> {
-    let channels = place.init_with(|| Channels::new(outlets.log));
-    channels.shared.clocks = timebase(outlets.clock);
-    channels
-}
-
-/// The store of what outlasts a loss of supply, at its final place in memory.
-fn store(outlets: &Outlets) -> &'static SharedStore<Archive> {
-    static STORE: StaticCell<SharedStore<Archive>> = StaticCell::new();
-    STORE.init_with(|| SharedStore::new(outlets.flash.archive()))
-}
-
 /// Settings that parts of the instrument read and change.
 type Kept<C> = Mutex<Lock, Settings<C>>;
 
 /// Settings at the moment at which the first alignment begins, and the latitude that holds.
 type Settled<C> = (MutexGuard<'static, Lock, Settings<C>>, Option<Latitude>);
 
-/// Loads the settings, has the link converse from now on, and waits until the first alignment is to begin: at once where
-/// the settings say so and state a latitude, otherwise until it is ordered.
-///
-/// # Errors
-/// Why nothing begins.
-async fn awaited<C: CarrierSchedule>(
-    place: &'static StaticCell<Kept<C>>,
-    executors: Executors,
-    (outlets, store): (&Outlets, &'static SharedStore<Archive>),
-    port: Link,
-    shared: &'static Shared<'static>,
-) -> Result<Settled<C>, NotBegun> {
-    let (settings, start) = loaded(place, outlets, shared);
-    let board = BoardSettings { settings, serial: settings::serial() };
-    executors.link.spawn(once(converse(port, board, shared)));
-    executors.thread.spawn(once(keep_store(store, board, shared)));
-    let start = start?;
-    let is_placed = start.latitude.is_some() || !start.needs_latitude;
-    if !start.is_at_power_on || !is_placed {
-        shared.wait_to_begin();
-        shared.begin.wait().await;
-        shared.status.set(Status::Starting);
-    }
-    let settings = settings.lock().await;
-    let mut latitude = settings.latitude;
-    if latitude.is_none() && start.needs_latitude {
-        latitude = shared.latitude.get();
-        latitude.into_iter().for_each(settings::tell_of_receiver);
-    }
-    Ok((settings, latitude))
+/// Final places in memory of what the parts of an instrument share.
+struct Places<S: 'static, C: CarrierSchedule + 'static> {
+    channels: StaticCell<Channels<S>>,
+    settings: StaticCell<Kept<C>>,
 }
 
-/// The settings at their final place in memory, and what an alignment begins with, or why none does. Not inlined, so that
-/// what is made on the way is in no frame of the program.
-#[inline(never)]
-fn loaded<C: CarrierSchedule>(
-    place: &'static StaticCell<Kept<C>>,
-    outlets: &Outlets,
-    shared: &Shared<'_>,
-) -> (&'static Kept<C>, Result<Start, NotBegun>) {
-    let loaded = settings::load::<C>(outlets);
-    let start = loaded.as_ref().map(Editable::start).map_err(|reason| *reason);
-    let settings = loaded.unwrap_or_default();
-    shared.output.set(settings.output);
-    (place.init(Mutex::new(settings)), start)
+impl<S: Send, C: CarrierSchedule> Places<S, C> {
+    /// Places at which nothing is yet.
+    const fn new() -> Self {
+        Self { channels: StaticCell::new(), settings: StaticCell::new() }
+    }
+}
+
+/// An instrument whose parts are connected, and whose settings are loaded.
+struct Instrument<S: 'static, C: CarrierSchedule + 'static> {
+    /// From one part to the next.
+    channels: &'static Channels<S>,
+    /// The store of what outlasts a loss of supply.
+    store: &'static SharedStore<Archive>,
+    settings: &'static Kept<C>,
+    /// What an alignment begins with, or why none does.
+    start: Result<Start, NotBegun>,
+}
+
+impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
+    /// Connects it at its final places in memory. Not inlined, so that what is made on the way is in no frame of the
+    /// program.
+    #[inline(never)]
+    fn new(places: &'static Places<S, C>, outlets: &Outlets) -> Self {
+        static STORE: StaticCell<SharedStore<Archive>> = StaticCell::new();
+        let channels = places.channels.init_with(|| Channels::new(outlets.log));
+        channels.shared.clocks = timebase(outlets.clock);
+        let store = STORE.init_with(|| SharedStore::new(outlets.flash.archive()));
+        let loaded = settings::load::<C>(outlets);
+        let start = loaded.as_ref().map(Editable::start).map_err(|reason| *reason);
+        let settings = loaded.unwrap_or_default();
+        channels.shared.output.set(settings.output);
+        Self { channels, store, settings: places.settings.init(Mutex::new(settings)), start }
+    }
+
+    /// Has the link converse from now on, and waits until the first alignment is to begin: at once where the settings say
+    /// so and state a latitude, otherwise until it is ordered.
+    ///
+    /// # Errors
+    /// Why nothing begins.
+    async fn settled(&self, executors: Executors, port: Link) -> Result<Settled<C>, NotBegun> {
+        let Self { settings, store, start, .. } = *self;
+        let shared = &self.channels.shared;
+        let board = BoardSettings { settings, serial: settings::serial() };
+        executors.link.spawn(once(converse(port, board, shared)));
+        executors.thread.spawn(once(keep_store(store, board, shared)));
+        let start = start?;
+        if !start.is_at_power_on || !start.is_placed(None) {
+            shared.wait_to_begin();
+            shared.begin.wait().await;
+            shared.status.set(Status::Starting);
+        }
+        let settings = settings.lock().await;
+        let start = settings.start();
+        let latitude = start.latitude(shared.latitude.get());
+        if start.stated.is_none() {
+            latitude.into_iter().for_each(settings::tell_of_receiver);
+        }
+        Ok((settings, latitude))
+    }
+
+    /// Says why nothing begins, where that is so. Settings may be mended.
+    fn tell(&self, begun: Result<(), NotBegun>) {
+        if let Err(reason) = begun {
+            self.channels.shared.report(Event::NotBegun(reason));
+            self.channels.shared.refuse_to_begin(reason);
+        }
+    }
 }
 
 /// Time for which the port sends what it was given, at the slowest rate: two bytes.
@@ -191,10 +203,4 @@ async fn keep_store(
     shared: &'static Shared<'static>,
 ) {
     run::store(store, Some(settings), shared).await;
-}
-
-/// Says why nothing begins. Settings may be mended.
-fn refuse(reason: NotBegun, shared: &Shared<'_>) {
-    shared.report(Event::NotBegun(reason));
-    shared.refuse_to_begin(reason);
 }

@@ -11,21 +11,15 @@ use stm32::sample_path::{Channels, acquire_on_spinning_body, find_on_spinning_bo
 use stm32::wiring::SpinWires;
 use stm32::{once, ports};
 
-use crate::{Executors, Kept, Settled, awaited, connected, methods, refuse, store};
+use crate::{Executors, Instrument, Places, Settled, methods};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(executors: Executors, wires: SpinWires, link: Link) {
-    static CHANNELS: StaticCell<Channels<SpinSample>> = StaticCell::new();
-    static SETTINGS: StaticCell<Kept<SpinSchedule>> = StaticCell::new();
-    let outlets = wires.outlets;
-    let channels = connected(&CHANNELS, &outlets);
-    let store = store(&outlets);
-    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
-    let begun = settings.and_then(|settings| begin(executors, wires, channels, settings));
-    if let Err(reason) = begun {
-        refuse(reason, &channels.shared);
-    }
+    static PLACES: Places<SpinSample, SpinSchedule> = Places::new();
+    let instrument = Instrument::new(&PLACES, &wires.outlets);
+    let settled = instrument.settled(executors, link).await;
+    instrument.tell(settled.and_then(|it| begin(executors, wires, instrument.channels, it)));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no

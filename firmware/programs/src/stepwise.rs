@@ -10,6 +10,7 @@ use orientation::alignment::setup::SetupError;
 use orientation::alignment::stepwise::session::procedure::Procedure;
 use orientation::alignment::stepwise::session::{Prepared, Session};
 use orientation::alignment::stepwise::setting::Setting;
+use orientation::signal::Sample;
 use static_cell::StaticCell;
 
 use stm32::link::Link;
@@ -19,26 +20,16 @@ use stm32::sample_path::{
 use stm32::wiring::{AxisPlatformWires, FramesWires};
 use stm32::{once, ports};
 
-use crate::{
-    Executors, Kept, Settled, awaited, connected, keeping, methods, on_base, refuse, store,
-};
-
-/// Channels of the instrument, of which an image has one.
-static CHANNELS: StaticCell<Channels> = StaticCell::new();
+use crate::{Executors, Instrument, Places, Settled, keeping, methods, on_base};
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, link: Link) {
-    static SETTINGS: StaticCell<Kept<StageSchedule>> = StaticCell::new();
-    let outlets = wires.outlets;
-    let channels = connected(&CHANNELS, &outlets);
-    let store = store(&outlets);
-    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
-    let begun =
-        settings.and_then(|settings| begin_on_a_stage(executors, wires, channels, settings));
-    if let Err(reason) = begun {
-        refuse(reason, &channels.shared);
-    }
+    static PLACES: Places<Sample, StageSchedule> = Places::new();
+    let instrument = Instrument::new(&PLACES, &wires.outlets);
+    let settled = instrument.settled(executors, link).await;
+    let begin = |settled| begin_on_a_stage(executors, wires, instrument.channels, settled);
+    instrument.tell(settled.and_then(begin));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
@@ -76,16 +67,11 @@ fn begin_on_a_stage(
 /// axis vertical.
 #[embassy_executor::task]
 pub async fn on_two_frames(executors: Executors, wires: FramesWires, link: Link) {
-    static SETTINGS: StaticCell<Kept<TwoFrameSchedule>> = StaticCell::new();
-    let outlets = wires.outlets;
-    let channels = connected(&CHANNELS, &outlets);
-    let store = store(&outlets);
-    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
-    let begun =
-        settings.and_then(|settings| begin_on_two_frames(executors, wires, channels, settings));
-    if let Err(reason) = begun {
-        refuse(reason, &channels.shared);
-    }
+    static PLACES: Places<Sample, TwoFrameSchedule> = Places::new();
+    let instrument = Instrument::new(&PLACES, &wires.outlets);
+    let settled = instrument.settled(executors, link).await;
+    let begin = |settled| begin_on_two_frames(executors, wires, instrument.channels, settled);
+    instrument.tell(settled.and_then(begin));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no

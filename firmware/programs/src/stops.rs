@@ -16,21 +16,15 @@ use stm32::sample_path::{Channels, acquire_in_vehicle, find_in_vehicle, keep_veh
 use stm32::wiring::VehicleWires;
 use stm32::{once, ports};
 
-use crate::{Executors, Kept, Settled, awaited, connected, keeper, methods, refuse, store};
+use crate::{Executors, Instrument, Places, Settled, keeper, methods};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(executors: Executors, wires: VehicleWires, link: Link) {
-    static CHANNELS: StaticCell<Channels<InertialSample>> = StaticCell::new();
-    static SETTINGS: StaticCell<Kept<VehicleSchedule>> = StaticCell::new();
-    let outlets = wires.outlets;
-    let channels = connected(&CHANNELS, &outlets);
-    let store = store(&outlets);
-    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
-    let begun = settings.and_then(|settings| begin(executors, wires, channels, settings));
-    if let Err(reason) = begun {
-        refuse(reason, &channels.shared);
-    }
+    static PLACES: Places<InertialSample, VehicleSchedule> = Places::new();
+    let instrument = Instrument::new(&PLACES, &wires.outlets);
+    let settled = instrument.settled(executors, link).await;
+    instrument.tell(settled.and_then(|it| begin(executors, wires, instrument.channels, it)));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no

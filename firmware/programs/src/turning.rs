@@ -8,6 +8,7 @@ use firmware::sway::SwayCompensation;
 use orientation::alignment::rotating::session::Session;
 use orientation::alignment::setup::SetupError;
 use orientation::earth::Latitude;
+use orientation::signal::Sample;
 use static_cell::StaticCell;
 
 use stm32::flash::Archive;
@@ -16,9 +17,7 @@ use stm32::sample_path::{Channels, acquire_on_axis, find_on_turntable, operate_t
 use stm32::wiring::AxisPlatformWires;
 use stm32::{once, ports};
 
-use crate::{
-    Executors, Kept, Settled, awaited, connected, keeping, methods, on_base, refuse, store,
-};
+use crate::{Executors, Instrument, Places, Settled, keeping, methods, on_base};
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -26,19 +25,13 @@ const TODAY: Today = Today { date: None, longest: None };
 /// Runs the instrument on a rotating platform: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn align(executors: Executors, wires: AxisPlatformWires, link: Link) {
-    static CHANNELS: StaticCell<Channels> = StaticCell::new();
-    static SETTINGS: StaticCell<Kept<TurntableSchedule>> = StaticCell::new();
-    let outlets = wires.outlets;
-    let channels = connected(&CHANNELS, &outlets);
-    let store = store(&outlets);
-    let settings = awaited(&SETTINGS, executors, (&outlets, store), link, &channels.shared).await;
-    let begun = match settings {
-        Ok(settings) => begin(executors, wires, (store, channels), settings).await,
+    static PLACES: Places<Sample, TurntableSchedule> = Places::new();
+    let instrument = Instrument::new(&PLACES, &wires.outlets);
+    let begun = match instrument.settled(executors, link).await {
+        Ok(settled) => begin(executors, wires, &instrument, settled).await,
         Err(reason) => Err(reason),
     };
-    if let Err(reason) = begun {
-        refuse(reason, &channels.shared);
-    }
+    instrument.tell(begun);
 }
 
 /// Spawns what runs without end.
@@ -48,9 +41,10 @@ pub async fn align(executors: Executors, wires: AxisPlatformWires, link: Link) {
 async fn begin(
     executors: Executors,
     wires: AxisPlatformWires,
-    (store, channels): (&'static SharedStore<Archive>, &'static Channels),
+    instrument: &Instrument<Sample, TurntableSchedule>,
     (settings, latitude): Settled<TurntableSchedule>,
 ) -> Result<(), NotBegun> {
+    let Instrument { channels, store, .. } = *instrument;
     let settings = &*settings;
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, .. } = wires;
     let latitude = latitude.ok_or(NotBegun::NoLatitude)?;

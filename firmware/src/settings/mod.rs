@@ -211,12 +211,12 @@ impl<C: CarrierSchedule> Named for Settings<C> {
 }
 
 impl<C: CarrierSchedule> Editable for Settings<C> {
-    fn set(&mut self, name: &str, value: f64) -> Result<(), EditError> {
+    fn set(&mut self, name: &str, value: f64) -> Result<bool, EditError> {
         let mut changed = self.clone();
-        put(&mut changed, name, value)?;
+        let is_other = put(&mut changed, name, value)?;
         changed.check().map_err(EditError::OutOfRange)?;
         *self = changed;
-        Ok(())
+        Ok(is_other)
     }
 
     fn to_record(&self, serial: &Serial) -> Result<[u8; BYTES], SettingsError> {
@@ -237,6 +237,6 @@ impl<C: CarrierSchedule> Editable for Settings<C> {
 
     fn start(&self) -> Start {
         let needs_latitude = C::PLATFORM.has_azimuth();
-        Start { latitude: self.latitude, needs_latitude, is_at_power_on: self.starts }
+        Start { stated: self.latitude, needs_latitude, is_at_power_on: self.starts }
     }
 }

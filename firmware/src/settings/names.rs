@@ -261,12 +261,12 @@ impl<'v> List<'v> {
 
 /// Settings that are read and changed by their names, whatever the carrier.
 pub trait Editable: Named + Send {
-    /// Gives the setting of this name a value in its user's unit. Unless all settings are then possible together, they stay
-    /// as they were.
+    /// Gives the setting of this name a value in its user's unit; whether it had another. Unless all settings are then
+    /// possible together, they stay as they were.
     ///
     /// # Errors
     /// Why not.
-    fn set(&mut self, name: &str, value: f64) -> Result<(), EditError>;
+    fn set(&mut self, name: &str, value: f64) -> Result<bool, EditError>;
 
     /// Record of the settings for the board whose controller has this serial number.
     ///
@@ -291,11 +291,25 @@ pub trait Editable: Named + Send {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// The latitude, where it is stated.
-    pub latitude: Option<Latitude>,
+    pub stated: Option<Latitude>,
     /// Whether nothing begins without one.
     pub needs_latitude: bool,
     /// Whether it begins at power-on without an order.
     pub is_at_power_on: bool,
+}
+
+impl Start {
+    /// The latitude that it has: as it is stated, or else that of a satellite receiver, where there is one.
+    #[must_use]
+    pub fn latitude(&self, received: Option<Latitude>) -> Option<Latitude> {
+        self.stated.or(received).filter(|_| self.needs_latitude)
+    }
+
+    /// Whether it has a latitude, or needs none.
+    #[must_use]
+    pub fn is_placed(&self, received: Option<Latitude>) -> bool {
+        self.latitude(received).is_some() || !self.needs_latitude
+    }
 }
 
 impl dyn Editable + '_ {
@@ -312,14 +326,14 @@ impl dyn Editable + '_ {
         self.find(Wanted::Number(number)).map(|(_, stated)| stated)
     }
 
-    /// The number of the setting of this name, from zero.
-    pub fn number(&mut self, name: &str) -> Option<usize> {
-        self.find(Wanted::Name(name)).map(|(number, _)| number)
+    /// The setting of this name, and its number from zero.
+    pub fn numbered(&mut self, name: &str) -> Option<(usize, Stated)> {
+        self.find(Wanted::Name(name))
     }
 
     /// The setting of this name.
     pub fn get(&mut self, name: &str) -> Option<Stated> {
-        self.find(Wanted::Name(name)).map(|(_, stated)| stated)
+        self.numbered(name).map(|(_, stated)| stated)
     }
 
     /// The setting that is wanted, and its number.
@@ -338,16 +352,17 @@ impl dyn Editable + '_ {
     }
 }
 
-/// Gives the field of this name a value, unchecked.
+/// Gives the field of this name a value, unchecked; whether it had another.
 ///
 /// # Errors
 /// [`EditError::Unknown`] and [`EditError::NotHeld`].
-pub(super) fn put(part: &mut dyn Named, name: &str, value: f64) -> Result<(), EditError> {
+pub(super) fn put(part: &mut dyn Named, name: &str, value: f64) -> Result<bool, EditError> {
     let mut done = Err(EditError::Unknown);
     part.list(&mut List::new(Wanted::Name(name), &mut |entry| {
         // What is shown already stays as it is: its unit would round it once more.
-        let is_held = entry.stated.shows(value) || (entry.set)(value);
-        done = is_held.then_some(()).ok_or(EditError::NotHeld);
+        let is_other = !entry.stated.shows(value);
+        let is_held = !is_other || (entry.set)(value);
+        done = is_held.then_some(is_other).ok_or(EditError::NotHeld);
     }));
     done
 }

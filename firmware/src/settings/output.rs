@@ -69,56 +69,45 @@ impl Item {
         Self::SysStatus,
     ];
 
+    /// What is fixed of it: the name of the setting of its rate, most bytes that it has on the link, and the number of its
+    /// message, where it is one.
+    const fn fixed(self) -> (&'static str, u32, Option<u32>) {
+        match self {
+            Self::Hdt => ("hdt_rate", 21, None),
+            Self::Ths => ("ths_rate", 21, None),
+            Self::Rot => ("rot_rate", 24, None),
+            Self::Phtro => ("phtro_rate", 31, None),
+            Self::Phinf => ("phinf_rate", 20, None),
+            Self::Pmrds => ("pmrds_rate", 82, None),
+            Self::Pmrdl => ("pmrdl_rate", 82, None),
+            Self::Attitude => ("attitude_rate", FRAME + 48, Some(31)),
+            Self::Vision => ("vision_rate", FRAME + 117, Some(102)),
+            Self::SysStatus => ("sysstatus_rate", FRAME + 43, Some(1)),
+        }
+    }
+
     /// The format that it is of.
     #[must_use]
     pub const fn format(self) -> Format {
-        match self {
-            Self::Attitude | Self::Vision | Self::SysStatus => Format::Mavlink,
-            _ => Format::Nmea,
-        }
+        if self.fixed().2.is_some() { Format::Mavlink } else { Format::Nmea }
     }
 
     /// The name of the setting of its rate.
     #[must_use]
     pub const fn rate_name(self) -> &'static str {
-        match self {
-            Self::Hdt => "hdt_rate",
-            Self::Ths => "ths_rate",
-            Self::Rot => "rot_rate",
-            Self::Phtro => "phtro_rate",
-            Self::Phinf => "phinf_rate",
-            Self::Pmrds => "pmrds_rate",
-            Self::Pmrdl => "pmrdl_rate",
-            Self::Attitude => "attitude_rate",
-            Self::Vision => "vision_rate",
-            Self::SysStatus => "sysstatus_rate",
-        }
+        self.fixed().0
     }
 
     /// Most bytes that it has on the link.
     #[must_use]
     pub const fn bytes(self) -> u32 {
-        match self {
-            Self::Hdt | Self::Ths => 21,
-            Self::Rot => 24,
-            Self::Phtro => 31,
-            Self::Phinf => 20,
-            Self::Pmrds | Self::Pmrdl => 82,
-            Self::Attitude => FRAME + 48,
-            Self::Vision => FRAME + 117,
-            Self::SysStatus => FRAME + 43,
-        }
+        self.fixed().1
     }
 
-    /// The item that is this message of MAVLink.
+    /// The item that is the message of this number of MAVLink.
     #[must_use]
-    pub const fn of_message(number: u32) -> Option<Self> {
-        match number {
-            ATTITUDE_QUATERNION => Some(Self::Attitude),
-            VISION_POSITION_ESTIMATE => Some(Self::Vision),
-            SYS_STATUS => Some(Self::SysStatus),
-            _ => None,
-        }
+    pub fn of_message(number: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|item| item.fixed().2 == Some(number))
     }
 
     /// How often it is sent unless that is set, Hz.
@@ -131,11 +120,6 @@ impl Item {
         }
     }
 }
-
-/// Numbers of the messages.
-const ATTITUDE_QUATERNION: u32 = 31;
-const VISION_POSITION_ESTIMATE: u32 = 102;
-const SYS_STATUS: u32 = 1;
 
 /// Bytes of a message beside its payload.
 const FRAME: u32 = 12;

@@ -64,9 +64,7 @@ impl Console {
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
         if shared.is_waiting() {
-            let stated = settings.start();
-            let is_placed = stated.latitude.or(shared.latitude.get()).is_some();
-            if stated.needs_latitude && !is_placed {
+            if !settings.start().is_placed(shared.latitude.get()) {
                 return Err(Refused::NotBegun(NotBegun::NoLatitude));
             }
             shared.begin.signal(());
@@ -135,13 +133,11 @@ impl Console {
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
         self.check_saved()?;
-        let of_name =
-            |settings: &mut dyn Editable| settings.get(name).map(|stated| stated.value.to_bits());
-        let before = (settings.output(), of_name(settings));
-        settings.set(name, value).map_err(Refused::Setting)?;
-        let after = (settings.output(), of_name(settings));
-        shared.output.set(after.0);
-        self.is_changed |= before.0 == after.0 && before.1 != after.1 && !shared.is_waiting();
+        let before = settings.output();
+        let is_other = settings.set(name, value).map_err(Refused::Setting)?;
+        let after = settings.output();
+        shared.output.set(after);
+        self.is_changed |= is_other && before == after && !shared.is_waiting();
         Ok(())
     }
 

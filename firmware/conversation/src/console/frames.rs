@@ -122,12 +122,20 @@ pub(super) fn put_parameter(
     settings: &mut dyn Editable,
     outbox: &mut Outbox,
 ) -> bool {
-    let count = settings.count();
     let stated = settings.nth(number);
-    if let Some(Stated { name, value, .. }) = stated {
-        outbox.put_message(&parameter(name, value, [number as u16, count as u16]));
+    if let Some(stated) = stated {
+        put_stated((number, stated), settings, outbox);
     }
     stated.is_some()
+}
+
+/// Puts a parameter by its number.
+fn put_stated(
+    (number, Stated { name, value, .. }): (usize, Stated),
+    settings: &mut dyn Editable,
+    outbox: &mut Outbox,
+) {
+    outbox.put_message(&parameter(name, value, [number as u16, settings.count() as u16]));
 }
 
 /// Puts the value of the parameter of this name as it is now; words where there is none, or where it is not as it was
@@ -138,9 +146,9 @@ fn put_parameter_of(
     settings: &mut dyn Editable,
     outbox: &mut Outbox,
 ) {
-    let reason = match settings.number(name) {
-        Some(number) => {
-            put_parameter(number, settings, outbox);
+    let reason = match settings.numbered(name) {
+        Some(numbered) => {
+            put_stated(numbered, settings, outbox);
             outcome.err()
         }
         None => Some(Refused::Setting(EditError::Unknown)),

@@ -132,8 +132,8 @@ impl Console {
 fn hear(latitude: Latitude, settings: &dyn Editable, shared: &Shared<'_>) {
     shared.latitude.set(Some(latitude));
     if shared.is_waiting() {
-        let stated = settings.start();
-        if stated.is_at_power_on && stated.latitude.is_none() {
+        let start = settings.start();
+        if start.is_at_power_on && start.stated.is_none() {
             shared.begin.signal(());
         }
     }

@@ -185,7 +185,10 @@ fn all(settings: &mut dyn Editable) -> Vec<Stated> {
 /// States a setting by a text, as a terminal does.
 fn state(settings: &mut dyn Editable, name: &str, text: &str) -> Result<(), EditError> {
     let value = settings.parse(name, text)?;
-    settings.set(name, value)
+    let before = shown(settings, name);
+    let is_other = settings.set(name, value)?;
+    assert_eq!(is_other, shown(settings, name) != before, "{name} {text}, from {before}");
+    Ok(())
 }
 
 /// What is shown for a setting.
