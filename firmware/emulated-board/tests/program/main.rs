@@ -8,4 +8,5 @@ mod building;
 mod images;
 mod link;
 mod options;
+mod setting_up;
 mod started;
