@@ -128,13 +128,16 @@ impl<'c, 'a, L: Read + Write, H: Listen> Conversation<'c, 'a, L, H> {
         }
     }
 
-    /// Puts together as much as is sent at once; whether that is all.
+    /// Puts together as much as is sent at once, of answers one; whether that is all. What computes goes on while it is sent.
     async fn put(&mut self, received: &mut &[u8]) -> bool {
         let Self { outbox, talker, listener, room, shared, .. } = self;
         talker.put(outbox, shared);
         while outbox.has_room() {
             *received = &received[listener.take(received)..];
-            if !listener.answer(outbox, room, shared).await && received.is_empty() {
+            if listener.answer(outbox, shared).await {
+                return false;
+            }
+            if received.is_empty() && !listener.go_on(outbox, room, shared).await {
                 return true;
             }
         }

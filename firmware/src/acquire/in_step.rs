@@ -102,6 +102,11 @@ impl<'a, C: InStep<V>, R: Together<C, V, N>, V: Quantity, const N: usize> Group<
         self.reader.room()
     }
 
+    /// Takes none for so long: others have had their turn then, so that no other rest is due soon.
+    pub(super) async fn rest_for(&mut self, time: Duration) {
+        self.pace.rest_for(time).await;
+    }
+
     /// End of a converter's conversion among those taken last.
     pub(super) fn end(&self, index: usize) -> Edge {
         self.reader.end(index)

@@ -107,9 +107,14 @@ impl Pace {
     /// Rests where too many conversions in a row have waited.
     async fn rest(&mut self) {
         if self.behind == MOST_BEHIND {
-            Timer::after(REST).await;
-            self.behind = 0;
+            self.rest_for(REST).await;
         }
+    }
+
+    /// Rests for so long.
+    async fn rest_for(&mut self, time: Duration) {
+        Timer::after(time).await;
+        self.behind = 0;
     }
 
     /// Awaits conversions, at most for so long, and notes whether they had waited; then no time limit is set.

@@ -11,7 +11,7 @@
 
 use core::convert::Infallible;
 
-use embassy_time::{Duration, Timer};
+use embassy_time::Duration;
 use orientation::alignment::refusal::Refusal;
 use orientation::device::Device;
 use orientation::signal::SpinSample;
@@ -163,7 +163,7 @@ impl<'a, C: InStep<Code>, R: Together<C, Code, CHANNELS>> Source<'a> for SpinAcq
         loop {
             // The evaluation of a turn takes the aligner longer than the queue lasts now and then.
             while self.outlet.is_full() && self.converters.room() > SPARE {
-                Timer::after(LOOK).await;
+                self.converters.rest_for(LOOK).await;
             }
             if let Some(sample) = self.sample().await? {
                 self.outlet.hand_over(sample);

@@ -13,6 +13,8 @@
 
 use core::ops::Range;
 
+use embassy_futures::yield_now;
+use embassy_time::{Duration, Timer};
 use orientation::checksum::crc32_of_bytes;
 
 /// Bytes of the content of a record.
@@ -29,6 +31,9 @@ const CHECKSUM: usize = 4;
 const RECORD: usize = ROW + CONTENT + CHECKSUM;
 /// Records of a page.
 const RECORDS: u32 = (PAGE / RECORD) as u32;
+
+/// Time between two looks whether an erasure is over.
+const POLLED: Duration = Duration::from_millis(2);
 
 /// A flash of such pages and rows. Nothing of it waits for what is under way.
 pub trait Pages {
@@ -109,7 +114,7 @@ impl<F: Pages> Ring<F> {
 
     /// First byte of a place.
     const fn offset(&self, place: u32) -> u32 {
-        offset_of(&self.pages, place)
+        self.pages.start + place / RECORDS * PAGE as u32 + place % RECORDS * RECORD as u32
     }
 
     /// Begins to append a record, which is written by [`Self::step`]. The one before must be.
@@ -173,27 +178,42 @@ fn head(number: u32) -> Row {
 /// A record of the log with its number.
 pub type LogRecord = (u32, [u8; CONTENT]);
 
-/// The whole record with the least number above this one in these pages of a flash.
-pub fn record_after(flash: &impl Pages, pages: Range<u32>, number: u32) -> Option<LogRecord> {
+/// The whole record with the least number above this one in these pages of a flash. Others go on after each page; while one
+/// is erased, it waits, as the core would.
+pub async fn record_after(flash: &impl Pages, pages: Range<u32>, number: u32) -> Option<LogRecord> {
     let mut above = number;
     loop {
-        let (least, offset) = least_above(flash, &pages, above)?;
-        // One that is torn is passed over.
-        if let Some(content) = content(flash, offset, least) {
-            return Some((least, content));
+        let mut least = None;
+        for page in pages.clone().step_by(PAGE) {
+            yield_now().await;
+            while !flash.is_idle() {
+                Timer::after(POLLED).await;
+            }
+            least = least_above(flash, page, above, least);
         }
-        above = least;
+        let (number, offset) = least?;
+        // One that is torn is passed over.
+        if let Some(content) = content(flash, offset, number) {
+            return Some((number, content));
+        }
+        above = number;
     }
 }
 
-/// The least number above this one that is stated in these pages, with the offset of its record.
-fn least_above(flash: &impl Pages, pages: &Range<u32>, above: u32) -> Option<(u32, u32)> {
-    let places = (pages.end - pages.start) / PAGE as u32 * RECORDS;
-    let stated = (0..places).filter_map(|place| {
-        let offset = offset_of(pages, place);
-        flash.row(offset).and_then(number).map(|number| (number, offset))
-    });
-    stated.filter(|(number, _)| *number > above).min()
+/// The least number above this one that is stated in a page, or before it, with the offset of its record.
+fn least_above(
+    flash: &impl Pages,
+    page: u32,
+    above: u32,
+    mut least: Option<(u32, u32)>,
+) -> Option<(u32, u32)> {
+    for offset in (0..RECORDS).map(|place| page + place * RECORD as u32) {
+        let is_less = |it: u32| it > above && least.is_none_or(|(least, _)| it < least);
+        // A checksum takes longer than all else, and is looked at only of a number that counts.
+        let row = flash.row(offset).filter(|row| is_less(unchecked(*row)));
+        least = row.and_then(number).map(|number| (number, offset)).or(least);
+    }
+    least
 }
 
 /// The content of the record of this number at this offset; [`None`] where it is not whole.
@@ -206,15 +226,14 @@ fn content(flash: &impl Pages, offset: u32, number: u32) -> Option<[u8; CONTENT]
     (record(number, content) == found).then_some(*content)
 }
 
-/// First byte of a place in these pages.
-const fn offset_of(pages: &Range<u32>, place: u32) -> u32 {
-    pages.start + place / RECORDS * PAGE as u32 + place % RECORDS * RECORD as u32
+/// The number in a row, if it is the first of a record.
+const fn unchecked([a, b, c, d, ..]: Row) -> u32 {
+    u32::from_le_bytes([a, b, c, d])
 }
 
 /// The number in the first row of a record; [`None`] in any other row.
 fn number(row: Row) -> Option<u32> {
-    let [a, b, c, d, ..] = row;
-    let number = u32::from_le_bytes([a, b, c, d]);
+    let number = unchecked(row);
     // An erased row is what the head of that number would be.
     (number != u32::MAX && head(number) == row).then_some(number)
 }

@@ -51,8 +51,6 @@ const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Milliseconds after which an erasure counts as failed: twice what the slowest known one took (30 ms, Zephyr's issue
 /// 16934; 24.47 ms by the data sheet).
 const LONGEST_MILLISECONDS: u32 = 60;
-/// Time between two looks whether an erasure is over, ms.
-const POLLED_MILLISECONDS: u64 = 2;
 /// Rows that are read before other tasks run, about 3 µs each.
 const ROWS_AT_ONCE: u32 = 16;
 /// No offset.
@@ -135,11 +133,7 @@ impl firmware::ports::Store for Archive {
     }
 
     async fn record_after(&mut self, number: u32) -> Option<LogRecord> {
-        // The core would wait for an erasure of the ring.
-        while !self.bank.is_idle() {
-            Timer::after_millis(POLLED_MILLISECONDS).await;
-        }
-        record_after(&self.bank, LINES, number)
+        record_after(&self.bank, LINES, number).await
     }
 }
 

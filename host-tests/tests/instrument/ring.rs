@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 
 use embedded_storage_async::nor_flash::{NorFlash as _, ReadNorFlash as _};
-use firmware::storage::{CONTENT, Pages, Ring, Row, records};
+use firmware::storage::{CONTENT, LogRecord, Pages, Ring, Row, record_after, records};
 use hal_mock::flash::nor::{Interrupt, Loss, PoweredFlash};
 use hal_mock::flash::{Cells, Flash, PAGE, ROW, SIZE, Times};
 use host::virtual_time::run;
@@ -75,6 +75,13 @@ fn append(flash: &mut Board, numbers: impl IntoIterator<Item = u32>) {
     }
 }
 
+/// All records as they are asked for over the link, each after the one before.
+fn one_by_one(rows: &Rows<'_>) -> Vec<LogRecord> {
+    let after =
+        |number| run(record_after(rows, FIRST..SIZE as u32, number)).expect("it waits for nothing");
+    core::iter::successors(after(0), |(number, _)| after(*number)).collect()
+}
+
 /// The numbers of all records that can be read, in their order.
 fn kept(flash: &mut Board) -> Vec<u32> {
     let rows = Rows(RefCell::new(flash));
@@ -82,6 +89,7 @@ fn kept(flash: &mut Board) -> Vec<u32> {
     let bytes: Vec<u8> = (0..(3 * PAGE / ROW) as u32).flat_map(row).collect();
     let mut found: Vec<_> = records(&bytes).collect();
     found.sort_by_key(|(place, _)| *place);
+    assert!(one_by_one(&rows).iter().map(|(place, it)| (*place, it)).eq(found.iter().copied()));
     let number = |content: &[u8; CONTENT]| {
         let number = u32::from_le_bytes([content[0], content[1], content[2], content[3]]);
         assert_eq!(*content, self::content(number), "no record is mixed of others");

@@ -4,6 +4,7 @@ use emulated_board::run::Order;
 use execution::report::{Report, Service};
 use firmware::budget;
 use firmware::platform::Platform;
+use firmware::settings::{Editable, FASTEST, ITEMS};
 use simulated::flood::Flood;
 
 use super::support::executed::{Executed, execute_image, execute_told, fast_image};
@@ -14,6 +15,10 @@ use super::support::worlds::at_full_load;
 
 /// Bytes that 115 200 baud bring in a millisecond, at most.
 const MILLISECOND: usize = 11;
+/// Bytes of commands that may wait for their answers, and the time in which they have them, ms.
+const WAITING: (usize, usize) = (200, 250);
+/// When a board that is powered hears commands, ms.
+const HEARS: usize = 2100;
 
 /// The image of a carrier, which is the one of 2 400 samples a second where it has such a one, and sends all that it may.
 fn loaded(carrier: Platform) -> Executed {
@@ -98,4 +103,53 @@ fn no_carrier_loses_anything_while_its_link_is_full_both_ways() {
         assert!(answers.len() > 5, "{carrier}: {} answers", answers.len());
         assert!(answers.iter().all(|fields| fields[1] == "refused"), "{carrier}: {answers:?}");
     }
+}
+
+/// Commands that change nothing, of every kind that there is, in bursts as great as the port takes: each setting is given the
+/// value that it has.
+fn bursts(mut settings: impl Editable) -> Vec<Vec<u8>> {
+    let settings: &mut dyn Editable = &mut settings;
+    let all = (0..settings.count()).filter_map(|number| settings.nth(number));
+    let mut commands: Vec<String> = all.map(|it| format!("set {} {it}\r\n", it.name)).collect();
+    let others = ["get", "log", "test", "get course", "start", "save"];
+    commands.extend(others.map(|command| format!("{command}\r\n")));
+    let mut bursts = vec![Vec::new()];
+    for command in commands {
+        if bursts.last().is_some_and(|burst| burst.len() + command.len() > WAITING.0) {
+            bursts.push(Vec::new());
+        }
+        bursts.last_mut().expect("there is one").extend(command.bytes());
+    }
+    bursts
+}
+
+/// A spinning body has the least to spare: its samples are taken up beside the store, below the link.
+#[test]
+fn a_spinning_body_loses_nothing_while_it_is_given_commands_in_bursts() {
+    let mut settings = simulated::executed::spin(1).settings().expect("it has settings");
+    settings.output.rates = [FASTEST; ITEMS];
+    let bursts = bursts(settings);
+    let mut milliseconds = 0..;
+    let mut asked = Vec::new();
+    let told = || {
+        let now: usize = milliseconds.next().expect("it goes on");
+        let since = now.saturating_sub(HEARS);
+        let burst = &bursts[since / WAITING.1 % bursts.len()];
+        let begin = (since % WAITING.1 * MILLISECOND).min(burst.len());
+        let end = (begin + MILLISECOND).min(burst.len());
+        let sent = if now < HEARS { &[] } else { &burst[begin..end] };
+        asked.extend(sent);
+        sent.to_vec()
+    };
+    let shown = execute_told(&Order::usual(Platform::Spin, 1), at_full_load(Platform::Spin), told);
+    sound(&shown.report);
+    let answers = sentences(shown.link.iter().map(String::as_str), "PMRDR");
+    let refused: Vec<_> = answers.iter().filter(|fields| fields[1] == "refused").collect();
+    let count = |word: &str| answers.iter().filter(|fields| fields[0] == word).count();
+    let asked = String::from_utf8(asked).expect("commands");
+    let latest = bursts.iter().map(Vec::len).max().unwrap_or(0) / "set a 1\r\n".len();
+    let sets = asked.matches("set ").count() - latest;
+    assert!(sets > 50 && count("set") >= sets, "{} answers to {sets}: {answers:?}", count("set"));
+    let expected = ["start", "refused", "an alignment runs"];
+    assert!(refused.len() > 1 && refused.iter().all(|it| **it == expected), "{refused:?}");
 }

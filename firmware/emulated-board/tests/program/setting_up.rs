@@ -85,7 +85,10 @@ fn a_board_as_it_is_shipped_is_set_up_and_started_by_the_program_until_its_headi
     fs::remove_dir_all(&folder).expect("it is there");
     let kept = printed(&["settings", &port, "get"]);
     for (name, value) in &wanted {
-        assert!(kept.lines().any(|line| line.split_whitespace().eq([name, value.as_str()])), "{kept}");
+        assert!(
+            kept.lines().any(|line| line.split_whitespace().eq([name, value.as_str()])),
+            "{kept}"
+        );
     }
 
     printed(&["send", &port, "start"]);
