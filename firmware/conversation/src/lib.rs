@@ -13,7 +13,7 @@
 //! | file | what it is |
 //! |---|---|
 //! | `lib.rs` | its turns: what is due at a look is sent, what comes between two of them is heard |
-//! | `talker.rs` | what is due, and words |
+//! | `reporter.rs` | what is due, and words |
 //! | `situation.rs` | the report |
 //! | `outbox.rs` | what is sent together |
 //! | `listening.rs` | what takes the bytes that the link brings: a console, or nothing |
@@ -28,8 +28,8 @@
 pub mod console;
 mod listening;
 mod outbox;
+mod reporter;
 mod situation;
-mod talker;
 
 pub use listening::{Deaf, Listen, Listening};
 pub use outbox::{Outbox, PIECE};
@@ -47,7 +47,7 @@ use protocol::mavlink::Sender;
 use protocol::nmea;
 use protocol::words::Words;
 
-use talker::Talker;
+use reporter::Reporter;
 
 /// Time between two looks at what is to be sent.
 const LOOK: Duration = Duration::from_millis(1000 / FASTEST as u64);
@@ -63,11 +63,13 @@ const TAKEN: usize = 64;
 pub struct Conversation<'c, 'a, L, H> {
     link: L,
     outbox: Outbox,
-    talker: Talker,
+    reporter: Reporter,
     pace: Pace,
     listener: H,
     /// Bytes of long answers that may be sent until the next look.
     room: usize,
+    /// Whether bytes have come since the latest look.
+    has_heard: bool,
     shared: &'c Shared<'a>,
 }
 
@@ -75,8 +77,8 @@ impl<'c, 'a, L: Read + Write, H: Listen> Conversation<'c, 'a, L, H> {
     /// Has said and heard nothing yet.
     pub fn new(link: L, listener: H, shared: &'c Shared<'a>) -> Self {
         let outbox = Outbox::of(Sender::of_system(shared.output.get().system));
-        let (talker, pace) = (Talker::default(), Pace::new());
-        Self { link, outbox, talker, pace, listener, room: 0, shared }
+        let (reporter, pace) = (Reporter::default(), Pace::new());
+        Self { link, outbox, reporter, pace, listener, room: 0, has_heard: false, shared }
     }
 
     /// Converses until nothing more will happen, and that has been said, with everything that is sent at any time.
@@ -84,7 +86,7 @@ impl<'c, 'a, L: Read + Write, H: Listen> Conversation<'c, 'a, L, H> {
         while !self.shared.is_over() {
             self.turn().await;
         }
-        self.talker.look([0, u32::from(FASTEST)], self.shared);
+        self.reporter.look([0, u32::from(FASTEST)], self.shared);
         self.say(&[]).await;
     }
 
@@ -103,12 +105,22 @@ impl<'c, 'a, L: Read + Write, H: Listen> Conversation<'c, 'a, L, H> {
         // A look goes first, so that no flood of commands keeps it waiting.
         let count = match select(self.pace.wait(self.shared), heard).await {
             Either::First(()) => {
-                let output = self.talker.look(self.pace.looks, self.shared);
+                let output = self.reporter.look(self.pace.looks, self.shared);
                 self.outbox.sender.system = output.system;
                 self.room = output.room_at_a_look();
+                if !core::mem::take(&mut self.has_heard) {
+                    self.listener.pause();
+                }
                 0
             }
-            Either::Second(count) => count.unwrap_or(0),
+            Either::Second(Ok(count)) => {
+                self.has_heard = true;
+                count
+            }
+            Either::Second(Err(_)) => {
+                self.listener.lose();
+                0
+            }
         };
         self.say(&taken[..count]).await;
         self.listener.finish();
@@ -130,8 +142,8 @@ impl<'c, 'a, L: Read + Write, H: Listen> Conversation<'c, 'a, L, H> {
 
     /// Puts together as much as is sent at once, of answers one; whether that is all. What computes goes on while it is sent.
     async fn put(&mut self, received: &mut &[u8]) -> bool {
-        let Self { outbox, talker, listener, room, shared, .. } = self;
-        talker.put(outbox, shared);
+        let Self { outbox, reporter, listener, room, shared, .. } = self;
+        reporter.put(outbox, shared);
         while outbox.has_room() {
             *received = &received[listener.take(received)..];
             if listener.answer(outbox, shared).await {

@@ -16,6 +16,12 @@ pub trait Listen {
     /// Takes some of these bytes, at least one once [`Self::answer`] has found nothing; how many.
     fn take(&mut self, bytes: &[u8]) -> usize;
 
+    /// Notes that no byte has come for some time.
+    fn pause(&mut self);
+
+    /// Notes that bytes were lost.
+    fn lose(&mut self);
+
     /// Answers the next line or frame among the bytes that were taken; whether there was one. The outbox has room for an
     /// answer.
     async fn answer(&mut self, outbox: &mut Outbox, shared: &Shared<'_>) -> bool;
@@ -38,6 +44,10 @@ impl Listen for Deaf {
     fn take(&mut self, bytes: &[u8]) -> usize {
         bytes.len()
     }
+
+    fn pause(&mut self) {}
+
+    fn lose(&mut self) {}
 
     async fn answer(&mut self, _: &mut Outbox, _: &Shared<'_>) -> bool {
         false
@@ -79,6 +89,14 @@ impl Listen for Listening<'_> {
         self.receiver.take(bytes)
     }
 
+    fn pause(&mut self) {
+        self.receiver.pause();
+    }
+
+    fn lose(&mut self) {
+        self.receiver.lose();
+    }
+
     async fn answer(&mut self, outbox: &mut Outbox, shared: &Shared<'_>) -> bool {
         let Some(received) = self.receiver.next() else { return false };
         Timer::at(self.rested).await;
@@ -110,6 +128,14 @@ impl<L: Listen> Listen for Option<L> {
 
     fn take(&mut self, bytes: &[u8]) -> usize {
         self.as_mut().map_or(bytes.len(), |listener| listener.take(bytes))
+    }
+
+    fn pause(&mut self) {
+        self.iter_mut().for_each(Listen::pause);
+    }
+
+    fn lose(&mut self) {
+        self.iter_mut().for_each(Listen::lose);
     }
 
     async fn answer(&mut self, outbox: &mut Outbox, shared: &Shared<'_>) -> bool {

@@ -18,17 +18,20 @@ pub struct Clients {
 }
 
 impl Clients {
-    /// Waits for the first client at a port of this computer; 0 is any that is free. Standard error says which.
+    /// Those who come to a port of this computer, of whom the first may be waited for; 0 is any port that is free. Standard
+    /// error says which.
     ///
     /// # Errors
     /// What the system says, as where the port is taken.
-    pub fn wait(port: u16) -> Result<Self, String> {
+    pub fn at(port: u16, waits: bool) -> Result<Self, String> {
         let failed = |error: io::Error| format!("--link tcp:{port}: {error}");
         let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
-        eprintln!("waiting for a client at {}", listener.local_addr().map_err(failed)?);
-        let client = listener.accept().and_then(|(stream, _)| Client::new(stream));
+        let does = if waits { "waiting for a client" } else { "listening to clients" };
+        eprintln!("{does} at {}", listener.local_addr().map_err(failed)?);
+        let first = || listener.accept().and_then(|(stream, _)| Client::new(stream));
+        let client = waits.then(first).transpose().map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
-        Ok(Self { client: Some(client.map_err(failed)?), listener })
+        Ok(Self { listener, client })
     }
 
     /// Hands over bytes of the link, and takes what the client sends, without waiting for it. Without a client, the bytes

@@ -42,8 +42,8 @@ struct Arguments {
     /// The link as a byte stream for one client after the other; the first is waited for.
     #[arg(long, value_name = "tcp:PORT", value_parser = port)]
     link: Option<u16>,
-    /// The flash has nothing but the image: the board is set up over its link, for which it has an hour, in which its time
-    /// goes no faster than that of its clients.
+    /// The flash has nothing but the image: the board is set up over its link. It waits for no client, and its time goes no
+    /// faster than theirs; it ends after an hour without a result, and an hour after its first one unless that is stated.
     #[arg(long, requires = "link")]
     as_shipped: bool,
     /// The board's crystal does not oscillate.
@@ -57,7 +57,7 @@ struct Arguments {
 /// Time that a start with a dead crystal waits for it longer than one with a sound crystal, s.
 const DEAD_CRYSTAL: f64 = 0.5;
 
-/// Time that a board has until its result which is to be set up first, s.
+/// Time that a board has until its result which is to be set up first, and after it, s.
 const SETTING_UP: f64 = 3600.0;
 
 fn main() -> ExitCode {
@@ -85,7 +85,8 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
     let image = Rc::new(Image::read(&arguments.image)?);
     execution::carrier::require(&image.elf, arguments.carrier).map_err(named)?;
     let order = order(arguments);
-    let mut clients = arguments.link.map(Clients::wait).transpose()?;
+    let clients = arguments.link.map(|port| Clients::at(port, !arguments.as_shipped));
+    let mut clients = clients.transpose()?;
     let on_line = |line: &Line| {
         eprintln!("{:>12} {:<5} {}", line.time, line.level.unwrap_or("-"), line.words);
     };
@@ -110,10 +111,13 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
 /// What is executed.
 fn order(arguments: &Arguments) -> Order {
     let usual = Order::usual(arguments.carrier, arguments.seed);
-    let longest = if arguments.as_shipped { SETTING_UP } else { usual.longest };
+    let (longest, afterwards) = match arguments.as_shipped {
+        true => (SETTING_UP, SETTING_UP),
+        false => (usual.longest, usual.afterwards),
+    };
     Order {
         cycles: arguments.cycles,
-        afterwards: arguments.afterwards.unwrap_or(usual.afterwards),
+        afterwards: arguments.afterwards.unwrap_or(afterwards),
         longest: longest + if arguments.dead_crystal { DEAD_CRYSTAL } else { 0.0 },
         oscillators: Oscillators { has_crystal: !arguments.dead_crystal, ..usual.oscillators },
         ..usual

@@ -72,16 +72,16 @@ pub struct Executors {
 type Kept<C> = Mutex<Lock, Settings<C>>;
 
 /// Settings at the moment at which the first alignment begins, and the latitude that holds.
-type Settled<C> = (MutexGuard<'static, Lock, Settings<C>>, Option<Latitude>);
+type Initial<C> = (MutexGuard<'static, Lock, Settings<C>>, Option<Latitude>);
 
 /// Final places in memory of what the parts of an instrument share.
-struct Places<S: 'static, C: CarrierSchedule + 'static> {
+struct Statics<S: 'static, C: CarrierSchedule + 'static> {
     channels: StaticCell<Channels<S>>,
     settings: StaticCell<Kept<C>>,
 }
 
-impl<S: Send, C: CarrierSchedule> Places<S, C> {
-    /// Places at which nothing is yet.
+impl<S: Send, C: CarrierSchedule> Statics<S, C> {
+    /// Statics at which nothing is yet.
     const fn new() -> Self {
         Self { channels: StaticCell::new(), settings: StaticCell::new() }
     }
@@ -102,16 +102,16 @@ impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
     /// Connects it at its final places in memory. Not inlined, so that what is made on the way is in no frame of the
     /// program.
     #[inline(never)]
-    fn new(places: &'static Places<S, C>, outlets: &Outlets) -> Self {
+    fn new(statics: &'static Statics<S, C>, outlets: &Outlets) -> Self {
         static STORE: StaticCell<SharedStore<Archive>> = StaticCell::new();
-        let channels = places.channels.init_with(|| Channels::new(outlets.log));
+        let channels = statics.channels.init_with(|| Channels::new(outlets.log));
         channels.shared.clocks = timebase(outlets.clock);
         let store = STORE.init_with(|| SharedStore::new(outlets.flash.archive()));
         let loaded = settings::load::<C>(outlets);
         let start = loaded.as_ref().map(Editable::start).map_err(|reason| *reason);
         let settings = loaded.unwrap_or_default();
         channels.shared.output.set(settings.output);
-        Self { channels, store, settings: places.settings.init(Mutex::new(settings)), start }
+        Self { channels, store, settings: statics.settings.init(Mutex::new(settings)), start }
     }
 
     /// Has the link converse from now on, and waits until the first alignment is to begin: at once where the settings say
@@ -119,14 +119,14 @@ impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
     ///
     /// # Errors
     /// Why nothing begins.
-    async fn settled(&self, executors: Executors, port: Link) -> Result<Settled<C>, NotBegun> {
+    async fn until_begin(&self, executors: Executors, port: Link) -> Result<Initial<C>, NotBegun> {
         let Self { settings, store, start, .. } = *self;
         let shared = &self.channels.shared;
         let board = BoardSettings { settings, serial: settings::serial() };
         executors.link.spawn(once(converse(port, board, shared)));
         executors.thread.spawn(once(keep_store(store, board, shared)));
         let start = start?;
-        if !start.is_at_power_on || !start.is_placed(None) {
+        if !start.is_at_power_on || start.lacks_latitude(None) {
             shared.wait_to_begin();
             shared.begin.wait().await;
             shared.status.set(Status::Starting);

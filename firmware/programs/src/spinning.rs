@@ -11,15 +11,15 @@ use stm32::sample_path::{Channels, acquire_on_spinning_body, find_on_spinning_bo
 use stm32::wiring::SpinWires;
 use stm32::{once, ports};
 
-use crate::{Executors, Instrument, Places, Settled, methods};
+use crate::{Executors, Initial, Instrument, Statics, methods};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(executors: Executors, wires: SpinWires, link: Link) {
-    static PLACES: Places<SpinSample, SpinSchedule> = Places::new();
-    let instrument = Instrument::new(&PLACES, &wires.outlets);
-    let settled = instrument.settled(executors, link).await;
-    instrument.tell(settled.and_then(|it| begin(executors, wires, instrument.channels, it)));
+    static STATICS: Statics<SpinSample, SpinSchedule> = Statics::new();
+    let instrument = Instrument::new(&STATICS, &wires.outlets);
+    let initial = instrument.until_begin(executors, link).await;
+    instrument.tell(initial.and_then(|it| begin(executors, wires, instrument.channels, it)));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
@@ -32,7 +32,7 @@ fn begin(
     executors: Executors,
     wires: SpinWires,
     channels: &'static Channels<SpinSample>,
-    (settings, _): Settled<SpinSchedule>,
+    (settings, _): Initial<SpinSchedule>,
 ) -> Result<(), NotBegun> {
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
     let settings = &*settings;

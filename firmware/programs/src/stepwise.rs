@@ -20,16 +20,16 @@ use stm32::sample_path::{
 use stm32::wiring::{AxisPlatformWires, FramesWires};
 use stm32::{once, ports};
 
-use crate::{Executors, Instrument, Places, Settled, keeping, methods, on_base};
+use crate::{Executors, Initial, Instrument, Statics, keeping, methods, on_base};
 
 /// Runs the instrument on a stage: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn on_a_stage(executors: Executors, wires: AxisPlatformWires, link: Link) {
-    static PLACES: Places<Sample, StageSchedule> = Places::new();
-    let instrument = Instrument::new(&PLACES, &wires.outlets);
-    let settled = instrument.settled(executors, link).await;
-    let begin = |settled| begin_on_a_stage(executors, wires, instrument.channels, settled);
-    instrument.tell(settled.and_then(begin));
+    static STATICS: Statics<Sample, StageSchedule> = Statics::new();
+    let instrument = Instrument::new(&STATICS, &wires.outlets);
+    let initial = instrument.until_begin(executors, link).await;
+    let begin = |initial| begin_on_a_stage(executors, wires, instrument.channels, initial);
+    instrument.tell(initial.and_then(begin));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
@@ -42,7 +42,7 @@ fn begin_on_a_stage(
     executors: Executors,
     wires: AxisPlatformWires,
     channels: &'static Channels,
-    (settings, latitude): Settled<StageSchedule>,
+    (settings, latitude): Initial<StageSchedule>,
 ) -> Result<(), NotBegun> {
     let settings = &*settings;
     let AxisPlatformWires { converter, accelerometer, axes, base, motor_enable, .. } = wires;
@@ -67,11 +67,11 @@ fn begin_on_a_stage(
 /// axis vertical.
 #[embassy_executor::task]
 pub async fn on_two_frames(executors: Executors, wires: FramesWires, link: Link) {
-    static PLACES: Places<Sample, TwoFrameSchedule> = Places::new();
-    let instrument = Instrument::new(&PLACES, &wires.outlets);
-    let settled = instrument.settled(executors, link).await;
-    let begin = |settled| begin_on_two_frames(executors, wires, instrument.channels, settled);
-    instrument.tell(settled.and_then(begin));
+    static STATICS: Statics<Sample, TwoFrameSchedule> = Statics::new();
+    let instrument = Instrument::new(&STATICS, &wires.outlets);
+    let initial = instrument.until_begin(executors, link).await;
+    let begin = |initial| begin_on_two_frames(executors, wires, instrument.channels, initial);
+    instrument.tell(initial.and_then(begin));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
@@ -84,7 +84,7 @@ fn begin_on_two_frames(
     executors: Executors,
     wires: FramesWires,
     channels: &'static Channels,
-    (settings, latitude): Settled<TwoFrameSchedule>,
+    (settings, latitude): Initial<TwoFrameSchedule>,
 ) -> Result<(), NotBegun> {
     static FRAMES: StaticCell<FramesConfiguration> = StaticCell::new();
     let settings = &*settings;

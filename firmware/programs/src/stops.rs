@@ -16,15 +16,15 @@ use stm32::sample_path::{Channels, acquire_in_vehicle, find_in_vehicle, keep_veh
 use stm32::wiring::VehicleWires;
 use stm32::{once, ports};
 
-use crate::{Executors, Instrument, Places, Settled, keeper, methods};
+use crate::{Executors, Initial, Instrument, Statics, keeper, methods};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(executors: Executors, wires: VehicleWires, link: Link) {
-    static PLACES: Places<InertialSample, VehicleSchedule> = Places::new();
-    let instrument = Instrument::new(&PLACES, &wires.outlets);
-    let settled = instrument.settled(executors, link).await;
-    instrument.tell(settled.and_then(|it| begin(executors, wires, instrument.channels, it)));
+    static STATICS: Statics<InertialSample, VehicleSchedule> = Statics::new();
+    let instrument = Instrument::new(&STATICS, &wires.outlets);
+    let initial = instrument.until_begin(executors, link).await;
+    instrument.tell(initial.and_then(|it| begin(executors, wires, instrument.channels, it)));
 }
 
 /// Spawns the tasks of the sample path, of all priorities. Not inlined, so that what is made on the way is in no
@@ -37,7 +37,7 @@ fn begin(
     executors: Executors,
     wires: VehicleWires,
     channels: &'static Channels<InertialSample>,
-    (settings, latitude): Settled<VehicleSchedule>,
+    (settings, latitude): Initial<VehicleSchedule>,
 ) -> Result<(), NotBegun> {
     let settings = &*settings;
     let VehicleWires { converters, accelerometer, .. } = wires;

@@ -17,7 +17,7 @@ use stm32::sample_path::{Channels, acquire_on_axis, find_on_turntable, operate_t
 use stm32::wiring::AxisPlatformWires;
 use stm32::{once, ports};
 
-use crate::{Executors, Instrument, Places, Settled, keeping, methods, on_base};
+use crate::{Executors, Initial, Instrument, Statics, keeping, methods, on_base};
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -25,10 +25,10 @@ const TODAY: Today = Today { date: None, longest: None };
 /// Runs the instrument on a rotating platform: it aligns, then holds the result without end.
 #[embassy_executor::task]
 pub async fn align(executors: Executors, wires: AxisPlatformWires, link: Link) {
-    static PLACES: Places<Sample, TurntableSchedule> = Places::new();
-    let instrument = Instrument::new(&PLACES, &wires.outlets);
-    let begun = match instrument.settled(executors, link).await {
-        Ok(settled) => begin(executors, wires, &instrument, settled).await,
+    static STATICS: Statics<Sample, TurntableSchedule> = Statics::new();
+    let instrument = Instrument::new(&STATICS, &wires.outlets);
+    let begun = match instrument.until_begin(executors, link).await {
+        Ok(initial) => begin(executors, wires, &instrument, initial).await,
         Err(reason) => Err(reason),
     };
     instrument.tell(begun);
@@ -42,7 +42,7 @@ async fn begin(
     executors: Executors,
     wires: AxisPlatformWires,
     instrument: &Instrument<Sample, TurntableSchedule>,
-    (settings, latitude): Settled<TurntableSchedule>,
+    (settings, latitude): Initial<TurntableSchedule>,
 ) -> Result<(), NotBegun> {
     let Instrument { channels, store, .. } = *instrument;
     let settings = &*settings;

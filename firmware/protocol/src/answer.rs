@@ -19,8 +19,8 @@ use crate::nmea::{FRAME, LONGEST, Sentence, Writer, is_allowed, plain};
 
 /// The address of an answer.
 pub const ANSWER: &str = "PMRDR";
-/// Most characters of a setting's name.
-pub const LONGEST_NAME: usize = 16;
+/// Most characters of the name of a setting, or of a device.
+pub const LONGEST_NAME: usize = 24;
 /// Most bytes of a record in a part of it: with the greatest numbers before it, it still fits into a sentence.
 pub const PART: usize = 24;
 /// Most characters of a reason: what is left of a sentence for the longest command.
@@ -137,7 +137,7 @@ fn part<'a>(record: &str, rest: &'a str) -> Option<Part<'a>> {
     are_bytes.then_some(Part { record, number, digits })
 }
 
-/// Whether a word may be the name of a setting: small letters, digits and underscores, and none of the words that an
+/// Whether a word may be the name of a setting or of a device: small letters, digits and underscores, and none of the words that an
 /// answer has in the place of a name.
 #[must_use]
 pub fn is_name(word: &str) -> bool {

@@ -103,6 +103,11 @@ impl Receiver {
         }
     }
 
+    /// Notes that bytes were lost: what waits is none, and a line begins after the next end of one.
+    pub fn lose(&mut self) {
+        self.skip(self.waiting.len() - self.done, false);
+    }
+
     /// The next line or frame; [`None`] until more bytes have come.
     #[expect(clippy::should_implement_trait, reason = "what it returns borrows from it")]
     pub fn next(&mut self) -> Option<Received<'_>> {

@@ -57,8 +57,8 @@ const LIMITS: [f64; 2] = [EARTH_RATE, i32::MAX as f64 * 1e-9];
 /// 2⁻³² nrad/s, the limits of a [`Scale`].
 const SCALE_FACTORS: [f64; 2] =
     [INTERNAL_REFERENCE_VOLTS * 1e9 / (1_u64 << 61) as f64, INTERNAL_REFERENCE_VOLTS * 1e9 * 2.0];
-/// Decimal places of a latitude, °: a centimetre.
-const LATITUDE_PLACES: u8 = 7;
+/// Latitude, °, to a centimetre.
+const LATITUDE: Unit = Unit { places: 7, si: DEGREE };
 /// Scale factor of a gyro: V per °/s, to a billionth of the usual tenth.
 const GYRO_SCALE: Unit = Unit { places: 10, si: DEGREES_PER_RADIAN };
 /// Limit of a gyro, °/s.
@@ -188,7 +188,7 @@ impl Named for Gyro {
 /// Lists a latitude.
 fn list_latitude(list: &mut List<'_>, latitude: &mut Option<Latitude>) {
     let value = latitude.map_or(f64::NAN, |latitude| Radians(latitude.rad()).degrees());
-    list.optional("latitude", LATITUDE_PLACES, value, &mut |stated| {
+    list.optional("latitude", LATITUDE, value, &mut |stated| {
         *latitude = stated.and_then(Latitude::from_degrees);
         latitude.is_some() == stated.is_some()
     });
@@ -211,12 +211,16 @@ impl<C: CarrierSchedule> Named for Settings<C> {
 }
 
 impl<C: CarrierSchedule> Editable for Settings<C> {
-    fn set(&mut self, name: &str, value: f64) -> Result<bool, EditError> {
+    fn set(&mut self, name: &str, value: f64) -> Result<(), EditError> {
         let mut changed = self.clone();
-        let is_other = put(&mut changed, name, value)?;
-        changed.check().map_err(EditError::OutOfRange)?;
+        let si = put(&mut changed, name, value)?;
+        changed.check().map_err(|error| EditError::of(error, value * si, si))?;
         *self = changed;
-        Ok(is_other)
+        Ok(())
+    }
+
+    fn checksum(&self) -> u32 {
+        self.checksum()
     }
 
     fn to_record(&self, serial: &Serial) -> Result<[u8; BYTES], SettingsError> {

@@ -10,11 +10,10 @@
 
 use core::fmt;
 
-use orientation::alignment::setup::SetupError;
+use orientation::alignment::setup::{Quantity, SetupError};
 use orientation::earth::Latitude;
 use orientation::units::{DEGREE, Seconds};
-use orientation::words;
-use orientation::words::Decimal;
+use orientation::words::{Decimal, Shortened};
 use protocol::command;
 
 use super::output::Output;
@@ -85,7 +84,7 @@ impl Stated {
     pub fn parse(&self, text: &str) -> Result<f64, EditError> {
         if !self.words.is_empty() {
             let index = self.words.iter().position(|word| *word == text);
-            return index.map(|index| index as f64).ok_or(EditError::NoSuchWord);
+            return index.map(|index| index as f64).ok_or(EditError::NoSuchWord(self.words));
         }
         if text == NONE {
             return Ok(f64::NAN);
@@ -98,6 +97,8 @@ impl Stated {
 pub struct Entry<'e> {
     /// The setting.
     pub stated: Stated,
+    /// The user's unit, in SI units; one for what has none.
+    pub si: f64,
     /// Its number in the list, from zero.
     pub number: usize,
     /// Gives the field a value in the user's unit; whether its type can hold that. Ranges are checked elsewhere.
@@ -155,7 +156,8 @@ impl<'v> List<'v> {
     /// Shows a number, SI units, which is wanted.
     fn show_number(&mut self, name: &'static str, unit: Unit, field: &mut f64) {
         let value = *field / unit.si;
-        self.show(Stated { name, value, places: unit.places, words: &[] }, &mut |stated| {
+        let stated = Stated { name, value, places: unit.places, words: &[] };
+        self.show(stated, unit.si, &mut |stated| {
             if stated.is_finite() {
                 *field = stated * unit.si;
             }
@@ -176,26 +178,27 @@ impl<'v> List<'v> {
     /// Lists a time that may be absent.
     pub(super) fn time(&mut self, name: &'static str, field: &mut Option<Seconds>) {
         let value = field.map_or(f64::NAN, |time| time.0);
-        self.optional(name, SECONDS.places, value, &mut |stated| {
+        self.optional(name, SECONDS, value, &mut |stated| {
             *field = stated.map(Seconds);
             true
         });
     }
 
-    /// Lists a number that may be absent, which is not a number then. `set` is given none for that, and tells whether the
-    /// field can hold what it is given.
+    /// Lists a number in the user's unit that may be absent, which is not a number then. `set` is given none for that, and
+    /// tells whether the field can hold what it is given.
     #[inline(never)]
     pub(super) fn optional(
         &mut self,
         name: &'static str,
-        places: u8,
+        unit: Unit,
         value: f64,
         set: &mut dyn FnMut(Option<f64>) -> bool,
     ) {
         if !self.wants(name) {
             return;
         }
-        self.show(Stated { name, value, places, words: &[] }, &mut |stated| {
+        let stated = Stated { name, value, places: unit.places, words: &[] };
+        self.show(stated, unit.si, &mut |stated| {
             !stated.is_infinite() && set(Some(stated).filter(|stated| !stated.is_nan()))
         });
     }
@@ -219,7 +222,7 @@ impl<'v> List<'v> {
             return;
         }
         let value = f64::from(*field);
-        self.show(Stated { name, value, places: 0, words: &[] }, &mut |stated| {
+        self.show(Stated { name, value, places: 0, words: &[] }, 1.0, &mut |stated| {
             let is_held =
                 stated >= 0.0 && stated <= f64::from(most) && libm::trunc(stated) == stated;
             if is_held {
@@ -247,26 +250,29 @@ impl<'v> List<'v> {
             return;
         }
         let value = index as f64;
-        self.show(Stated { name, value, places: 0, words }, &mut |stated| {
+        self.show(Stated { name, value, places: 0, words }, 1.0, &mut |stated| {
             let found = (0..words.len()).find(|index| *index as f64 == stated);
             found.map(&mut *set).is_some()
         });
     }
 
     /// Shows the field that is wanted, which was passed last.
-    fn show(&mut self, stated: Stated, set: &mut dyn FnMut(f64) -> bool) {
-        (self.visitor)(Entry { stated, number: self.passed - 1, set });
+    fn show(&mut self, stated: Stated, si: f64, set: &mut dyn FnMut(f64) -> bool) {
+        (self.visitor)(Entry { stated, si, number: self.passed - 1, set });
     }
 }
 
 /// Settings that are read and changed by their names, whatever the carrier.
 pub trait Editable: Named + Send {
-    /// Gives the setting of this name a value in its user's unit; whether it had another. Unless all settings are then
-    /// possible together, they stay as they were.
+    /// Gives the setting of this name a value in its user's unit. Unless all settings are then possible together, they stay
+    /// as they were.
     ///
     /// # Errors
     /// Why not.
-    fn set(&mut self, name: &str, value: f64) -> Result<bool, EditError>;
+    fn set(&mut self, name: &str, value: f64) -> Result<(), EditError>;
+
+    /// Checksum of what counts from the next start on: of all but what the link sends.
+    fn checksum(&self) -> u32;
 
     /// Record of the settings for the board whose controller has this serial number.
     ///
@@ -305,10 +311,10 @@ impl Start {
         self.stated.or(received).filter(|_| self.needs_latitude)
     }
 
-    /// Whether it has a latitude, or needs none.
+    /// Whether it needs a latitude that it does not have.
     #[must_use]
-    pub fn is_placed(&self, received: Option<Latitude>) -> bool {
-        self.latitude(received).is_some() || !self.needs_latitude
+    pub fn lacks_latitude(&self, received: Option<Latitude>) -> bool {
+        self.needs_latitude && self.latitude(received).is_none()
     }
 }
 
@@ -352,17 +358,16 @@ impl dyn Editable + '_ {
     }
 }
 
-/// Gives the field of this name a value, unchecked; whether it had another.
+/// Gives the field of this name a value, unchecked; the user's unit, in SI units.
 ///
 /// # Errors
 /// [`EditError::Unknown`] and [`EditError::NotHeld`].
-pub(super) fn put(part: &mut dyn Named, name: &str, value: f64) -> Result<bool, EditError> {
+pub(super) fn put(part: &mut dyn Named, name: &str, value: f64) -> Result<f64, EditError> {
     let mut done = Err(EditError::Unknown);
     part.list(&mut List::new(Wanted::Name(name), &mut |entry| {
         // What is shown already stays as it is: its unit would round it once more.
-        let is_other = !entry.stated.shows(value);
-        let is_held = !is_other || (entry.set)(value);
-        done = is_held.then_some(is_other).ok_or(EditError::NotHeld);
+        let is_held = entry.stated.shows(value) || (entry.set)(value);
+        done = is_held.then_some(entry.si).ok_or(EditError::NotHeld);
     }));
     done
 }
@@ -374,20 +379,49 @@ pub enum EditError {
     Unknown,
     /// The text is no decimal number.
     NotANumber,
-    /// The text is none of the words of a choice.
-    NoSuchWord,
+    /// The text is none of these words of a choice.
+    NoSuchWord(&'static [&'static str]),
     /// The setting is never such a value: a part of a thing, too many, or nothing where it cannot be absent.
     NotHeld,
-    /// A quantity would be out of its range, this one or one that depends on it.
+    /// The value is not from the least to the greatest one that the setting can have, in the user's unit.
+    Beyond([f64; 2]),
+    /// Another quantity would be out of its range, or the settings are not possible together.
     OutOfRange(SetupError),
+}
+
+/// Part by which a quantity may differ from the value that it was given, as it may be of single precision.
+const ROUNDED: f64 = 1e-6;
+
+impl EditError {
+    /// The reason why a setting does not get this value, in SI units, whose user's unit is `si`.
+    pub(super) fn of(error: SetupError, value: f64, si: f64) -> Self {
+        match error {
+            SetupError::OutOfRange(Quantity { value: found, range, .. })
+                if (found.abs() - value.abs()).abs() <= ROUNDED * found.abs() =>
+            {
+                Self::Beyond(range.map(|end| end / si))
+            }
+            error => Self::OutOfRange(error),
+        }
+    }
 }
 
 impl core::error::Error for EditError {}
 
-words! { EditError:
-    Self::Unknown => "no such setting";
-    Self::NotANumber => "not a number";
-    Self::NoSuchWord => "not one of its words";
-    Self::NotHeld => "not a value of this setting";
-    Self::OutOfRange(error) => "{}", error;
+impl fmt::Display for EditError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unknown => "no such setting",
+            Self::NotANumber => "not a number",
+            Self::NoSuchWord(words) => {
+                f.write_str("not one of")?;
+                return words.iter().try_for_each(|word| write!(f, " {word}"));
+            }
+            Self::NotHeld => "not a value of this setting",
+            Self::Beyond([least, greatest]) => {
+                return write!(f, "not from {} to {}", Shortened(*least), Shortened(*greatest));
+            }
+            Self::OutOfRange(error) => return error.fmt(f),
+        })
+    }
 }

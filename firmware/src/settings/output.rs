@@ -111,7 +111,8 @@ impl Item {
     }
 
     /// How often it is sent unless that is set, Hz.
-    const fn usual_rate(self) -> u8 {
+    #[must_use]
+    pub const fn usual_rate(self) -> u8 {
         match self {
             Self::Attitude => FASTEST,
             // Some vehicles of PX4 fuse its position, which is none, unless they are told not to.

@@ -104,6 +104,15 @@ impl<C: CarrierSchedule> Settings<C> {
         Ok(record)
     }
 
+    /// Checksum of what counts from the next start on: of all but what the link sends.
+    pub(super) fn checksum(&self) -> u32 {
+        let mut content = [0; BYTES];
+        let settings = Self { output: Output::default(), ..self.clone() };
+        // It fits, as it does into a record.
+        let _ = postcard::to_slice(&settings, &mut content);
+        crc32_of_bytes(&content)
+    }
+
     /// Settings of a record of any version, for the board whose controller has this serial number.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ use super::calibration::{
     Calibration, FramesCalibration, PlatformCalibration, SpinCalibration, TurntableCalibration,
     VehicleCalibration,
 };
-use super::names::{DEGREES, List, NONE, Named, SECONDS};
+use super::names::{DEGREES, List, NONE, Named, SECONDS, Unit};
 use crate::platform::Platform;
 
 /// Headings of a pass on two frames.
@@ -35,8 +35,8 @@ const FEWEST_MODULATED: f64 = 4.0;
 const STOP: [f64; 2] = [10.0, 3600.0];
 /// Greatest course and pitch at the start of a flight, of either sign, rad.
 const START: [f64; 2] = [360.0 * DEGREE, 90.0 * DEGREE];
-/// Decimal places of turns a second: a thousandth of a thousandth.
-const HERTZ: u8 = 6;
+/// Turns a second, to a millionth.
+const HERTZ: Unit = Unit { places: 6, si: TURN };
 
 /// Schedule of a session on one carrier.
 pub trait CarrierSchedule:
@@ -86,7 +86,9 @@ impl CarrierSchedule for StageSchedule {
             ("dwell", self.dwell.0, DWELL),
             ("survey", or_least(self.survey), SURVEY),
             ("allowed", or_least(self.allowed), SURVEY),
-        ])
+        ])?;
+        let is_whole = self.positions > 2 || self.half.is_some() || self.survey.is_some();
+        is_whole.then_some(()).ok_or(SetupError::TwoPositions)
     }
 }
 

@@ -34,15 +34,17 @@ impl Link {
     }
 
     /// Takes bytes that were received; pending where there are none.
-    fn poll_read(&mut self, bytes: &mut [u8], context: &Context<'_>) -> Poll<usize> {
+    ///
+    /// # Errors
+    /// [`Error::Overrun`]: it was looked at too late, and what was written over is lost.
+    fn poll_read(&mut self, bytes: &mut [u8], context: &Context<'_>) -> Poll<Result<usize, Error>> {
         self.receiver.set_waker(context.waker());
         match self.receiver.read(bytes) {
             Ok((0, _)) => Poll::Pending,
-            Ok((count, _)) => Poll::Ready(count),
+            Ok((count, _)) => Poll::Ready(Ok(count)),
             Err(_) => {
-                // It was looked at too late: what was written over is lost.
                 self.receiver.clear();
-                Poll::Pending
+                Poll::Ready(Err(Error::Overrun))
             }
         }
     }
@@ -54,7 +56,7 @@ impl ErrorType for Link {
 
 impl Read for Link {
     async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Error> {
-        Ok(poll_fn(|context| self.poll_read(bytes, context)).await)
+        poll_fn(|context| self.poll_read(bytes, context)).await
     }
 }
 

@@ -169,8 +169,7 @@ fn settled(stream: TcpStream) -> io::Result<TcpStream> {
 fn unconnected(port: u16, error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => format!(
-            "nothing is served there; `meridian emulate --board stage --link tcp:{port}` serves an emulated board to one \
-             client"
+            "nothing is served there; `meridian emulate --board stage --link tcp:{port}` serves an emulated board"
         ),
         ErrorKind::TimedOut => "the computer does not answer".to_owned(),
         _ => refused::cause(error),

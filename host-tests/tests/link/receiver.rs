@@ -113,6 +113,18 @@ fn a_frame_whose_end_does_not_come_is_given_up_after_a_pause() {
     assert_eq!(receiver.next(), Some(Received::Line("stop")));
 }
 
+/// What is left of a line might be another command.
+#[test]
+fn a_line_of_which_bytes_were_lost_is_none() {
+    let mut receiver = Receiver::default();
+    receiver.take(b"set dwell 5; re");
+    assert_eq!(receiver.next(), None);
+    receiver.lose();
+    receiver.take(b"stop\nstart\n");
+    assert_eq!(receiver.next(), Some(Received::Line("start")));
+    assert_eq!(receiver.next(), None);
+}
+
 proptest! {
     #[test]
     fn however_the_bytes_are_cut_the_same_is_found(

@@ -9,7 +9,7 @@ use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
 use orientation::units::{Radians, wrapped};
 
-use super::{Asker, Console};
+use super::{Console, Requester};
 
 /// Greatest standard deviation of an azimuth that is stated from outside, 1σ: beyond it, it says nothing.
 const LEAST_KNOWN: Radians = Radians::from_degrees(30.0);
@@ -64,13 +64,13 @@ impl Console {
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
         if shared.is_waiting() {
-            if !settings.start().is_placed(shared.latitude.get()) {
+            if settings.start().lacks_latitude(shared.latitude.get()) {
                 return Err(Refused::NotBegun(NotBegun::NoLatitude));
             }
             shared.begin.signal(());
             return Ok(());
         }
-        self.check_again(shared)?;
+        self.check_again(settings, shared)?;
         if !shared.is_idle() {
             return Err(Refused::Runs);
         }
@@ -90,21 +90,22 @@ impl Console {
         if shared.is_waiting() || shared.is_idle() {
             return self.start(settings, shared);
         }
-        self.check_again(shared)?;
+        self.check_again(settings, shared)?;
         shared.fail(Refusal::Stopped);
         self.begins_again = true;
         Ok(())
     }
 
     /// Whether an alignment may begin once more.
-    fn check_again(&self, shared: &Shared<'_>) -> Result<(), Refused> {
+    fn check_again(&self, settings: &dyn Editable, shared: &Shared<'_>) -> Result<(), Refused> {
         if let Some(reason) = shared.not_begun.get() {
             return Err(Refused::NotBegun(reason));
         }
         if shared.is_over() {
             return Err(Refused::Over);
         }
-        if self.is_changed { Err(Refused::Changed) } else { Ok(()) }
+        let is_changed = self.begun.is_some_and(|begun| begun != settings.checksum());
+        if is_changed { Err(Refused::Changed) } else { Ok(()) }
     }
 
     /// Ends the alignment that runs. None begins but by an order.
@@ -112,8 +113,8 @@ impl Console {
     /// # Errors
     /// [`Refused::NothingRuns`].
     pub(super) fn stop(&mut self, shared: &Shared<'_>) -> Result<(), Refused> {
-        self.begins_again = false;
-        if shared.is_waiting() || shared.is_idle() {
+        let begins_again = core::mem::take(&mut self.begins_again);
+        if shared.is_waiting() || (shared.is_idle() && !begins_again) {
             return Err(Refused::NothingRuns);
         }
         shared.stop();
@@ -132,12 +133,9 @@ impl Console {
         settings: &mut dyn Editable,
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
-        self.check_saved()?;
-        let before = settings.output();
-        let is_other = settings.set(name, value).map_err(Refused::Setting)?;
-        let after = settings.output();
-        shared.output.set(after);
-        self.is_changed |= is_other && before == after && !shared.is_waiting();
+        self.check_changeable(settings, shared)?;
+        settings.set(name, value).map_err(Refused::Setting)?;
+        shared.output.set(settings.output());
         Ok(())
     }
 
@@ -150,10 +148,22 @@ impl Console {
         settings: &mut dyn Editable,
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
-        self.check_saved()?;
+        self.check_changeable(settings, shared)?;
         settings.restore();
         shared.output.set(settings.output());
-        self.is_changed |= !shared.is_waiting();
+        Ok(())
+    }
+
+    /// Whether the settings may be changed. Those that the instrument has begun with are remembered before they are.
+    fn check_changeable(
+        &mut self,
+        settings: &dyn Editable,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
+        self.check_saved()?;
+        if !shared.is_waiting() {
+            self.begun.get_or_insert_with(|| settings.checksum());
+        }
         Ok(())
     }
 
@@ -166,9 +176,13 @@ impl Console {
     ///
     /// # Errors
     /// [`Refused::Busy`].
-    pub(super) fn save(&mut self, asker: Asker, shared: &Shared<'_>) -> Result<(), Refused> {
+    pub(super) fn save(
+        &mut self,
+        requester: Requester,
+        shared: &Shared<'_>,
+    ) -> Result<(), Refused> {
         self.check_saved()?;
-        self.saving = Some(asker);
+        self.saving = Some(requester);
         shared.kept.reset();
         shared.keep.signal(());
         Ok(())

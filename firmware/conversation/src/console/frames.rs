@@ -1,6 +1,6 @@
 //! Parameters and commands of MAVLink, answered by messages.
 
-use firmware::settings::{EditError, Editable, FASTEST, Item, Stated};
+use firmware::settings::{EditError, Editable, Item, Stated};
 use firmware::shared::Shared;
 use orientation::units::Radians;
 use protocol::mavlink::{
@@ -10,8 +10,8 @@ use protocol::mavlink::{
 use protocol::words::Words;
 
 use super::listing::Listing;
-use super::{Asker, Console, Outbox, Refused, hear};
-use crate::talker::put_now;
+use super::{Console, Outbox, Refused, Requester, take_latitude};
+use crate::reporter::put_now;
 
 /// The name of the setting of the latitude.
 const LATITUDE: &str = "latitude";
@@ -26,8 +26,8 @@ impl Console {
         shared: &Shared<'_>,
     ) {
         match request {
-            Request::Latitude(latitude) => hear(latitude, settings, shared),
-            Request::List => self.listing = Some(Listing::Parameters(0)),
+            Request::Latitude(latitude) => take_latitude(latitude, settings, shared),
+            Request::List => outbox.put(self.begin(Listing::Parameters(0)).as_ref()),
             Request::ReadNumber(number) => {
                 put_parameter(number.into(), settings, outbox);
             }
@@ -51,7 +51,7 @@ impl Console {
     ) {
         let result = match command.action {
             Err(result) => result,
-            Ok(Action::Save) => match self.save(Asker::Frame(command), shared) {
+            Ok(Action::Save) => match self.save(Requester::Frame(command), shared) {
                 Ok(()) => return,
                 Err(reason) => result_of(Err(reason)),
             },
@@ -66,7 +66,10 @@ impl Console {
             }
             Ok(action) => self.act(action, settings, shared),
         };
-        outbox.put_message(&acknowledgement(&command, result));
+        // What is not done of an order to all is left to the others: an answer might pass for the autopilot's.
+        if command.is_to_this || result == MavResult::MAV_RESULT_ACCEPTED {
+            outbox.put_message(&acknowledgement(&command, result));
+        }
     }
 
     /// Does what a command orders that has no other answer; what came of it.
@@ -87,10 +90,11 @@ impl Console {
                 self.set(LATITUDE, Radians(latitude.rad()).degrees(), settings, shared)
             }
             Action::SetRate(number, rate) => match Item::of_message(number) {
-                Some(item) if rate <= f32::from(FASTEST) => {
-                    self.set(item.rate_name(), libm::roundf(rate).into(), settings, shared)
+                Some(item) => {
+                    let rate = rate.unwrap_or_else(|| item.usual_rate().into());
+                    self.set(item.rate_name(), rate.into(), settings, shared)
                 }
-                _ => Err(Refused::Setting(EditError::Unknown)),
+                None => Err(Refused::Setting(EditError::Unknown)),
             },
             Action::Save | Action::Test | Action::Send(_) | Action::StateInterval(_) => Ok(()),
         };

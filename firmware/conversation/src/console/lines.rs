@@ -8,7 +8,7 @@ use protocol::nmea::Sentence;
 
 use super::commands::state_azimuth;
 use super::listing::Listing;
-use super::{Asker, Console, Outbox, Refused};
+use super::{Console, Outbox, Refused, Requester};
 
 /// Most characters of a command's first word.
 const WORD: usize = 8;
@@ -64,7 +64,7 @@ impl Console {
                 return value_of("set", name, settings);
             }
             Command::Save => {
-                self.save(Asker::Line, shared)?;
+                self.save(Requester::Line, shared)?;
                 return Ok(None);
             }
             Command::Restore => self.restore(settings, shared)?,
@@ -75,10 +75,10 @@ impl Console {
         Ok(answer::done(command.word()))
     }
 
-    /// Begins an answer of many parts, which takes the place of one that has not ended.
-    fn begin(&mut self, listing: Listing) -> Option<Sentence> {
-        self.listing = Some(listing);
-        None
+    /// Begins an answer of many parts; the end of the one whose place it takes, where it has not ended.
+    pub(super) fn begin(&mut self, listing: Listing) -> Option<Sentence> {
+        let before = self.listing.replace(listing).and_then(|before| before.word());
+        before.and_then(|word| answer::refused(word, "another answer was asked for"))
     }
 }
 

@@ -44,6 +44,16 @@ impl Listing {
     pub(super) const fn log() -> Self {
         Self::Log { after: 0, is_asked: false }
     }
+
+    /// The first word of the command that it answers, where that is a line.
+    pub(super) const fn word(&self) -> Option<&'static str> {
+        match self {
+            Self::Identity(_) | Self::Settings(_) => Some("get"),
+            Self::Parameters(_) => None,
+            Self::Devices(_) => Some("test"),
+            Self::Log { .. } | Self::Record { .. } => Some("log"),
+        }
+    }
 }
 
 impl Console {
@@ -94,9 +104,9 @@ fn devices(number: usize, outbox: &mut Outbox, shared: &Shared<'_>) -> Option<Li
         outbox.put(answer::done("test").as_ref());
         return None;
     };
-    let mut name = String::<{ answer::LONGEST_NAME + 8 }>::new();
+    let mut name = String::<{ answer::LONGEST_NAME }>::new();
     let _ = write!(name, "{device}");
-    let name: String<{ answer::LONGEST_NAME + 8 }> =
+    let name: String<{ answer::LONGEST_NAME }> =
         name.chars().map(|letter| if letter == ' ' { '_' } else { letter }).collect();
     let outcome = if failed.contains(*device) { "failed" } else { "passed" };
     outbox.put(answer::value("test", &name, outcome).as_ref());

@@ -27,7 +27,7 @@ pub use commands::Refused;
 
 use firmware::settings::{Editable, Serial, SettingsError};
 use firmware::shared::Shared;
-use orientation::earth::Latitude;
+use orientation::earth::{HIGHEST_LATITUDE, Latitude};
 use protocol::answer;
 use protocol::mavlink::{self, MavResult, acknowledgement, request};
 use protocol::position;
@@ -38,7 +38,7 @@ use listing::Listing;
 
 /// Who waits for what the store has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Asker {
+enum Requester {
     /// Who has sent a line.
     Line,
     /// Who has sent this command of MAVLink.
@@ -54,13 +54,13 @@ pub struct Console {
     /// An answer that has not been sent to its end.
     listing: Option<Listing>,
     /// Who waits for the settings to be kept.
-    saving: Option<Asker>,
+    saving: Option<Requester>,
     /// Whether an alignment is to begin once the one that runs has ended.
     begins_again: bool,
     /// Whether the instrument is to be started anew once the answer is sent.
     reboots: bool,
-    /// Whether settings were changed that count from the next start on.
-    is_changed: bool,
+    /// Checksum of the settings that the instrument has begun with, once others may hold.
+    begun: Option<u32>,
 }
 
 impl Console {
@@ -73,7 +73,7 @@ impl Console {
             saving: None,
             begins_again: false,
             reboots: false,
-            is_changed: false,
+            begun: None,
         }
     }
 
@@ -87,7 +87,7 @@ impl Console {
     ) {
         match received {
             Received::Line(line) => match position::latitude(line) {
-                Some(latitude) => hear(latitude, settings, shared),
+                Some(latitude) => take_latitude(latitude, settings, shared),
                 None => self.take_line(line, settings, outbox, shared),
             },
             Received::Frame(frame) => {
@@ -109,27 +109,30 @@ impl Console {
             self.begins_again = false;
             shared.begin_again();
         }
-        if let Some(asker) = self.saving
+        if let Some(requester) = self.saving
             && let Some(outcome) = shared.kept.try_take()
         {
             self.saving = None;
-            answer_save(asker, outcome, outbox);
+            answer_save(requester, outcome, outbox);
             return true;
         }
         self.list_on(settings, outbox, shared)
     }
 
-    /// Starts the instrument anew, where that was ordered; its answer has been sent.
+    /// Starts the instrument anew, where that was ordered, and nothing is being kept; its answer has been sent.
     pub(super) fn finish(&mut self) {
-        if core::mem::take(&mut self.reboots) {
+        if self.saving.is_none() && core::mem::take(&mut self.reboots) {
             (self.reboot)();
         }
     }
 }
 
-/// Takes the latitude of a satellite receiver, which holds where the settings state none. What was only waiting for that
-/// begins.
-fn hear(latitude: Latitude, settings: &dyn Editable, shared: &Shared<'_>) {
+/// Takes the latitude of a satellite receiver, which holds where the settings state none; one that they could not state is
+/// none. What was only waiting for that begins.
+fn take_latitude(latitude: Latitude, settings: &dyn Editable, shared: &Shared<'_>) {
+    if latitude.rad().abs() > HIGHEST_LATITUDE {
+        return;
+    }
     shared.latitude.set(Some(latitude));
     if shared.is_waiting() {
         let start = settings.start();
@@ -140,16 +143,16 @@ fn hear(latitude: Latitude, settings: &dyn Editable, shared: &Shared<'_>) {
 }
 
 /// Answers who has had the settings kept.
-fn answer_save(asker: Asker, outcome: Result<(), SettingsError>, outbox: &mut Outbox) {
-    match asker {
-        Asker::Line => {
+fn answer_save(requester: Requester, outcome: Result<(), SettingsError>, outbox: &mut Outbox) {
+    match requester {
+        Requester::Line => {
             let sentence = match outcome {
                 Ok(()) => answer::done("save"),
                 Err(error) => answer::refused("save", error),
             };
             outbox.put(sentence.as_ref());
         }
-        Asker::Frame(command) => {
+        Requester::Frame(command) => {
             let result = match outcome {
                 Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
                 Err(_) => MavResult::MAV_RESULT_FAILED,

@@ -31,6 +31,8 @@ pub enum SetupError {
     BeyondTravel(Radians),
     /// The schedule has no position.
     NoPosition,
+    /// The schedule has two positions, which leave two azimuths, and no half of the circle is stated.
+    TwoPositions,
     /// A rotating platform lacks speeds above zero, two turns in each sense, or a modulation of its
     /// rate-modulated turns.
     NoSpeed,
@@ -77,7 +79,7 @@ impl core::error::Error for SetupError {}
 
 crate::words! { SetupError:
     Self::OutOfRange(Quantity { name, value, range: [least, greatest] }) =>
-        "{} is {}, which is not from {} to {}",
+        "{} is {}, not from {} to {}",
         name, Shortened(value), Shortened(least), Shortened(greatest);
     Self::NotAmong { name, value, choices } => "{} is {}, not {}", name, value, choices;
     Self::Filter(error) => "no filter for this sample rate: {}", error;
@@ -86,6 +88,7 @@ crate::words! { SetupError:
     Self::BeyondTravel(angle) =>
         "position {}° is beyond the stage's travel", Rounded::<2>(angle.0 / TURN * 360.0);
     Self::NoPosition => "there is no position";
+    Self::TwoPositions => "two positions leave two azimuths: state the half first";
     Self::NoStops =>
         "stops need a length above zero, and two to eight of them";
     Self::NoSpeed =>

@@ -85,8 +85,8 @@ pub enum Action {
     Send(u32),
     /// States the interval of a message (`MAV_CMD_REQUEST_MESSAGE` of `MESSAGE_INTERVAL`).
     StateInterval(u32),
-    /// Sends a message so many times a second, zero for never (`MAV_CMD_SET_MESSAGE_INTERVAL`).
-    SetRate(u32, f32),
+    /// Sends a message so many times a second, zero for never, or as usual (`MAV_CMD_SET_MESSAGE_INTERVAL`).
+    SetRate(u32, Option<f32>),
 }
 
 /// What a frame asks of the component that `own` sends for; [`None`] where it is for others, or for nobody.
@@ -107,8 +107,9 @@ pub fn request(frame: &Frame, own: &Sender) -> Option<Request> {
         }
         PARAM_SET_DATA::ID if is_own(payload.byte(4), payload.byte(5)) => {
             let is_single = payload.byte(22) == MavParamType::MAV_PARAM_TYPE_REAL32 as u8;
-            let name = payload.name(6).filter(|_| is_single)?;
-            Some(Request::Set(name, payload.float(0)))
+            let name = payload.name(6)?;
+            // One of another type is not set, and answered by the value that it keeps.
+            Some(if is_single { Request::Set(name, payload.float(0)) } else { Request::Read(name) })
         }
         COMMAND_LONG_DATA::ID if is_own(payload.byte(30), payload.byte(31)) => {
             command(frame, &payload, *own).map(Request::Command)
@@ -168,7 +169,7 @@ fn action(
                 (is_to_this && first == REBOOT) || (third == REBOOT && (is_to_this || is_named));
             if is_meant { Ok(Action::Reboot) } else { Err(denied) }
         }
-        numbers::DO_SET_GLOBAL_ORIGIN => {
+        numbers::DO_SET_GLOBAL_ORIGIN if is_to_this => {
             Latitude::from_degrees(fifth.into()).map(Action::SetLatitude).ok_or(denied)
         }
         numbers::REQUEST_MESSAGE if message(first)? == MESSAGE_INTERVAL_DATA::ID => {
@@ -177,9 +178,13 @@ fn action(
         numbers::REQUEST_MESSAGE => Ok(Action::Send(message(first)?)),
         numbers::SET_MESSAGE_INTERVAL => {
             let rate = match second {
-                -1.0 => 0.0,
-                interval if interval > 0.0 => SECOND / interval,
-                _ => return Err(denied),
+                -1.0 => Some(0.0),
+                0.0 => None,
+                interval => {
+                    let rate = libm::roundf(SECOND / interval);
+                    // Not less than once in two seconds.
+                    if rate >= 1.0 { Some(rate) } else { return Err(denied) }
+                }
             };
             Ok(Action::SetRate(message(first)?, rate))
         }

@@ -201,7 +201,7 @@ fn commands_are_acknowledged_by_what_becomes_of_them() {
 
 #[test]
 fn a_command_to_another_component_does_nothing() {
-    let reboots = REBOOTS.with_borrow(|count| *count);
+    let reboots = REBOOTS.with_borrow(Vec::len);
     let to = |target_component, first: [f32; 3]| {
         let MavMessage::COMMAND_LONG(order) =
             command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, first)
@@ -213,10 +213,72 @@ fn a_command_to_another_component_does_nothing() {
     // To the autopilot, and to all: the first parameter is the autopilot's.
     let sent = answered(&[to(1, [1.0, 0.0, 0.0]), to(0, [1.0, 0.0, 0.0])]);
     assert_eq!(results(&sent), []);
-    assert_eq!(REBOOTS.with_borrow(|count| *count), reboots);
+    assert_eq!(REBOOTS.with_borrow(Vec::len), reboots);
     let sent = answered(&[to(200, [1.0, 0.0, 0.0])]);
     assert_eq!(results(&sent).len(), 1);
-    assert_eq!(REBOOTS.with_borrow(|count| *count), reboots + 1);
+    assert_eq!(REBOOTS.with_borrow(Vec::len), reboots + 1);
+}
+
+/// None that is not done is answered to all components: it might pass for the autopilot's answer.
+#[test]
+fn a_command_to_all_is_answered_where_it_is_done_alone() {
+    let to_all = |number, first| {
+        let MavMessage::COMMAND_LONG(order) = command(number, first) else {
+            panic!("it is a command")
+        };
+        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { target_component: 0, param5: -33.9, ..order })
+    };
+    let sent = answered(&[
+        to_all(MavCmd::MAV_CMD_REQUEST_MESSAGE, [148.0, 0.0, 0.0]),
+        to_all(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [33.0, 1e5, 0.0]),
+        to_all(MavCmd::MAV_CMD_DO_SET_GLOBAL_ORIGIN, [0.0; 3]),
+        to_all(MavCmd::MAV_CMD_REQUEST_MESSAGE, [1.0, 0.0, 0.0]),
+        MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
+            param_index: -1,
+            target_system: 1,
+            target_component: 200,
+            param_id: "latitude".into(),
+        }),
+    ]);
+    let accepted = (MavCmd::MAV_CMD_REQUEST_MESSAGE, MavResult::MAV_RESULT_ACCEPTED);
+    assert_eq!(results(&sent), [accepted]);
+    assert_eq!(values(&sent)[0].param_value, 48.0, "it keeps its latitude");
+}
+
+#[test]
+fn an_interval_is_one_of_those_that_there_are_or_the_usual_one() {
+    use MavResult::{MAV_RESULT_ACCEPTED as ACCEPTED, MAV_RESULT_DENIED as DENIED};
+    let intervals = [
+        (1e6, ACCEPTED),
+        (5e6, DENIED),
+        (f32::INFINITY, DENIED),
+        (f32::NAN, DENIED),
+        (-2.0, DENIED),
+        (1.0, DENIED),
+        (-1.0, ACCEPTED),
+        (0.0, ACCEPTED),
+    ];
+    let number = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL;
+    let mut asked: Vec<_> =
+        intervals.iter().map(|(interval, _)| command(number, [31.0, *interval, 0.0])).collect();
+    asked.push(command(MavCmd::MAV_CMD_REQUEST_MESSAGE, [244.0, 31.0, 0.0]));
+    let sent = answered(&asked);
+    let found: Vec<_> = results(&sent).into_iter().map(|(_, result)| result).collect();
+    let expected = intervals.iter().map(|(_, result)| *result).chain([ACCEPTED]);
+    assert_eq!(found, expected.collect::<Vec<_>>());
+    let interval = sent.iter().find_map(|message| match message {
+        MavMessage::MESSAGE_INTERVAL(interval) => Some(interval.interval_us),
+        _ => None,
+    });
+    assert_eq!(interval, Some(100_000), "the usual one at the end");
+}
+
+#[test]
+fn a_parameter_of_another_type_is_answered_by_the_value_that_it_keeps() {
+    let MavMessage::PARAM_SET(order) = set("dwell", 12.0) else { panic!("it is an order") };
+    let param_type = MavParamType::MAV_PARAM_TYPE_INT32;
+    let sent = answered(&[MavMessage::PARAM_SET(PARAM_SET_DATA { param_type, ..order })]);
+    assert_eq!(values(&sent).iter().map(|it| it.param_value).collect::<Vec<_>>(), [10.0]);
 }
 
 #[test]

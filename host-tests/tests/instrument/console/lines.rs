@@ -208,9 +208,79 @@ fn an_instrument_that_could_not_begin_says_why_to_every_order() {
 
 #[test]
 fn it_is_started_anew_after_its_answer() {
-    let before = REBOOTS.with_borrow(|count| *count);
+    let before = REBOOTS.with_borrow(Vec::len);
     assert_eq!(answered(&["reboot"]), ["reboot,ok"]);
-    assert_eq!(REBOOTS.with_borrow(|count| *count), before + 1);
+    assert_eq!(REBOOTS.with_borrow(Vec::len), before + 1);
+}
+
+/// What is said to bytes that come at times, ms.
+fn said(shared: &Shared<'_>, typed: &[(u64, &[u8])]) -> Vec<String> {
+    let shown = conversed((shared, settings()), typed, 10_000, &RefCell::default());
+    let shown = String::from_utf8(shown).expect("text");
+    sentences(&shown, "PMRDR").into_iter().map(|fields| fields.join(",")).collect()
+}
+
+#[test]
+fn it_is_started_anew_once_settings_are_kept_that_were_being_kept() {
+    let said = said(&Shared::new(&()), &[(1000, b"save\rreboot\r")]);
+    assert_eq!(said, ["reboot,ok", "save,ok"]);
+    let at = REBOOTS.with_borrow(|all| *all.last().expect("it was"));
+    assert!((1300..1600).contains(&at.as_millis()), "{at}: they are kept at 1.3 s");
+}
+
+#[test]
+fn an_answer_of_many_parts_says_so_where_another_takes_its_place() {
+    let said = said(&Shared::new(&()), &[(1000, b"get\rtest\rlog\r")]);
+    let refused = |it: &&String| it.contains("refused");
+    let refused: Vec<_> = said.iter().filter(refused).collect();
+    let expected =
+        ["get", "test"].map(|word| format!("{word},refused,another answer was asked for"));
+    assert_eq!(refused, expected.iter().collect::<Vec<_>>());
+    assert_eq!(said.last().map(String::as_str), Some("log,ok"));
+}
+
+#[test]
+fn every_device_has_a_name_in_an_answer() {
+    let shared = Shared::new(&());
+    Device::ALL.into_iter().for_each(|device| shared.report(Event::Started(device)));
+    let said = answers(&shared, settings(), &["test"], &RefCell::default());
+    assert_eq!(said.len(), Device::ALL.len() + 1, "{said:?}");
+    assert!(said.contains(&"test,right_accelerometer,passed".to_owned()), "{said:?}");
+}
+
+/// What was typed before is not done later, when more comes.
+#[test]
+fn a_frame_whose_end_does_not_come_keeps_no_line_from_its_answer() {
+    for cut in [&b"\xFD\xFF\x00\x00\x00\xFF\xBE\x00\x00\x00"[..], b"\xFD\x20", b"\xFD"] {
+        let line = b"\rget latitude\r";
+        let said = said(&Shared::new(&()), &[(1000, cut), (1500, line), (3000, line)]);
+        assert_eq!(said, ["get,latitude,48"; 2], "{cut:?}");
+    }
+}
+
+/// An instrument that runs an alignment is asked to begin another one.
+#[test]
+fn settings_that_are_as_they_were_are_not_changed() {
+    let lines = ["set dwell 12", "start", "set dwell 10", "start", "set hdt_rate 5", "start"];
+    let said = answered(&lines);
+    let [changed, runs] = ["settings were changed: save and reboot", "an alignment runs"];
+    let expected = [changed, runs, runs].map(|reason| format!("start,refused,{reason}"));
+    assert_eq!([&said[1], &said[3], &said[5]], expected.each_ref());
+}
+
+/// The settings could not state it either.
+#[test]
+fn a_latitude_of_a_receiver_beyond_the_greatest_is_not_taken() {
+    for (latitude, is_taken) in [("8459.9", true), ("8500.1", false), ("9000.0", false)] {
+        let shared = Shared::new(&());
+        shared.wait_to_begin();
+        let content = format!("GPGGA,123519,{latitude},N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,");
+        let sum = content.bytes().fold(0, |sum, byte| sum ^ byte);
+        let stated = Settings { latitude: None, ..settings() };
+        answers(&shared, stated, &[&format!("${content}*{sum:02X}")], &RefCell::default());
+        assert_eq!(shared.latitude.get().is_some(), is_taken, "{latitude}");
+        assert_eq!(shared.begin.signaled(), is_taken, "{latitude}");
+    }
 }
 
 /// Another instrument's sentences, noise and a line that was cut.

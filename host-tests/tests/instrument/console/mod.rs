@@ -93,6 +93,8 @@ impl Store for Handle<'_> {
         if self.0.borrow().is_full {
             return Err(Fault::Bus);
         }
+        // A row takes its time.
+        Timer::after_millis(300).await;
         self.0.borrow_mut().item = Some((slot, item.to_vec()));
         Ok(())
     }
@@ -118,7 +120,7 @@ fn conversed(
     shared.output.set(stated.output);
     let settings = Mutex::new(stated);
     let kept = BoardSettings { settings: &settings, serial: SERIAL };
-    let listener = Listening::new(kept, || REBOOTS.with_borrow_mut(|count| *count += 1));
+    let listener = Listening::new(kept, || REBOOTS.with_borrow_mut(|all| all.push(Instant::now())));
     let mut conversation = Conversation::new(&mut terminal, listener, shared);
     let passing = Timer::after(Duration::from_millis(milliseconds));
     let serving = store(Handle(memory), Some(kept), shared);
@@ -127,8 +129,8 @@ fn conversed(
 }
 
 std::thread_local! {
-    /// How often the instrument was started anew.
-    static REBOOTS: RefCell<u32> = const { RefCell::new(0) };
+    /// When the instrument was started anew.
+    static REBOOTS: RefCell<Vec<Instant>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Bytes that come over the link at times.

@@ -241,6 +241,8 @@ prop_compose! {
         survey in proptest::option::of(time(60.0..=36_000.0)),
         allowed in proptest::option::of(time(60.0..=36_000.0)), half in half(),
     ) -> StageSchedule {
+        // Two positions require it, unless others are planned.
+        let half = if positions == 2 && survey.is_none() { half.or(Some(Half::East)) } else { half };
         StageSchedule { positions, dwell, survey, allowed, half }
     }
 }

@@ -185,10 +185,7 @@ fn all(settings: &mut dyn Editable) -> Vec<Stated> {
 /// States a setting by a text, as a terminal does.
 fn state(settings: &mut dyn Editable, name: &str, text: &str) -> Result<(), EditError> {
     let value = settings.parse(name, text)?;
-    let before = shown(settings, name);
-    let is_other = settings.set(name, value)?;
-    assert_eq!(is_other, shown(settings, name) != before, "{name} {text}, from {before}");
-    Ok(())
+    settings.set(name, value)
 }
 
 /// What is shown for a setting.
@@ -274,7 +271,9 @@ fn every_word_of_a_choice_is_shown_as_it_was_stated() {
             }
             for wrong in ["", "1", "Yes", "gyros"] {
                 let refused = state(&mut *settings, name, wrong);
-                assert_eq!(refused, Err(EditError::NoSuchWord), "{name} {wrong}");
+                assert_eq!(refused, Err(EditError::NoSuchWord(words)), "{name} {wrong}");
+                let reason = format!("not one of {}", words.join(" "));
+                assert_eq!(refused.expect_err("it is").to_string(), reason);
             }
         }
         for rate in RATES {
@@ -346,18 +345,57 @@ const BEYOND: [(usize, &str, &str); 23] = [
 #[test]
 fn what_is_not_possible_is_refused_with_the_quantity_and_changes_nothing() {
     for (index, name, text) in BEYOND {
-        let Carrier { mut settings, .. } = carriers().swap_remove(index);
+        let Carrier { mut settings, numbers, .. } = carriers().swap_remove(index);
         let (before, record) = (all(&mut *settings), settings.to_record(&SERIAL));
-        let refused = state(&mut *settings, name, text);
-        let stated = match refused {
-            Err(EditError::OutOfRange(SetupError::OutOfRange(quantity))) => quantity.name,
-            Err(EditError::OutOfRange(SetupError::NotAmong { name, .. })) => name,
+        let refused = state(&mut *settings, name, text).expect_err("it is not possible");
+        let range = numbers.iter().find(|(other, ..)| *other == name);
+        let range = range.map(|(.., least, greatest)| [*least, *greatest]);
+        match refused {
+            EditError::Beyond([least, greatest]) => {
+                let [from, to] = range.expect("it is a number");
+                let slack = 1e-6 * to.abs();
+                assert!(least <= from + slack && to - slack <= greatest, "{name}: {refused}");
+                let wrong = settings.parse(name, text).expect("a number");
+                assert!(!(least + slack..=greatest - slack).contains(&wrong), "{name}: {refused}");
+            }
+            EditError::OutOfRange(SetupError::NotAmong { name: stated, .. }) => {
+                assert_eq!(stated, name);
+            }
             _ => panic!("{name} {text} is not refused for that: {refused:?}"),
-        };
-        assert!(refused.expect_err("it is").to_string().starts_with(stated));
+        }
         assert_eq!(all(&mut *settings).len(), before.len());
         assert_eq!(settings.to_record(&SERIAL), record, "{name} {text}");
     }
+}
+
+#[test]
+fn a_range_is_told_in_the_users_unit() {
+    let reasons = [
+        (0, "latitude", "86", "not from -85 to 85"),
+        (0, "dwell", "0.1", "not from 0.5 to 600"),
+        (2, "speed_1", "0.6", "not from 0.02 to 0.5"),
+        (4, "pitch", "91", "not from -90 to 90"),
+    ];
+    for (index, name, text, reason) in reasons {
+        let Carrier { mut settings, .. } = carriers().swap_remove(index);
+        let refused = state(&mut *settings, name, text).expect_err("it is not possible");
+        assert_eq!(refused.to_string(), reason, "{name}");
+    }
+}
+
+#[test]
+fn two_positions_are_taken_once_the_half_of_the_circle_is_stated() {
+    let mut settings = settings(stage());
+    let editable: &mut dyn Editable = &mut settings;
+    assert_eq!(state(editable, "half", "none"), Ok(()));
+    // A survey plans others.
+    assert_eq!(state(editable, "survey", "none"), Ok(()));
+    let refused = state(editable, "positions", "2");
+    assert_eq!(refused, Err(EditError::OutOfRange(SetupError::TwoPositions)));
+    assert_eq!(state(editable, "half", "west"), Ok(()));
+    assert_eq!(state(editable, "positions", "2"), Ok(()));
+    let refused = state(editable, "half", "none");
+    assert_eq!(refused, Err(EditError::OutOfRange(SetupError::TwoPositions)));
 }
 
 /// So a program may set what it has read, whatever its own number was rounded to.
@@ -405,12 +443,9 @@ fn what_is_no_value_of_a_setting_is_refused_by_a_reason() {
     for text in ["", "1e3", "4 5", "+1", "nan", "inf", "0x10", "1,5", "1234567890.1234567"] {
         assert_eq!(state(editable, "dwell", text), Err(EditError::NotANumber), "{text}");
     }
-    let words =
-        [EditError::Unknown, EditError::NotANumber, EditError::NoSuchWord, EditError::NotHeld]
-            .map(|error| error.to_string());
-    let said =
-        ["no such setting", "not a number", "not one of its words", "not a value of this setting"];
-    assert_eq!(words, said);
+    let words = [EditError::Unknown, EditError::NotANumber, EditError::NotHeld]
+        .map(|error| error.to_string());
+    assert_eq!(words, ["no such setting", "not a number", "not a value of this setting"]);
 }
 
 /// Whether a number is that of SI units to twelve digits.

@@ -16,7 +16,7 @@ use super::situation::report;
 
 /// What is due to be said.
 #[derive(Default)]
-pub(super) struct Talker {
+pub(super) struct Reporter {
     /// Whether a heartbeat is due.
     is_heartbeat_due: bool,
     /// Which items of the report are due.
@@ -57,7 +57,7 @@ impl News {
     }
 }
 
-impl Talker {
+impl Reporter {
     /// Notes what is due between two looks of these numbers. Returns by which settings.
     pub fn look(&mut self, looks: [u32; 2], shared: &Shared<'_>) -> Output {
         let output = shared.output.get();
