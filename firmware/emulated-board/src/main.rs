@@ -92,7 +92,9 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
     };
     let mut pace = arguments.as_shipped.then(Pace::begin);
     let on_link = |sent: &[u8]| {
-        pace.iter_mut().for_each(|pace| pace.keep(Duration::from_nanos(LOOK.as_nanoseconds())));
+        if let Some(pace) = &mut pace {
+            pace.keep(Duration::from_nanos(LOOK.as_nanoseconds()));
+        }
         clients.as_mut().map_or_else(Vec::new, |clients| clients.exchange(sent))
     };
     let world = World::new(order.carrier, order.seed)?;
@@ -111,9 +113,10 @@ fn run(arguments: &Arguments) -> Result<Report, String> {
 /// What is executed.
 fn order(arguments: &Arguments) -> Order {
     let usual = Order::usual(arguments.carrier, arguments.seed);
-    let (longest, afterwards) = match arguments.as_shipped {
-        true => (SETTING_UP, SETTING_UP),
-        false => (usual.longest, usual.afterwards),
+    let (longest, afterwards) = if arguments.as_shipped {
+        (SETTING_UP, SETTING_UP)
+    } else {
+        (usual.longest, usual.afterwards)
     };
     Order {
         cycles: arguments.cycles,

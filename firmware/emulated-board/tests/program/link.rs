@@ -122,7 +122,7 @@ fn an_execution_goes_on_without_its_client_and_says_so_once() {
 /// board says of its state after it.
 fn asked(address: &str, line: &str) -> [String; 2] {
     let mut stream = TcpStream::connect(address).expect("it listens");
-    stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a connection");
+    stream.set_read_timeout(Some(Duration::from_mins(1))).expect("a connection");
     let mut lines = BufReader::new(stream.try_clone().expect("a connection")).lines();
     let mut first = |start: &str| {
         let found = lines.by_ref().find(|line| line.as_ref().expect("text").starts_with(start));

@@ -36,7 +36,7 @@ fn printed(arguments: &[&str]) -> String {
 /// Listens until a line begins like this; the whole line.
 fn heard(address: &str, start: &str) -> String {
     let stream = TcpStream::connect(address).expect("it listens");
-    stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a connection");
+    stream.set_read_timeout(Some(Duration::from_mins(1))).expect("a connection");
     let mut lines = BufReader::new(stream).lines().map(|line| line.expect("it goes on"));
     lines.find(|line| line.starts_with(start)).expect("it says so")
 }
