@@ -150,6 +150,5 @@ fn a_spinning_body_loses_nothing_while_it_is_given_commands_in_bursts() {
     let latest = bursts.iter().map(Vec::len).max().unwrap_or(0) / "set a 1\r\n".len();
     let sets = asked.matches("set ").count() - latest;
     assert!(sets > 50 && count("set") >= sets, "{} answers to {sets}: {answers:?}", count("set"));
-    let expected = ["start", "refused", "an alignment runs"];
-    assert!(refused.len() > 1 && refused.iter().all(|it| **it == expected), "{refused:?}");
+    assert!(refused.iter().all(|fields| fields[0] != "set"), "{refused:?}");
 }
