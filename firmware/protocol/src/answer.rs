@@ -137,8 +137,8 @@ fn part<'a>(record: &str, rest: &'a str) -> Option<Part<'a>> {
     are_bytes.then_some(Part { record, number, digits })
 }
 
-/// Whether a word may be the name of a setting or of a device: small letters, digits and underscores, and none of the words that an
-/// answer has in the place of a name.
+/// Whether a word may be the name of a setting or of a device: small letters, digits and underscores, and none of the words
+/// that an answer has in the place of a name.
 #[must_use]
 pub fn is_name(word: &str) -> bool {
     let is_letter = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_';
