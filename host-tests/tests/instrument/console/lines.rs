@@ -242,7 +242,9 @@ fn an_answer_of_many_parts_says_so_where_another_takes_its_place() {
 #[test]
 fn every_device_has_a_name_in_an_answer() {
     let shared = Shared::new(&());
-    Device::ALL.into_iter().for_each(|device| shared.report(Event::Started(device)));
+    for device in Device::ALL {
+        shared.report(Event::Started(device));
+    }
     let said = answers(&shared, settings(), &["test"], &RefCell::default());
     assert_eq!(said.len(), Device::ALL.len() + 1, "{said:?}");
     assert!(said.contains(&"test,right_accelerometer,passed".to_owned()), "{said:?}");
