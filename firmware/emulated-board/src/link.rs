@@ -28,17 +28,16 @@ impl Clients {
         let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
         let does = if waits { "waiting for a client" } else { "listening to clients" };
         eprintln!("{does} at {}", listener.local_addr().map_err(failed)?);
-        let first = || listener.accept().and_then(|(stream, _)| Client::new(stream));
-        let client = waits.then(first).transpose().map_err(failed)?;
+        let client = waits.then(|| Client::next(&listener)).transpose().map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         Ok(Self { listener, client })
     }
 
     /// Hands over bytes of the link, and takes what the client sends, without waiting for it. Without a client, the bytes
-    /// are lost, as on a wire that nobody reads; standard error says why one hears nothing any more.
+    /// are lost. Standard error says why a client was given up.
     pub fn exchange(&mut self, sent: &[u8]) -> Vec<u8> {
         if self.client.is_none() {
-            self.client = self.listener.accept().and_then(|(stream, _)| Client::new(stream)).ok();
+            self.client = Client::next(&self.listener).ok();
         }
         let exchanged = self.client.as_mut().map_or(Ok(Vec::new()), |client| client.exchange(sent));
         exchanged.unwrap_or_else(|error| {
@@ -64,6 +63,12 @@ pub struct Client {
 }
 
 impl Client {
+    /// The next client that has connected, waited for where the listener waits.
+    fn next(listener: &TcpListener) -> io::Result<Self> {
+        let (stream, _) = listener.accept()?;
+        Self::new(stream)
+    }
+
     /// A client at the other end of a connection.
     ///
     /// # Errors

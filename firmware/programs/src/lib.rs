@@ -81,7 +81,7 @@ struct Statics<S: 'static, C: CarrierSchedule + 'static> {
 }
 
 impl<S: Send, C: CarrierSchedule> Statics<S, C> {
-    /// Statics at which nothing is yet.
+    /// Places that are still empty.
     const fn new() -> Self {
         Self { channels: StaticCell::new(), settings: StaticCell::new() }
     }
