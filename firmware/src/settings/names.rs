@@ -332,6 +332,11 @@ impl dyn Editable + '_ {
         self.find(Wanted::Number(number)).map(|(_, stated)| stated)
     }
 
+    /// All settings, in the order of their numbers.
+    pub fn all(&mut self) -> impl Iterator<Item = Stated> {
+        (0..self.count()).map_while(|number| self.nth(number))
+    }
+
     /// The setting of this name, and its number from zero.
     pub fn numbered(&mut self, name: &str) -> Option<(usize, Stated)> {
         self.find(Wanted::Name(name))

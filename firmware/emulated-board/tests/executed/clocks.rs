@@ -6,7 +6,8 @@ use emulated_board::controller::rcc::Oscillators;
 use emulated_board::run::Order;
 use firmware::platform::Platform;
 
-use super::sound::{azimuth, distance};
+use super::sound::azimuth;
+use super::support::angles::distance;
 use super::support::executed::{Executed, executed_by};
 
 /// A board whose crystal is dead, with this error of the controller's oscillator, until its result.

@@ -7,7 +7,8 @@ use firmware::settings::{Editable, Settings, StageSchedule, Stated};
 use simulated::flood::Flood;
 use simulated::scenario::Scenario;
 
-use super::sound::{azimuth, distance};
+use super::sound::azimuth;
+use super::support::angles::distance;
 use super::support::board::Board;
 use super::support::executed::{execute_in, execute_told};
 use super::support::sentences::{sentences, states};
@@ -17,9 +18,8 @@ use super::support::worlds::{stage_of_dwells, usual};
 const MILLISECOND: usize = 11;
 
 /// Settings by name and value, in their order.
-fn stated(settings: &mut Settings<StageSchedule>) -> Vec<Stated> {
-    let settings: &mut dyn Editable = settings;
-    (0..settings.count()).filter_map(|number| settings.nth(number)).collect()
+fn stated(settings: &mut dyn Editable) -> Vec<Stated> {
+    settings.all().collect()
 }
 
 /// Sends a line; the answer to it, as the fields of its sentence, within a second.
@@ -52,7 +52,7 @@ fn a_board_as_it_is_shipped_is_set_up_started_and_finds_north_by_lines_alone() {
     assert_eq!(latest(&board, "PMRDS")[0], "waiting");
     assert_eq!(latest(&board, "HEHDT"), ["", "T"]);
     assert_eq!(answer(&mut board, "start"), ["start", "refused", "no latitude is set"]);
-    let factory = stated(&mut Settings::default());
+    let factory = stated(&mut Settings::<StageSchedule>::default());
     for (setting, before) in stated(&mut wanted).iter().zip(&factory) {
         if setting.to_string() != before.to_string() {
             let value = setting.to_string();

@@ -4,7 +4,8 @@ use emulated_board::run::Order;
 use execution::report::{Report, Service};
 use firmware::platform::Platform;
 
-use super::sound::{azimuth, distance};
+use super::sound::azimuth;
+use super::support::angles::distance;
 use super::support::board::Board;
 use super::support::executed::{Executed, execute_in, execute_spoken_to};
 use super::support::sentences::states;

@@ -109,8 +109,8 @@ fn no_carrier_loses_anything_while_its_link_is_full_both_ways() {
 /// value that it has.
 fn bursts(mut settings: impl Editable) -> Vec<Vec<u8>> {
     let settings: &mut dyn Editable = &mut settings;
-    let all = (0..settings.count()).filter_map(|number| settings.nth(number));
-    let mut commands: Vec<String> = all.map(|it| format!("set {} {it}\r\n", it.name)).collect();
+    let mut commands: Vec<String> =
+        settings.all().map(|it| format!("set {} {it}\r\n", it.name)).collect();
     let others = ["get", "log", "test", "get course", "start", "save"];
     commands.extend(others.map(|command| format!("{command}\r\n")));
     let mut bursts = vec![Vec::new()];

@@ -6,16 +6,12 @@ use execution::report::{FlashUse, Report};
 use firmware::budget;
 use firmware::platform::Platform;
 
+use super::support::angles::distance;
 use super::support::executed::{Executed, execute_anew, executed, executed_by};
 use super::support::sentences::states;
 
 /// Carriers whose alignment ends with an azimuth.
 const ALIGNED: [Platform; 3] = [Platform::Stage, Platform::Turntable, Platform::Vehicle];
-
-/// Distance of two azimuths the short way, °.
-pub(super) fn distance(a: f64, b: f64) -> f64 {
-    ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs()
-}
 
 /// The azimuth and its 1σ, °.
 pub(super) fn azimuth(report: &Report) -> (f64, f64) {

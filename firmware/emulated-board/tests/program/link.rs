@@ -1,6 +1,6 @@
 //! Clients of the link that are slow, that are too slow, that go, and that come after others.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::thread::{sleep, spawn};
 use std::time::Duration;
@@ -120,30 +120,24 @@ fn an_execution_goes_on_without_its_client_and_says_so_once() {
 
 /// Asks a board that waits for its latitude to do something, as a client of its own; the fields of the answer, and what the
 /// board says of its state after it.
-fn asked(address: &str, line: &str) -> [String; 2] {
-    let mut stream = TcpStream::connect(address).expect("it listens");
-    stream.set_read_timeout(Some(Duration::from_mins(1))).expect("a connection");
-    let mut lines = BufReader::new(stream.try_clone().expect("a connection")).lines();
-    let mut first = |start: &str| {
-        let found = lines.by_ref().find(|line| line.as_ref().expect("text").starts_with(start));
-        found.expect("it goes on").expect("text")
-    };
+fn asked(waiting: &Waiting, line: &str) -> [String; 2] {
+    let mut client = waiting.connect();
     // It has begun to hear.
-    first("$PMRDS,waiting,");
-    stream.write_all(format!("{line}\r\n").as_bytes()).expect("it is connected");
-    [first("$PMRDR,"), first("$PMRDS,")]
+    client.heard("$PMRDS,waiting,");
+    client.send(line);
+    [client.heard("$PMRDR,"), client.heard("$PMRDS,")]
 }
 
 #[test]
 fn a_board_as_it_is_shipped_waits_and_is_set_up_by_one_client_after_the_other() {
     let waiting = Waiting::new(Platform::Stage, &["--as-shipped"]);
-    let [answer, state] = asked(&waiting.address, "get latitude");
+    let [answer, state] = asked(&waiting, "get latitude");
     assert!(answer.starts_with("$PMRDR,get,latitude,none*"), "{answer}");
     assert!(state.starts_with("$PMRDS,waiting,"), "{state}");
     for (asks, answers) in
         [("set latitude 47.58", "set,latitude,47.58"), ("save", "save,ok"), ("start", "start,ok")]
     {
-        let [answer, state] = asked(&waiting.address, asks);
+        let [answer, state] = asked(&waiting, asks);
         assert!(answer.starts_with(&format!("$PMRDR,{answers}*")), "{answer}");
         let expected = if asks == "start" { "$PMRDS,aligning," } else { "$PMRDS,waiting," };
         assert!(state.starts_with(expected), "{asks}: {state}");

@@ -2,6 +2,8 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "../support/angles.rs"]
+mod angles;
 mod building;
 #[allow(dead_code, reason = "these tests need the files of images alone")]
 #[path = "../support/images.rs"]

@@ -2,18 +2,16 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
-use std::time::Duration;
 
 use execution::built::{executable, of};
 use firmware::platform::Platform;
 use firmware::settings::{Editable, Settings, StageSchedule};
 use simulated::scenario::Scenario;
 
+use crate::angles::distance;
 use crate::started::{Waiting, text};
 
 /// The program, built.
@@ -33,19 +31,10 @@ fn printed(arguments: &[&str]) -> String {
     printed
 }
 
-/// Listens until a line begins like this; the whole line.
-fn heard(address: &str, start: &str) -> String {
-    let stream = TcpStream::connect(address).expect("it listens");
-    stream.set_read_timeout(Some(Duration::from_mins(1))).expect("a connection");
-    let mut lines = BufReader::new(stream).lines().map(|line| line.expect("it goes on"));
-    lines.find(|line| line.starts_with(start)).expect("it says so")
-}
-
 /// Settings of a stage by names and values as a file has them.
 fn stated(mut settings: Settings<StageSchedule>) -> Vec<(&'static str, String)> {
     let settings: &mut dyn Editable = &mut settings;
-    let all = (0..settings.count()).filter_map(|number| settings.nth(number));
-    all.map(|stated| (stated.name, stated.to_string())).collect()
+    settings.all().map(|stated| (stated.name, stated.to_string())).collect()
 }
 
 /// The text of a file of settings, with other values.
@@ -68,7 +57,7 @@ fn a_board_as_it_is_shipped_is_set_up_and_started_by_the_program_until_its_headi
     let scenario = Scenario { positions: 3, dwell_s: 2.0, ..simulated::executed::stage(1) };
     let wanted = stated(scenario.settings().expect("the scenario has a latitude"));
     let waiting = Waiting::new(Platform::Stage, &["--as-shipped"]);
-    heard(&waiting.address, "$PMRDS,waiting,");
+    waiting.connect().heard("$PMRDS,waiting,");
     let port = format!("tcp:{}", waiting.address);
 
     let folder = std::env::temp_dir().join(format!("meridian-setting-up-{}", std::process::id()));
@@ -92,13 +81,16 @@ fn a_board_as_it_is_shipped_is_set_up_and_started_by_the_program_until_its_headi
     }
 
     printed(&["send", &port, "start"]);
-    heard(&waiting.address, "$PMRDS,aligning,");
-    let line = heard(&waiting.address, "$PMRDS,ready,");
-    let sentence = heard(&waiting.address, "$HETHS,");
+    let mut client = waiting.connect();
+    client.heard("$PMRDS,aligning,");
+    let line = client.heard("$PMRDS,ready,");
+    let sentence = client.heard("$HETHS,");
     let fields: Vec<&str> = sentence.split([',', '*']).collect();
     let [heading, mode] = fields[1..3] else { panic!("{sentence}") };
     assert_eq!(mode, "A", "{line}\n{sentence}");
     let heading: f64 = heading.parse().expect("a heading");
-    let apart = (heading - scenario.azimuth_deg + 540.0).rem_euclid(360.0) - 180.0;
-    assert!(apart.abs() < 30.0, "{heading}°, with so short an alignment");
+    assert!(
+        distance(heading, scenario.azimuth_deg) < 30.0,
+        "{heading}°, with so short an alignment"
+    );
 }

@@ -1,7 +1,10 @@
 //! The program, started.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
 use std::process::{Child, ChildStderr, Command, Output, Stdio};
+
+use std::time::Duration;
 
 use firmware::platform::Platform;
 
@@ -46,6 +49,29 @@ impl Waiting {
         log.read_line(&mut line).expect("it says where it waits");
         let address = line.trim().rsplit(' ').next().expect("the line has words").to_owned();
         Self { child, address, log }
+    }
+
+    /// A client of the board's link.
+    pub fn connect(&self) -> Connected {
+        let stream = TcpStream::connect(&self.address).expect("it listens");
+        stream.set_read_timeout(Some(Duration::from_mins(1))).expect("a connection");
+        Connected(BufReader::new(stream))
+    }
+}
+
+/// A client of the link, which is served from when the one before it has gone.
+pub struct Connected(BufReader<TcpStream>);
+
+impl Connected {
+    /// Listens until a line begins like this; the whole line.
+    pub fn heard(&mut self, start: &str) -> String {
+        let mut lines = (&mut self.0).lines().map(|line| line.expect("it goes on"));
+        lines.find(|line| line.starts_with(start)).expect("it says so")
+    }
+
+    /// Sends a line.
+    pub fn send(&mut self, line: &str) {
+        write!(self.0.get_mut(), "{line}\r\n").expect("it is connected");
     }
 }
 

@@ -175,8 +175,7 @@ fn carriers() -> Vec<Carrier> {
 
 /// All settings in their order.
 fn all(settings: &mut dyn Editable) -> Vec<Stated> {
-    let all: Vec<Stated> =
-        (0..settings.count()).filter_map(|number| settings.nth(number)).collect();
+    let all: Vec<Stated> = settings.all().collect();
     assert_eq!(all.len(), settings.count());
     assert_eq!(settings.nth(all.len()), None);
     all

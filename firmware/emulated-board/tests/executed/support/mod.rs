@@ -1,5 +1,7 @@
 //! What the tests share: images that are built once, executions that are made once, and boards that are stepped.
 
+#[path = "../../support/angles.rs"]
+pub mod angles;
 #[path = "../../support/board.rs"]
 pub mod board;
 pub mod executed;
