@@ -81,6 +81,7 @@ impl Console {
     ) -> MavResult {
         let done = match action {
             Action::Align => self.realign(settings, shared),
+            Action::Stop => self.stop(shared),
             Action::Restore => self.restore(settings, shared),
             Action::Reboot => {
                 self.reboots = true;

@@ -71,6 +71,8 @@ pub struct Command {
 pub enum Action {
     /// Begins an alignment, anew where one runs (`MAV_CMD_PREFLIGHT_CALIBRATION` of the gyros).
     Align,
+    /// Ends the alignment that runs (`MAV_CMD_PREFLIGHT_CALIBRATION` of nothing, by which autopilots end a calibration).
+    Stop,
     /// Keeps the settings in flash (`MAV_CMD_PREFLIGHT_STORAGE`, 1).
     Save,
     /// Takes the factory settings (`MAV_CMD_PREFLIGHT_STORAGE`, 2).
@@ -159,6 +161,10 @@ fn action(
     let message = |number: f32| if number >= 0.0 { Ok(number as u32) } else { Err(denied) };
     match number {
         numbers::PREFLIGHT_CALIBRATION if first == 1.0 && is_to_this => Ok(Action::Align),
+        // All seven parameters are zero.
+        numbers::PREFLIGHT_CALIBRATION if payload.bytes(0) == [0; 28] && is_to_this => {
+            Ok(Action::Stop)
+        }
         numbers::PREFLIGHT_STORAGE if first == STORAGE[0] => Ok(Action::Save),
         numbers::PREFLIGHT_STORAGE if first == STORAGE[1] => Ok(Action::Restore),
         numbers::RUN_PREARM_CHECKS => Ok(Action::Test),

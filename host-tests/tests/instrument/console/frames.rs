@@ -25,7 +25,7 @@ fn speaking() -> Settings<StageSchedule> {
 }
 
 /// A message of the ground station as it goes over the link.
-fn frame(message: &impl Message) -> Vec<u8> {
+pub(super) fn frame(message: &impl Message) -> Vec<u8> {
     let mut frame = MAVLinkV2MessageRaw::new();
     frame.serialize_message(STATION, message);
     frame.raw_bytes().to_vec()
@@ -78,7 +78,7 @@ fn results(sent: &[MavMessage]) -> Vec<(MavCmd, MavResult)> {
 }
 
 /// A command with its first parameters.
-fn command(number: MavCmd, first: [f32; 3]) -> MavMessage {
+pub(super) fn command(number: MavCmd, first: [f32; 3]) -> MavMessage {
     let [param1, param2, param3] = first;
     let [target_system, target_component] = TARGET;
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
@@ -171,6 +171,8 @@ fn commands_are_acknowledged_by_what_becomes_of_them() {
         command(C::MAV_CMD_REQUEST_MESSAGE, [1.0, 0.0, 0.0]),
         command(C::MAV_CMD_REQUEST_MESSAGE, [244.0, 31.0, 0.0]),
         command(C::MAV_CMD_NAV_TAKEOFF, [0.0; 3]),
+        command(C::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0, 0.0, 1.0]),
+        command(C::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 3]),
         command(C::MAV_CMD_PREFLIGHT_CALIBRATION, [1.0, 0.0, 0.0]),
     ]);
     let expected = [
@@ -183,6 +185,8 @@ fn commands_are_acknowledged_by_what_becomes_of_them() {
         (C::MAV_CMD_REQUEST_MESSAGE, R::MAV_RESULT_ACCEPTED),
         (C::MAV_CMD_REQUEST_MESSAGE, R::MAV_RESULT_ACCEPTED),
         (C::MAV_CMD_NAV_TAKEOFF, R::MAV_RESULT_UNSUPPORTED),
+        (C::MAV_CMD_PREFLIGHT_CALIBRATION, R::MAV_RESULT_DENIED),
+        (C::MAV_CMD_PREFLIGHT_CALIBRATION, R::MAV_RESULT_ACCEPTED),
         (C::MAV_CMD_PREFLIGHT_CALIBRATION, R::MAV_RESULT_ACCEPTED),
     ];
     let mut found = results(&sent);

@@ -137,12 +137,15 @@ std::thread_local! {
 struct Typed(RefCell<VecDeque<(Instant, Vec<u8>)>>);
 
 impl Typed {
+    /// These bytes at these times, s.
+    fn bytes(bytes: impl IntoIterator<Item = (u64, Vec<u8>)>) -> Self {
+        let at = |(at, bytes)| (Instant::from_secs(at), bytes);
+        Self(RefCell::new(bytes.into_iter().map(at).collect()))
+    }
+
     /// These lines at these times, s.
     fn lines(lines: &[(u64, &str)]) -> Self {
-        let line = |(at, line): &(u64, &str)| {
-            (Instant::from_secs(*at), format!("{line}\r\n").into_bytes())
-        };
-        Self(RefCell::new(lines.iter().map(line).collect()))
+        Self::bytes(lines.iter().map(|(at, line)| (*at, format!("{line}\r\n").into_bytes())))
     }
 }
 

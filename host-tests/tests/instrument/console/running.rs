@@ -2,12 +2,14 @@
 
 use firmware::event::Event;
 use host::instrument::Trial;
+use mavlink::dialects::common::MavCmd;
 use orientation::alignment::Progress;
 use orientation::alignment::refusal::Refusal;
 use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 
 use super::Typed;
+use super::frames::{command, frame};
 use crate::support::link::{sentences, states};
 
 /// A stage that holds its azimuth for so long, s.
@@ -23,7 +25,12 @@ fn stage(hold_s: f64) -> Scenario {
 /// What came of the alignments of a run in which lines are sent at times, s: azimuth, or the reason for which there is none;
 /// and what the link said.
 fn ran(scenario: &Scenario, lines: &[(u64, &str)]) -> (Vec<Option<Refusal>>, String) {
-    let run = Trial::of(scenario).traffic(&Typed::lines(lines)).run().expect("it begins");
+    ran_with(scenario, &Typed::lines(lines))
+}
+
+/// The same of a run in which bytes are sent.
+fn ran_with(scenario: &Scenario, typed: &Typed) -> (Vec<Option<Refusal>>, String) {
+    let run = Trial::of(scenario).traffic(typed).run().expect("it begins");
     let ends = run.events.iter().filter_map(|(_, event)| match event {
         Event::Alignment(Progress::Concluded(_)) => Some(None),
         Event::Alignment(Progress::Refused(reason)) => Some(Some(*reason)),
@@ -40,6 +47,15 @@ fn an_alignment_that_is_stopped_ends_without_an_azimuth_and_begins_by_an_order_a
     let said: Vec<String> = answers.into_iter().map(|fields| fields.join(",")).collect();
     assert_eq!(said, ["stop,ok", "stop,refused,no alignment runs", "start,ok"]);
     assert!(states(&lines).iter().any(|state| state[0] == "failed"));
+}
+
+/// As a ground station ends the calibration of an autopilot: all parameters of the command for one are zero.
+#[test]
+fn an_alignment_is_stopped_by_a_calibration_of_nothing() {
+    let order = command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 3]);
+    let (ends, lines) = ran_with(&stage(60.0), &Typed::bytes([(30, frame(&order))]));
+    assert_eq!(ends, [Some(Refusal::Stopped)]);
+    assert!(lines.contains("$PMRDS,failed,"), "{lines}");
 }
 
 #[test]
