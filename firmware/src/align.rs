@@ -51,10 +51,10 @@ pub async fn align<R: Recorder<S>, S: Timed>(
                     }
                 }
                 match &next(channels, aligner.state != State::Homing).await {
-                    Either::First(order) => {
-                        shared.obey(order);
+                    Either::First(order) if shared.obey(order) => {
                         give(&mut aligner, Input::Ordered(*order), shared)
                     }
+                    Either::First(_) => Request::Continue,
                     Either::Second(sample) => match aligner.state {
                         State::Homing => give(&mut aligner, Input::Passed(sample.time()), shared),
                         State::Aligning => {

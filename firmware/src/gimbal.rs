@@ -113,7 +113,7 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     /// After an azimuth was found, sets the gyro's sensitive axis vertical, where it can hold the
     /// azimuth; a keeper has requested that already.
     async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
-        let is_found = matches!(self.shared.status.get(), Status::Concluded(_));
+        let is_found = matches!(self.shared.status.get(), Status::Concluded(..));
         let is_to_store = is_found && !self.shared.is_kept.get();
         let parking = async {
             // If this fails, the log has the reason; the azimuth is valid nevertheless.

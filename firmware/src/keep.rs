@@ -102,6 +102,7 @@ async fn keep(keeping: &mut Keeping<'_>, aiding: &dyn Aiding, shared: &Shared<'_
         keeper.give(Input::Idle(shared.is_idle()));
         if shared.may_move() {
             keeper.take_moves();
+            keeper.take_stated();
         }
         keeper.pass_time();
         shared.is_at_rest.set(keeper.navigator.is_at_rest);
@@ -133,8 +134,14 @@ impl Navigation<'_, '_> {
     /// Gives it what is known from outside, where it wants that before an event of this time.
     fn aid(&mut self, now: units::Instant) {
         if self.navigator.wants_aiding(now) {
-            let azimuth = self.aiding.azimuth().or_else(|| self.shared.stated.try_take());
-            self.give(Input::Aided(self.aiding.velocity(), azimuth));
+            self.give(Input::Aided(self.aiding.velocity(), self.aiding.azimuth()));
+        }
+    }
+
+    /// Gives it an azimuth that was stated over the link, at once: the body may turn.
+    fn take_stated(&mut self) {
+        if let Some(azimuth) = self.shared.stated.try_take() {
+            self.give(Input::Aided(self.aiding.velocity(), Some(azimuth)));
         }
     }
 

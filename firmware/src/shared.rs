@@ -131,6 +131,16 @@ impl Orders {
         self.waiting.change(|waiting| *waiting = waiting.filter(|order| *order == Order::Restart));
     }
 
+    /// Drops an order to begin an alignment.
+    fn drop_restart(&self) {
+        self.waiting.change(|waiting| *waiting = waiting.filter(|order| *order != Order::Restart));
+    }
+
+    /// Whether an order to begin an alignment waits.
+    fn restarts(&self) -> bool {
+        self.waiting.get() == Some(Order::Restart)
+    }
+
     /// Waits for an order, and takes it.
     pub(crate) async fn take(&self) -> Order {
         loop {
@@ -230,6 +240,8 @@ pub struct Shared<'a> {
     pub not_begun: Common<Option<NotBegun>>,
     /// Whether alignments begin by an order from outside alone, since one was ordered to end.
     is_stopped: Common<bool>,
+    /// Whether one that was ordered from outside has not begun yet.
+    begins_again: Common<bool>,
     /// From the console to the navigator: an azimuth from outside.
     pub stated: Signal<Lock, Azimuth>,
     /// From the console to the store: the settings are to be kept.
@@ -293,6 +305,7 @@ impl<'a> Shared<'a> {
             latitude: Common::default(),
             not_begun: Common::default(),
             is_stopped: Common::new(false),
+            begins_again: Common::new(false),
             stated: Signal::new(),
             keep: Signal::new(),
             kept: Signal::new(),
@@ -340,16 +353,39 @@ impl<'a> Shared<'a> {
         self.alignments.set(Alignments::Idle);
     }
 
-    /// Ends the alignment that runs by an order from outside. The navigator begins none until there is one to begin.
+    /// Ends the alignment that runs or is about to begin by an order from outside. The navigator begins none until there is
+    /// one to begin.
     pub fn stop(&self) {
         self.is_stopped.set(true);
+        self.begins_again.set(false);
+        self.orders.drop_restart();
         self.fail(Refusal::Stopped);
     }
 
-    /// Has another alignment begin by an order from outside.
+    /// Has another alignment begin by an order from outside, once that which runs has ended.
     pub fn begin_again(&self) {
-        self.is_stopped.set(false);
-        self.order(Order::Restart);
+        self.begins_again.set(true);
+        self.go_on();
+    }
+
+    /// Orders the alignment that waited for the end of another, where that has come.
+    pub fn go_on(&self) {
+        if self.begins_again.get() && self.is_idle() {
+            self.is_stopped.set(false);
+            self.order(Order::Restart);
+        }
+    }
+
+    /// Whether an alignment is about to begin: one was ordered, and the aligner has not obeyed yet.
+    #[must_use]
+    pub fn is_beginning(&self) -> bool {
+        self.begins_again.get() || self.orders.restarts()
+    }
+
+    /// Whether an alignment that runs was ordered to end.
+    #[must_use]
+    pub fn is_ending(&self) -> bool {
+        !self.is_idle() && self.is_stopped.get()
     }
 
     /// Takes an order of the navigator. None to begin an alignment is obeyed after one from outside to end.
@@ -359,19 +395,26 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// Notes that the aligner obeys an order. For an alignment that begins the base's sway is observed anew. One that
-    /// begins without its devices is ended for the reason for which they were given up.
-    pub(crate) fn obey(&self, order: &Order) {
-        if *order == Order::Restart && self.is_idle() {
-            self.alignments.set(Alignments::Again);
-            if self.observation.get() == Observation::Made {
-                self.observation.set(Observation::Wanted);
-            }
-            let reason = self.without_sensors.get().or(self.without_mechanism.get());
-            if let Some(reason) = reason {
-                self.fail(reason);
-            }
+    /// Notes that the aligner has taken an order; whether it is to obey: not one to begin an alignment that was ordered to
+    /// end meanwhile. For an alignment that begins the base's sway is observed anew. One that begins without its devices is
+    /// ended for the reason for which they were given up.
+    pub(crate) fn obey(&self, order: &Order) -> bool {
+        if *order != Order::Restart || !self.is_idle() {
+            return true;
         }
+        if self.is_stopped.get() {
+            return false;
+        }
+        self.begins_again.set(false);
+        self.alignments.set(Alignments::Again);
+        if self.observation.get() == Observation::Made {
+            self.observation.set(Observation::Wanted);
+        }
+        let reason = self.without_sensors.get().or(self.without_mechanism.get());
+        if let Some(reason) = reason {
+            self.fail(reason);
+        }
+        true
     }
 
     /// Ends an alignment: hands an azimuth over to the navigator, and wakes the link.
@@ -488,7 +531,8 @@ impl<'a> Shared<'a> {
 
     /// Reports an alignment's progress, and updates the status that the link sends.
     pub fn progress(&self, progress: Progress) {
-        self.status.change(|status| *status = status.after(&progress));
+        let now = Instant::now();
+        self.status.change(|status| *status = status.after(&progress, now));
         if !matches!(progress, Progress::Roll(roll::Progress::Tracked(..))) {
             self.report(Event::Alignment(progress));
         }

@@ -1,5 +1,6 @@
 //! How far the instrument is with what it determines.
 
+use embassy_time::Instant;
 use orientation::alignment::{Azimuth, Progress, Solution, rotating, stepwise, stops};
 use orientation::roll;
 use orientation::units::Radians;
@@ -24,8 +25,8 @@ pub enum Status {
     MayDrive(u16),
     /// The vehicle is in motion.
     Driving,
-    /// The alignment has concluded with an azimuth of body x.
-    Concluded(Azimuth),
+    /// The alignment has concluded with an azimuth of body x, and when.
+    Concluded(Azimuth, Instant),
     /// The alignment has concluded without an azimuth; the log has the reason.
     Refused,
     /// The roll angle of a spinning body is tracked: the angle and its 1σ, if it is known, and what it rests on.
@@ -47,7 +48,7 @@ impl Status {
 
     /// The status after a progress of the alignment.
     #[must_use]
-    pub fn after(self, progress: &Progress) -> Self {
+    pub fn after(self, progress: &Progress, now: Instant) -> Self {
         let measuring = |done: usize, of: usize| Self::Measuring([done as u16, of as u16]);
         match *progress {
             Progress::Stepwise(
@@ -70,7 +71,7 @@ impl Status {
                 Self::Rolling(sigma.map(|sigma| [angle, sigma]), condition)
             }
             Progress::Roll(roll::Progress::Ended(_)) => Self::RollEnded,
-            Progress::Concluded(Solution { azimuth, .. }) => Self::Concluded(azimuth),
+            Progress::Concluded(Solution { azimuth, .. }) => Self::Concluded(azimuth, now),
             Progress::Refused(_) => Self::Refused,
             _ => self,
         }

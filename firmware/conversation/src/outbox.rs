@@ -3,9 +3,9 @@
 use protocol::mavlink::{MessageData, Sender};
 use protocol::nmea::{LONGEST, Sentence};
 
-/// Most bytes of a sentence, a message or an answer: two messages of MAVLink, a parameter's value and words, or one with
-/// the longest payload here, 117 bytes.
-pub const PIECE: usize = 130;
+/// Most bytes of a sentence, a message or an answer: the message with the longest payload here, 117 bytes, which a command
+/// asks for, and the acknowledgement of that command, 10 bytes, each in a frame of 12.
+pub const PIECE: usize = 117 + 10 + 2 * 12;
 
 /// Most bytes that are handed to the link at once. They take half a second at 4800 baud, the slowest link, and less time
 /// than as many as a port keeps for its reader.

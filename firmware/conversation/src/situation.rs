@@ -4,7 +4,7 @@ use embassy_time::Instant;
 use orientation::attitude::Trust;
 use orientation::navigation::navigator::Attitude;
 use orientation::roll::Condition;
-use orientation::units::{self, Radians};
+use orientation::units::{self, Radians, Seconds};
 use protocol::report::{Degradation, Level, Origin, Report, Roll, State};
 
 use firmware::shared::Shared;
@@ -31,9 +31,10 @@ pub(super) fn report(shared: &Shared<'_>) -> Report {
             spin: Some(Roll { angle, condition }),
             ..report
         },
-        (Status::Concluded(azimuth), None) => Report {
+        (Status::Concluded(azimuth, at), None) => Report {
             state: State::Degraded(Degradation::Unwatched),
             azimuth: Some(azimuth),
+            since_alignment: Some(Seconds(at.elapsed().as_micros() as f64 * 1e-6)),
             ..report
         },
         (_, Some(attitude)) => kept(report, &attitude, shared),
@@ -45,7 +46,7 @@ pub(super) fn report(shared: &Shared<'_>) -> Report {
 fn without_azimuth(shared: &Shared<'_>) -> State {
     match shared.status.get() {
         Status::Waiting => State::Waiting,
-        _ if shared.is_idle() => State::Failed,
+        _ if shared.is_idle() && !shared.is_beginning() => State::Failed,
         _ => State::Aligning,
     }
 }
@@ -56,7 +57,8 @@ fn state_of_roll(is_known: bool, condition: Condition) -> State {
         Condition::Locked if is_known => State::Ready,
         Condition::Holding if is_known => State::Degraded(Degradation::Coasting),
         _ if is_known => State::Degraded(Degradation::Uncertain),
-        Condition::Searching | Condition::RotationLost => State::Aligning,
+        // It waits for turns that show it.
+        Condition::Searching | Condition::NotSpinning | Condition::RotationLost => State::Aligning,
         _ => State::Failed,
     }
 }

@@ -109,7 +109,9 @@ impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
         let store = STORE.init_with(|| SharedStore::new(outlets.flash.archive()));
         let loaded = settings::load::<C>(outlets);
         let start = loaded.as_ref().map(Editable::start).map_err(|reason| *reason);
-        let settings = loaded.unwrap_or_default();
+        // The port was opened as a record says, even one that is refused.
+        let settings = loaded
+            .unwrap_or_else(|_| Settings { output: output(outlets.flash), ..Settings::default() });
         channels.shared.output.set(settings.output);
         Self { channels, store, settings: statics.settings.init(Mutex::new(settings)), start }
     }
@@ -128,6 +130,9 @@ impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
         let start = start?;
         if !start.is_at_power_on || start.lacks_latitude(None) {
             shared.wait_to_begin();
+            if start.lacks_latitude(None) {
+                shared.report(Event::NotBegun(NotBegun::NoLatitude));
+            }
             shared.begin.wait().await;
             shared.status.set(Status::Starting);
         }

@@ -14,7 +14,7 @@
 //! | `set latitude 47.58` | changes a setting |
 //! | `save` | keeps the settings in flash |
 //! | `restore` | takes those of the image again |
-//! | `test` | the self-tests of all devices |
+//! | `test` | which devices have passed their self-tests |
 //! | `log` | the lines of the log that are kept in flash |
 //! | `reboot` | starts the instrument anew |
 
@@ -44,7 +44,7 @@ pub enum Command<'c> {
     Save,
     /// Takes the settings of the image again.
     Restore,
-    /// Has all devices test themselves.
+    /// Asks which devices have passed their self-tests since the power-on.
     Test,
     /// Asks for the lines of the log that are kept in flash.
     Log,

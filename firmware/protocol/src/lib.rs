@@ -11,7 +11,8 @@
 //! | [`receiver`] | lines and frames among the bytes that are received |
 //! | [`words`] | words for people, in parts that a sentence or a message takes |
 //!
-//! Whatever format is sent: no receiver can take an azimuth from it before the state is [`State::Ready`](report::State).
+//! Whatever format is sent: an azimuth that is not ready goes with its sign, the mode of THS, or not at all, but for the
+//! messages of one whose level gyros alone carry.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -112,10 +112,9 @@ impl Flood {
         self.put(b"\r\n");
     }
 
-    /// Puts a frame of MAVLink 2 whose checksum is of other bytes: a message that sets a parameter, a command, or a
-    /// position.
+    /// Puts a frame of MAVLink 2 whose checksum is of other bytes: a message about parameters, a position, or a command.
     fn frame(&mut self) {
-        const NUMBERS: [u8; 4] = [20, 21, 23, 76];
+        const NUMBERS: [u8; 5] = [20, 21, 23, 24, 76];
         let length = 1 + self.below(40) as u8;
         let number = NUMBERS[self.below(NUMBERS.len())];
         self.put(&[0xFD, length, 0, 0, 7, 255, 190, number, 0, 0]);

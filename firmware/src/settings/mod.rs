@@ -35,9 +35,11 @@ pub use schedule::{
     TwoFrameSchedule, VehicleSchedule,
 };
 
+use core::f64::consts::PI;
+
 use drivers::ads1262::configuration::Gain;
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
-use orientation::alignment::setup::{GREATEST, Quantity, SetupError, check_ranges};
+use orientation::alignment::setup::{Quantity, SetupError, check_ranges};
 use orientation::alignment::site::Site;
 use orientation::attitude;
 use orientation::earth::{EARTH_RATE, HIGHEST_LATITUDE, Latitude};
@@ -53,6 +55,8 @@ use names::{DEGREES, PARTS, Unit, put};
 /// Least and greatest limit of a gyro, rad/s: below the Earth rate there is nothing to measure, and an
 /// [`AngularRate`] holds no more.
 const LIMITS: [f64; 2] = [EARTH_RATE, i32::MAX as f64 * 1e-9];
+/// Least and greatest 1σ of an azimuth that may be required, rad: from 2″, which no gyro here reaches, to half a turn.
+const REQUIRED: [f64; 2] = [1e-5, PI];
 /// Least and greatest magnitude of a scale factor, V per rad/s: a code of the converter is then 2³⁰ or
 /// 2⁻³² nrad/s, the limits of a [`Scale`].
 const SCALE_FACTORS: [f64; 2] =
@@ -160,7 +164,9 @@ impl<C: CarrierSchedule> Settings<C> {
         check_ranges(&[
             ("latitude", latitude.rad(), [-HIGHEST_LATITUDE, HIGHEST_LATITUDE]),
             ("limit", limit.0, LIMITS),
-            ("bias_sigma", errors.bias_sigma.0, [0.0, GREATEST]),
+            ("bias_sigma", errors.bias_sigma.0, [0.0, LIMITS[1]]),
+            ("scale_sigma", errors.scale_sigma, [0.0, 1.0]),
+            ("required_sigma", self.required_sigma.0, REQUIRED),
         ])?;
         self.gyro.scale(Gain::X1)?;
         self.site(latitude).check()?;

@@ -69,12 +69,15 @@ impl fmt::Display for Stated {
     }
 }
 
+/// Part of its last decimal place by which a number that was shown may differ from what is read of it.
+const SAME: f64 = 0.01;
+
 impl Stated {
-    /// Whether a value is shown as this one is.
+    /// Whether a value is the number that this one is shown as.
     fn shows(&self, value: f64) -> bool {
         let unit = (0..self.places).fold(1.0, |unit, _| unit * 10.0);
-        let [shown, other] = [self.value, value].map(|value| libm::round(value * unit));
-        shown == other || (self.value.is_nan() && value.is_nan())
+        let apart = libm::fabs(libm::round(self.value * unit) - value * unit);
+        apart < SAME || (self.value.is_nan() && value.is_nan())
     }
 
     /// The value that a text states for this setting.
@@ -390,6 +393,8 @@ pub enum EditError {
     NotHeld,
     /// The value is not from the least to the greatest one that the setting can have, in the user's unit.
     Beyond([f64; 2]),
+    /// The setting is never such a number, but one of these.
+    NotAmong(&'static str),
     /// Another quantity would be out of its range, or the settings are not possible together.
     OutOfRange(SetupError),
 }
@@ -406,6 +411,7 @@ impl EditError {
             {
                 Self::Beyond(range.map(|end| end / si))
             }
+            SetupError::NotAmong { choices, .. } => Self::NotAmong(choices),
             error => Self::OutOfRange(error),
         }
     }
@@ -426,6 +432,7 @@ impl fmt::Display for EditError {
             Self::Beyond([least, greatest]) => {
                 return write!(f, "not from {} to {}", Shortened(*least), Shortened(*greatest));
             }
+            Self::NotAmong(choices) => return write!(f, "not {choices}"),
             Self::OutOfRange(error) => return error.fmt(f),
         })
     }

@@ -72,7 +72,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         &mut Gimbal::new(&mut actuator, &frames, &channels.shared),
         (&mut session, Some(Keeping { keeper: &mut keeper, policy })),
         (&scenario.base.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
-        &channels,
+        (scenario.settings(), &channels),
     )?;
     let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;

@@ -14,7 +14,7 @@ use firmware::keep::Keep;
 use firmware::mechanism::Mechanism;
 use firmware::ports::{Aiding, BaseReading, Observer, Recorder, Store};
 use firmware::run::{navigate, store};
-use firmware::settings::{BoardSettings, Serial, Settings, StageSchedule};
+use firmware::settings::{BoardSettings, CarrierSchedule, Serial, Settings};
 use firmware::shared::Channels;
 use hal_mock::assembly::{Board, Chips};
 use orientation::alignment::{Azimuth, Method, Progress};
@@ -94,7 +94,8 @@ impl<'w> Harness<'w> {
     }
 
     /// Runs an instrument to its end in virtual time on this thread, beside the acquisition of its
-    /// samples; what it ends with, and when. Where the program is interrupted, it ends there.
+    /// samples; what it ends with, and when. Where the program is interrupted, it ends there. Commands over the link are
+    /// about these settings, or those of the factory.
     ///
     /// # Errors
     /// Everything waits and nothing would come.
@@ -104,11 +105,11 @@ impl<'w> Harness<'w> {
         mechanism: &mut impl Mechanism,
         (method, keeping): (&mut dyn Method<S>, impl Keep),
         (aiding, mut recorder, memory): (&dyn Aiding, impl Recorder<S>, impl Store),
-        channels: &Channels<'_, S>,
+        (settings, channels): (Option<Settings<impl CarrierSchedule + 'static>>, &Channels<'_, S>),
     ) -> Result<(Health, Instant), RunError> {
         let instrument = async {
             let shared = &channels.shared;
-            let settings = Mutex::new(Settings::<StageSchedule>::default());
+            let settings = Mutex::new(settings.unwrap_or_default());
             let kept = BoardSettings { settings: &settings, serial: Serial([0; 12]) };
             let listener = self.traffic.map(|_| Listening::new(kept, || ()));
             let link = Wire::new(&self.bytes, self.traffic);

@@ -84,7 +84,7 @@ impl Carrier for SpinScenario {
             &mut Strapdown::new(&channels.shared),
             (&mut flight, NotKept),
             (&(), (&mut kept, recorder), ()),
-            &channels,
+            (scenario.settings(), &channels),
         )?;
         // Another body of the same course, which has not flown yet.
         let fresh = scenario.board(course, injection).plant;

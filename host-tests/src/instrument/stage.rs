@@ -70,7 +70,7 @@ pub fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
         (&mut session, Some(Keeping { keeper: &mut keeper, policy: scenario.policy() })),
         (&scenario.hold.aiding(), FaultyRecorder::new(recorder, injection.hang), store),
-        &channels,
+        (scenario.settings(), &channels),
     )?;
     let (session, is_cut_short) = harness.concluded::<Sample, _>(session);
     let replay = Replay { method: name_of(&session), session, assumed: given_with(scenario.half) };

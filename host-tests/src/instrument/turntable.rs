@@ -83,7 +83,7 @@ fn align_on<B: CompensatesSway, R: Recorder, T: Store>(
         &mut Turntable::new(&mut actuator, &platform, &channels.shared),
         (&mut session, Some(Keeping { keeper: &mut keeper, policy })),
         (&scenario.base.hold.aiding(), recorder, store),
-        channels,
+        (scenario.settings(), channels),
     )?;
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
     let session = harness.concluded::<Sample, _>(session);

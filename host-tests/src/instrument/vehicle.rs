@@ -68,7 +68,7 @@ impl Carrier for VehicleScenario {
             &mut Strapdown::new(&channels.shared),
             (&mut session, keeping),
             (&aiding, FaultyRecorder::new(recorder, injection.hang), store),
-            &channels,
+            (scenario.settings(), &channels),
         )?;
         let truth = board.borrow().plant.truth();
         let session = harness.concluded::<InertialSample, _>(session);

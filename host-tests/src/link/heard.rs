@@ -95,8 +95,8 @@ impl Heard {
         }
         if self.own > 0 {
             return format!(
-                "the instrument was heard ({}) but does not answer: the line to it is not connected, or its firmware takes no \
-                 commands; check the wire, or flash it anew with `cargo board`",
+                "the instrument was heard ({}) but does not answer: it was starting, the line to it is not connected, or its \
+                 firmware takes no commands; try once more, check the wire, or flash it anew with `cargo board`",
                 counted(self.own, "sentence")
             );
         }

@@ -92,14 +92,8 @@ fn of_other_board(file: &Snapshot, instrument: &Snapshot, calibrations: &[String
 /// What was refused, and what became of the rest.
 pub fn load(instrument: &mut Conversation, plan: Plan, file: &Snapshot) -> Result<Loaded, String> {
     let (mut made, mut loaded) = (Vec::new(), Loaded { plan, ..Loaded::default() });
-    for [name, before, wanted] in &mut loaded.plan.changes {
-        let kept = change(instrument, [name, before, wanted], &mut made);
-        let kept = kept.map_err(|why| format!("{why}; {}", restored(instrument, &made)))?;
-        if !value::are_same(&kept, wanted) {
-            loaded.rounded.push(format!("{name} = {wanted} is kept as {kept}"));
-        }
-        *wanted = kept;
-    }
+    let changed = change_all(instrument, &mut loaded, &mut made);
+    changed.map_err(|why| format!("{why}; {}", restored(instrument, &made)))?;
     let saved = instrument.say(&["save"]).map_err(|why| {
         format!("{why}; all settings are set, but whether they are saved is not known: load them once more")
     })?;
@@ -111,12 +105,49 @@ pub fn load(instrument: &mut Conversation, plan: Plan, file: &Snapshot) -> Resul
     Ok(loaded)
 }
 
-/// Sets one value; what is kept. One that is not known to be kept is restored with the others.
+/// Sets all values that are to be loaded. Each must be possible together with those that the others have at that time: what is
+/// refused is tried once more after others were taken.
+fn change_all(
+    instrument: &mut Conversation,
+    loaded: &mut Loaded,
+    made: &mut Vec<Made>,
+) -> Result<(), String> {
+    let mut left: Vec<_> = loaded.plan.changes.iter_mut().collect();
+    while !left.is_empty() {
+        let (mut refused, mut reason, mut is_changed) = (Vec::new(), None, false);
+        for entry in left {
+            let [name, before, wanted] = entry;
+            match change(instrument, [name, before, wanted], made)? {
+                Ok(kept) => {
+                    if !value::are_same(&kept, wanted) {
+                        loaded.rounded.push(format!("{name} = {wanted} is kept as {kept}"));
+                    }
+                    *wanted = kept;
+                    is_changed = reason.is_some();
+                }
+                Err(why) => {
+                    reason.get_or_insert(why);
+                    refused.push(entry);
+                }
+            }
+        }
+        if let Some(why) = reason.filter(|_| !is_changed) {
+            return Err(why);
+        }
+        left = refused;
+    }
+    Ok(())
+}
+
+/// Sets one value; what is kept, or why it is refused. One that is not known to be kept is restored with the others.
+///
+/// # Errors
+/// There was no answer.
 fn change(
     instrument: &mut Conversation,
     [name, before, wanted]: [&str; 3],
     made: &mut Vec<Made>,
-) -> Result<String, String> {
+) -> Result<Result<String, String>, String> {
     if interrupt::is_asked() {
         return Err(interrupt::reason());
     }
@@ -125,8 +156,10 @@ fn change(
     if reply.refused.is_some() {
         made.pop();
     }
-    let reply = reply.done(&format!("set {name} {wanted}"))?;
-    Ok(reply.values.into_iter().next().map_or_else(|| wanted.to_owned(), |(_, kept)| kept))
+    let done = reply.done(&format!("set {name} {wanted}"));
+    Ok(done.map(|reply| {
+        reply.values.into_iter().next().map_or_else(|| wanted.to_owned(), |(_, kept)| kept)
+    }))
 }
 
 /// Sets the values again that were there before, the last one first; what became of that.

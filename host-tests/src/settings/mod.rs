@@ -13,11 +13,11 @@ pub mod value;
 
 use std::collections::BTreeMap;
 
+use firmware::settings::CALIBRATIONS;
+
 /// The names that say what an instrument is and cannot be set: its carrier, the serial number of its controller, the version
 /// of its firmware.
 pub const IDENTITY: [&str; 3] = ["carrier", "serial", "firmware"];
-/// How the names of calibrations begin, which are those of one board.
-const CALIBRATIONS: [&str; 7] = ["gyro_", "g_", "force_", "encoder_", "frame_", "index_", "spin_"];
 
 /// What an instrument is, and all its settings, as it says them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -206,8 +206,9 @@ fn a_state_without_an_attitude_follows_the_alignment() {
         (Status::Starting, "aligning", "V"),
         (Status::Measuring([5, 24]), "aligning", "V"),
         // Nothing shows whether the body has turned since.
-        (Status::Concluded(found), "degraded", "E"),
+        (Status::Concluded(found, Instant::now()), "degraded", "E"),
         (Status::Rolling(None, Condition::Searching), "aligning", "V"),
+        (Status::Rolling(None, Condition::NotSpinning), "aligning", "V"),
         (Status::Rolling(None, Condition::GyroStuck), "failed", "V"),
         (Status::Rolling(roll, Condition::Locked), "ready", "V"),
         (Status::Rolling(roll, Condition::Holding), "degraded", "V"),
@@ -221,6 +222,19 @@ fn a_state_without_an_attitude_follows_the_alignment() {
         assert_eq!((states(&said)[0][0], first(&said, "HETHS")[1]), (state, mode), "{status:?}");
         assert_eq!(first(&said, "HEHDT")[0], "", "{status:?}");
     }
+}
+
+#[test]
+fn an_azimuth_that_is_not_held_is_told_with_its_age() {
+    let shared = Shared::new(&());
+    shared.homed.signal(());
+    shared.status.set(Status::Concluded(azimuth(213.702, 0.033), Instant::now()));
+    let said = String::from_utf8(sent(100, &shared)).expect("text");
+    let states = states(&said);
+    assert!(states.iter().all(|state| [state[0], state[8]] == ["degraded", "unwatched"]));
+    let ages: Vec<u32> = states.iter().map(|state| state[5].parse().expect("seconds")).collect();
+    assert_eq!(ages, (ages[0]..ages[0] + 10).collect::<Vec<_>>());
+    assert!(ages[0] <= 1, "{ages:?}");
 }
 
 #[test]
@@ -273,7 +287,7 @@ fn an_autopilot_hears_a_heartbeat_a_second_and_the_azimuth_only_where_it_may_fus
     let recalled = Attitude { is_recalled: true, ..attitude() };
     let unknown = Attitude { azimuth: None, ..attitude() };
     for (attitude, expected) in
-        [(attitude(), [100, 100, 10]), (recalled, [0, 100, 10]), (unknown, [0, 0, 10])]
+        [(attitude(), [100, 100, 10]), (recalled, [0, 0, 10]), (unknown, [0, 0, 10])]
     {
         let shared = keeping(attitude);
         let mut output = Output { format: Format::Mavlink, ..Output::default() };

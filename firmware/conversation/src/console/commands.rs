@@ -3,7 +3,7 @@
 use core::fmt::{self, Display};
 
 use firmware::not_begun::NotBegun;
-use firmware::settings::{EditError, Editable};
+use firmware::settings::{EditError, Editable, Output};
 use firmware::shared::Shared;
 use orientation::alignment::Azimuth;
 use orientation::alignment::refusal::Refusal;
@@ -31,6 +31,8 @@ pub enum Refused {
     NotKept,
     /// The azimuth is none, or its σ.
     Azimuth,
+    /// The azimuth that was stated before has not been taken yet.
+    Taking,
     /// A setting is not given a value.
     Setting(EditError),
     /// The settings are being kept.
@@ -46,6 +48,7 @@ impl Display for Refused {
             Self::Changed => "settings were changed: save and reboot",
             Self::Over => "it has ended: reboot",
             Self::NotKept => "no attitude is kept",
+            Self::Taking => "the one before is being taken",
             Self::Azimuth => "not an azimuth, or not a sigma up to 30",
             Self::Setting(error) => return error.fmt(formatter),
             Self::Busy => "the store is busy",
@@ -59,7 +62,7 @@ impl Console {
     /// # Errors
     /// Why not.
     pub(super) fn start(
-        &mut self,
+        &self,
         settings: &dyn Editable,
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
@@ -71,7 +74,8 @@ impl Console {
             return Ok(());
         }
         self.check_again(settings, shared)?;
-        if !shared.is_idle() {
+        let runs = !shared.is_idle() && !shared.is_ending();
+        if runs || shared.is_beginning() {
             return Err(Refused::Runs);
         }
         shared.begin_again();
@@ -83,16 +87,16 @@ impl Console {
     /// # Errors
     /// Why not.
     pub(super) fn realign(
-        &mut self,
+        &self,
         settings: &dyn Editable,
         shared: &Shared<'_>,
     ) -> Result<(), Refused> {
-        if shared.is_waiting() || shared.is_idle() {
+        if shared.is_waiting() {
             return self.start(settings, shared);
         }
         self.check_again(settings, shared)?;
         shared.fail(Refusal::Stopped);
-        self.begins_again = true;
+        shared.begin_again();
         Ok(())
     }
 
@@ -106,19 +110,6 @@ impl Console {
         }
         let is_changed = self.begun.is_some_and(|begun| begun != settings.checksum());
         if is_changed { Err(Refused::Changed) } else { Ok(()) }
-    }
-
-    /// Ends the alignment that runs. None begins but by an order.
-    ///
-    /// # Errors
-    /// [`Refused::NothingRuns`].
-    pub(super) fn stop(&mut self, shared: &Shared<'_>) -> Result<(), Refused> {
-        let begins_again = core::mem::take(&mut self.begins_again);
-        if shared.is_waiting() || (shared.is_idle() && !begins_again) {
-            return Err(Refused::NothingRuns);
-        }
-        shared.stop();
-        Ok(())
     }
 
     /// Gives a setting a value in its user's unit. What the link sends changes at once, all else counts from the next start
@@ -135,7 +126,7 @@ impl Console {
     ) -> Result<(), Refused> {
         self.check_changeable(settings, shared)?;
         settings.set(name, value).map_err(Refused::Setting)?;
-        shared.output.set(settings.output());
+        show(settings.output(), shared);
         Ok(())
     }
 
@@ -150,7 +141,7 @@ impl Console {
     ) -> Result<(), Refused> {
         self.check_changeable(settings, shared)?;
         settings.restore();
-        shared.output.set(settings.output());
+        show(settings.output(), shared);
         Ok(())
     }
 
@@ -189,10 +180,30 @@ impl Console {
     }
 }
 
+/// Ends the alignment that runs or is about to begin. None begins but by an order.
+///
+/// # Errors
+/// [`Refused::NothingRuns`].
+pub(super) fn stop(shared: &Shared<'_>) -> Result<(), Refused> {
+    if shared.is_waiting() || (shared.is_idle() && !shared.is_beginning()) {
+        return Err(Refused::NothingRuns);
+    }
+    shared.stop();
+    Ok(())
+}
+
+/// Has the link send what is stated from now on, as far as its port carries that: another baud counts from the next start on.
+fn show(stated: Output, shared: &Shared<'_>) {
+    let output = Output { baud: shared.output.get().baud, ..stated };
+    if output.check().is_ok() {
+        shared.output.set(output);
+    }
+}
+
 /// Gives the navigator an azimuth from outside with its 1σ, °.
 ///
 /// # Errors
-/// [`Refused::Azimuth`] and [`Refused::NotKept`].
+/// [`Refused::Azimuth`], [`Refused::NotKept`] and [`Refused::Taking`].
 pub(super) fn state_azimuth([angle, sigma]: [f64; 2], shared: &Shared<'_>) -> Result<(), Refused> {
     let [angle, sigma] = [angle, sigma].map(Radians::from_degrees);
     let is_one = (0.0..=LEAST_KNOWN.0).contains(&sigma.0)
@@ -203,6 +214,9 @@ pub(super) fn state_azimuth([angle, sigma]: [f64; 2], shared: &Shared<'_>) -> Re
     }
     if !shared.is_kept.get() || shared.attitude.get().is_none() {
         return Err(Refused::NotKept);
+    }
+    if shared.stated.signaled() {
+        return Err(Refused::Taking);
     }
     shared.stated.signal(Azimuth { angle: Radians(wrapped(angle.0)), sigma });
     Ok(())

@@ -1,14 +1,15 @@
 //! Parameters and commands of MAVLink, answered by messages.
 
-use firmware::settings::{EditError, Editable, Item, Stated};
+use firmware::settings::{EditError, Editable, Format, Item, Stated};
 use firmware::shared::Shared;
 use orientation::units::Radians;
 use protocol::mavlink::{
-    Action, Command, MavResult, MavSeverity, Request, acknowledgement, interval, parameter,
-    statustext,
+    Action, Command, HEARTBEAT, MavResult, MavSeverity, Request, acknowledgement, interval,
+    parameter, statustext,
 };
 use protocol::words::Words;
 
+use super::commands::stop;
 use super::listing::Listing;
 use super::{Console, Outbox, Refused, Requester, take_latitude};
 use crate::reporter::put_now;
@@ -60,7 +61,11 @@ impl Console {
                 .map_or(MavResult::MAV_RESULT_DENIED, |item| send(item, outbox, shared)),
             Ok(Action::StateInterval(number)) => {
                 let output = shared.output.get();
-                let rate = Item::of_message(number).map(|item| output.rate(item));
+                let rate = match Item::of_message(number) {
+                    Some(item) => Some(output.rate(item)),
+                    None if number == HEARTBEAT && output.format == Format::Mavlink => Some(1),
+                    None => None,
+                };
                 outbox.put_message(&interval(number, rate));
                 MavResult::MAV_RESULT_ACCEPTED
             }
@@ -81,7 +86,7 @@ impl Console {
     ) -> MavResult {
         let done = match action {
             Action::Align => self.realign(settings, shared),
-            Action::Stop => self.stop(shared),
+            Action::Stop => stop(shared),
             Action::Restore => self.restore(settings, shared),
             Action::Reboot => {
                 self.reboots = true;

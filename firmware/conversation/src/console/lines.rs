@@ -6,7 +6,7 @@ use protocol::answer;
 use protocol::command::{self, Command, NoCommand};
 use protocol::nmea::Sentence;
 
-use super::commands::state_azimuth;
+use super::commands::{state_azimuth, stop};
 use super::listing::Listing;
 use super::{Console, Outbox, Refused, Requester};
 
@@ -50,7 +50,7 @@ impl Console {
     ) -> Result<Option<Sentence>, Refused> {
         match *command {
             Command::Start => self.start(settings, shared)?,
-            Command::Stop => self.stop(shared)?,
+            Command::Stop => stop(shared)?,
             Command::Realign => self.realign(settings, shared)?,
             Command::Azimuth(angle, sigma) => state_azimuth([angle, sigma], shared)?,
             Command::Get(None) => return Ok(self.begin(Listing::Identity(0))),

@@ -55,8 +55,6 @@ pub struct Console {
     listing: Option<Listing>,
     /// Who waits for the settings to be kept.
     saving: Option<Requester>,
-    /// Whether an alignment is to begin once the one that runs has ended.
-    begins_again: bool,
     /// Whether the instrument is to be started anew once the answer is sent.
     reboots: bool,
     /// Checksum of the settings that the instrument has begun with, once others may hold.
@@ -66,15 +64,7 @@ pub struct Console {
 impl Console {
     /// A console that was asked nothing.
     pub(super) const fn new(serial: Serial, reboot: fn()) -> Self {
-        Self {
-            serial,
-            reboot,
-            listing: None,
-            saving: None,
-            begins_again: false,
-            reboots: false,
-            begun: None,
-        }
+        Self { serial, reboot, listing: None, saving: None, reboots: false, begun: None }
     }
 
     /// Takes what was received, as far as it is for this instrument, and answers it.
@@ -105,10 +95,7 @@ impl Console {
         outbox: &mut Outbox,
         shared: &Shared<'_>,
     ) -> bool {
-        if self.begins_again && shared.is_idle() {
-            self.begins_again = false;
-            shared.begin_again();
-        }
+        shared.go_on();
         if let Some(requester) = self.saving
             && let Some(outcome) = shared.kept.try_take()
         {

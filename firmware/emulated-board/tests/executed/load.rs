@@ -4,29 +4,31 @@ use emulated_board::run::Order;
 use execution::report::{Report, Service};
 use firmware::budget;
 use firmware::platform::Platform;
-use firmware::settings::{Editable, FASTEST, ITEMS};
+use firmware::settings::{Editable, FASTEST, Format, ITEMS};
 use simulated::flood::Flood;
 
 use super::support::executed::{Executed, execute_image, execute_told, fast_image};
 use super::support::figure::within;
 use super::support::images::image;
+use super::support::line::{HEARS, MILLISECOND};
 use super::support::sentences::sentences;
 use super::support::worlds::at_full_load;
 
-/// Bytes that 115 200 baud bring in a millisecond, at most.
-const MILLISECOND: usize = 11;
+/// Most bytes of a message.
+const LONGEST: usize = 280;
+/// Number of the message that has the state of the sensors.
+const SYS_STATUS: u8 = 1;
 /// Bytes of commands that may wait for their answers, and the time in which they have them, ms.
 const WAITING: (usize, usize) = (200, 250);
-/// When a board that is powered hears commands, ms.
-const HEARS: usize = 2100;
 
-/// The image of a carrier, which is the one of 2 400 samples a second where it has such a one, and sends all that it may.
-fn loaded(carrier: Platform) -> Executed {
+/// The image of a carrier, which is the one of 2 400 samples a second where it has such a one, and sends all that it may of a
+/// format.
+fn loaded(carrier: Platform, format: Format) -> Executed {
     let image = match carrier {
         Platform::Stage | Platform::Turntable | Platform::TwoFrame => fast_image(carrier),
         Platform::Vehicle | Platform::Spin => image(carrier),
     };
-    execute_image(&image, &Order::usual(carrier, 1), at_full_load(carrier), Vec::new)
+    execute_image(&image, &Order::usual(carrier, 1), at_full_load(carrier, format), Vec::new)
 }
 
 /// Nothing was lost, and nothing said that something was wrong.
@@ -42,20 +44,36 @@ fn sound(report: &Report) {
     assert!(resets.is_empty(), "{resets:?}");
 }
 
-/// Sends all sentences ten times a second, loses nothing, and takes no more than its budget for a sample.
+/// Numbers of the messages that were sent, all of which are whole; a heartbeat is first.
+fn messages(mut bytes: &[u8]) -> Vec<u8> {
+    let mut numbers = Vec::new();
+    while let [0xFD, length, _, _, _, 1, 200, number, 0, 0, ..] = *bytes {
+        numbers.push(number);
+        bytes = bytes.get(usize::from(length) + 12..).unwrap_or_default();
+    }
+    // The end may come amid a message.
+    assert!(bytes.len() < LONGEST, "{} messages, then {bytes:?}", numbers.len());
+    numbers
+}
+
+/// Sends all of a format ten times a second, loses nothing, and takes no more than its budget for a sample.
 #[track_caller]
 fn holds(carrier: Platform, most: u64) {
-    let Executed { report, link, log } = loaded(carrier);
-    sound(&report);
-    let sample = report.instructions_per_sample.expect("it has measured");
-    within(
-        sample,
-        0.0..=most as f64,
-        &format!("instructions a sample takes on {carrier}, with all that the link may send"),
-    );
-    let end = log.last().map_or(0.0, |entry| entry.seconds);
-    let many = sentences(link.iter().map(String::as_str), "PMRDS").len() as f64;
-    assert!(many > 9.0 * (end - 3.0), "{many} states in {end} s");
+    for format in [Format::Nmea, Format::Mavlink] {
+        let Executed { report, link, log, bytes } = loaded(carrier, format);
+        sound(&report);
+        let sample = report.instructions_per_sample.expect("it has measured");
+        let words = "instructions a sample takes, with all that the link may send of";
+        within(sample, 0.0..=most as f64, &format!("{words} {format:?} on {carrier}"));
+        let many = match format {
+            Format::Nmea => sentences(link.iter().map(String::as_str), "PMRDS").len(),
+            Format::Mavlink => {
+                messages(&bytes).iter().filter(|number| **number == SYS_STATUS).count()
+            }
+        };
+        let end = log.last().map_or(0.0, |entry| entry.seconds);
+        assert!(many as f64 > 9.0 * (end - 3.0), "{many} states in {end} s of {format:?}");
+    }
 }
 
 #[test]
@@ -93,7 +111,8 @@ fn no_carrier_loses_anything_while_its_link_is_full_both_ways() {
     for carrier in Platform::ALL {
         let mut flood = Flood::new(1);
         let told = || flood.by_ref().take(MILLISECOND).collect();
-        let shown = execute_told(&Order::usual(carrier, 1), at_full_load(carrier), told);
+        let shown =
+            execute_told(&Order::usual(carrier, 1), at_full_load(carrier, Format::Nmea), told);
         println!(
             "{carrier}: {:?} instructions a sample, asleep for {:?}",
             shown.report.instructions_per_sample, shown.report.idle
@@ -141,7 +160,11 @@ fn a_spinning_body_loses_nothing_while_it_is_given_commands_in_bursts() {
         asked.extend(sent);
         sent.to_vec()
     };
-    let shown = execute_told(&Order::usual(Platform::Spin, 1), at_full_load(Platform::Spin), told);
+    let shown = execute_told(
+        &Order::usual(Platform::Spin, 1),
+        at_full_load(Platform::Spin, Format::Nmea),
+        told,
+    );
     sound(&shown.report);
     let answers = sentences(shown.link.iter().map(String::as_str), "PMRDR");
     let refused: Vec<_> = answers.iter().filter(|fields| fields[1] == "refused").collect();

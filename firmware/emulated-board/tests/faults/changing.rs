@@ -1,8 +1,9 @@
 //! The supply is lost while a board keeps its settings, row by row: it starts with the old ones or with the new ones.
 
-use emulated_board::world::{SERIAL, stored};
+use emulated_board::world::{SERIAL, World, stored};
 use firmware::platform::Platform;
 use firmware::settings::{Settings, save};
+use orientation::earth::Latitude;
 
 use crate::board::Board;
 use crate::power::cut;
@@ -11,23 +12,26 @@ use crate::power::cut;
 const ROWS: u32 = 34;
 /// Operations of a save that changes pages: an erasure, the record that is carried, the header twice, and the record.
 const OPERATIONS: u32 = 1 + ROWS + 2 + ROWS;
+/// Records that a page takes.
+const FULL: usize = 7;
 /// The longest time from the supply to the settings, s: the crystal starts.
 const LONGEST: f64 = 5.0;
+/// The latitude before a save, and the one that is saved, °.
+const LATITUDES: [f64; 2] = [40.0, -30.0];
 
-/// A stage that waits for an order, with a latitude, °.
-fn waiting(latitude: f64) -> Board {
+/// A stage that waits for an order, whose settings were saved so many times.
+fn waiting(saves: usize) -> Board {
     let stage = simulated::executed::stage(1);
     let usual = stage.settings().expect("the scenario has a latitude");
-    let settings = Settings {
-        latitude: orientation::earth::Latitude::from_degrees(latitude),
-        starts: false,
-        ..usual
-    };
+    let latitude = Latitude::from_degrees(LATITUDES[0]);
+    let settings = Settings { latitude, starts: false, ..usual };
     let store = stored(async |store| {
-        save(store, &settings, &SERIAL).await.map_err(|error| error.to_string())
+        for _ in 0..saves {
+            save(store, &settings, &SERIAL).await.map_err(|error| error.to_string())?;
+        }
+        Ok(())
     });
-    let world = emulated_board::world::World::new(Platform::Stage, 1);
-    let world = world.expect("its settings are possible");
+    let world = World::new(Platform::Stage, 1).expect("its settings are possible");
     Board::within(Platform::Stage, world.with_store(store.expect("a store takes a record")))
 }
 
@@ -41,38 +45,44 @@ fn started(board: &mut Board) -> f64 {
     latitude.parse().expect("a number")
 }
 
-/// Loses the supply so many times in a save, each time after `step` operations more than the time before, or once the save is
-/// over. How often the old settings, and how often the new ones, held afterwards.
-fn kept(losses: u32, step: u32) -> [u32; 2] {
-    let mut old = 40.0;
-    let mut board = waiting(old);
+/// Whether the new settings hold after a save into which the supply is lost once this operation of it is done, into a store
+/// with so many records.
+fn is_new(saves: usize, operation: u32) -> bool {
+    let [old, new] = LATITUDES;
+    let mut board = waiting(saves);
     assert_eq!(started(&mut board), old);
-    let mut counts = [0; 2];
-    for number in 0..losses {
-        let new = f64::from(number) - 30.0;
-        board.run(0.3);
-        board.execution.send(format!("set latitude {new}\r\nsave\r\n").as_bytes());
-        let after = number * step % OPERATIONS;
-        cut(&board, after, 1.0);
-        board.run(0.5);
-        let is_over = board.controller(|controller| controller.flash.cut.take().is_some());
-        if is_over {
-            board.execution.lose_supply();
-        }
-        board.until("board: started by Supply", LONGEST);
-        let found = started(&mut board);
-        let is_possible = found == new || (found == old && !is_over);
-        assert!(is_possible, "after {after}, over: {is_over}: {found}\n{board}");
-        counts[usize::from(found == new)] += 1;
-        old = found;
-    }
-    counts
+    board.run(0.3);
+    cut(&board, operation, 1.0);
+    board.execution.send(format!("set latitude {new}\r\nsave\r\n").as_bytes());
+    board.until("board: started by Supply", LONGEST);
+    let found = started(&mut board);
+    assert!(LATITUDES.contains(&found), "after {operation} of {saves}: {found}\n{board}");
+    found == new
 }
 
-/// After every operation of a save that changes pages, and so after every row of one that does not, round and round: about
-/// seven records fill a page.
+/// The record counts once its mark is whole, whose second writing is for the case that the first is torn.
 #[test]
 fn a_loss_of_supply_at_any_row_while_settings_are_kept_leaves_the_old_ones_or_the_new_ones() {
-    let [old, new] = kept(OPERATIONS, 11);
-    assert!(old > 20 && new > 20, "{old} old, {new} new");
+    for (saves, operations) in [(1, ROWS), (FULL, OPERATIONS)] {
+        let new: Vec<bool> = (0..operations).map(|operation| is_new(saves, operation)).collect();
+        let old = new.iter().take_while(|is_new| !**is_new).count();
+        assert_eq!(old, operations as usize - 2, "{saves} saves: {new:?}");
+        assert!(new[old..].iter().all(|is_new| *is_new), "{saves} saves: {new:?}");
+    }
+}
+
+/// Then no operation is left in which it could be lost.
+#[test]
+fn a_save_has_no_more_operations_than_the_supply_was_lost_after() {
+    for (saves, operations, pages) in [(1, ROWS, 0), (FULL, OPERATIONS, 1)] {
+        let mut board = waiting(saves);
+        started(&mut board);
+        board.run(0.3);
+        let used = |board: &Board| board.controller(|controller| controller.flash.used);
+        let before = used(&board);
+        board.execution.send(b"save\r\n");
+        board.run(1.0);
+        let [rows, erased] = [used(&board).rows - before.rows, used(&board).pages - before.pages];
+        assert_eq!((rows + erased, erased), (operations.into(), pages), "{saves} saves");
+    }
 }

@@ -347,14 +347,12 @@ impl<'k> Navigator<'k> {
         if !self.policy.knows_stops {
             self.keeper.learn_from_sway();
         }
-        if let Some(carried) = self.keeper.carried(at, azimuth) {
-            self.align(carried, outlet);
-            self.is_from_outside = false;
-        } else if self.is_behind(at) {
-            outlet(Output::Progress(Progress::TooLate));
-        } else {
-            self.align(azimuth, outlet);
+        let carried = self.keeper.carried(at, azimuth);
+        if carried.is_none() && self.is_behind(at) {
+            return outlet(Output::Progress(Progress::TooLate));
         }
+        self.align(carried.unwrap_or(azimuth), outlet);
+        self.is_from_outside = false;
     }
 
     /// Whether increments of so much later times than this one were taken that the course at it is not known any more.

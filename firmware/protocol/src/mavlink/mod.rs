@@ -19,7 +19,8 @@ mod telemetry;
 
 pub use payload::Acknowledgement;
 pub use requests::{
-    Action, Command, MavResult, Name, Request, acknowledgement, interval, parameter, request,
+    Action, Command, HEARTBEAT, MavResult, Name, Request, acknowledgement, interval, parameter,
+    request,
 };
 pub use telemetry::{
     WORDS, attitude_quaternion, heartbeat, statustext, sys_status, vision_position_estimate,

@@ -12,7 +12,7 @@
 use heapless::String;
 use mavlink::MessageData;
 use mavlink::dialects::common::{
-    COMMAND_LONG_DATA, GPS_RAW_INT_DATA, MESSAGE_INTERVAL_DATA, MavParamType,
+    COMMAND_LONG_DATA, GPS_RAW_INT_DATA, HEARTBEAT_DATA, MESSAGE_INTERVAL_DATA, MavParamType,
     PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA,
 };
 use orientation::earth::Latitude;
@@ -32,6 +32,9 @@ mod numbers {
     pub const REQUEST_MESSAGE: u16 = 512;
     pub const DO_SET_GLOBAL_ORIGIN: u16 = 611;
 }
+
+/// Number of the message that is sent once a second whatever is set.
+pub const HEARTBEAT: u32 = HEARTBEAT_DATA::ID;
 
 /// Name of a parameter.
 pub type Name = String<16>;
@@ -166,7 +169,7 @@ fn action(
             Ok(Action::Stop)
         }
         numbers::PREFLIGHT_STORAGE if first == STORAGE[0] => Ok(Action::Save),
-        numbers::PREFLIGHT_STORAGE if first == STORAGE[1] => Ok(Action::Restore),
+        numbers::PREFLIGHT_STORAGE if first == STORAGE[1] && is_to_this => Ok(Action::Restore),
         numbers::RUN_PREARM_CHECKS => Ok(Action::Test),
         numbers::PREFLIGHT_REBOOT_SHUTDOWN => {
             // The first parameter is the autopilot's, unless the command is to this component alone.

@@ -96,14 +96,17 @@ pub fn sys_status(report: &Report) -> SYS_STATUS_DATA {
     }
 }
 
-/// Azimuth, pitch and roll, rad, where an azimuth may be used, the azimuth within ±π.
+/// Azimuth, pitch and roll, rad, the azimuth within ±π: while the azimuth is valid, and where the gyros alone carry the level
+/// of one that is; never else, since no message that has them has a sign of their validity.
 fn angles(report: &Report) -> Option<[f64; 3]> {
-    let (azimuth, level) = (report.usable_azimuth()?, report.usable_level()?);
+    let is_sound = matches!(report.state, State::Ready | State::Degraded(Degradation::Coasting));
+    let azimuth = report.usable_azimuth().filter(|_| is_sound)?;
+    let level = report.usable_level()?;
     Some([wrapped(azimuth.angle.0 + PI) - PI, level.pitch.0, level.roll.0])
 }
 
-/// Attitude from the body to north, east, down, and the body's rates. [`None`] without an azimuth, since the message has no
-/// sign of its validity.
+/// Attitude from the body to north, east, down, and the body's rates, under the same conditions as
+/// [`vision_position_estimate`].
 #[must_use]
 pub fn attitude_quaternion(report: &Report) -> Option<ATTITUDE_QUATERNION_DATA> {
     let [q1, q2, q3, q4] = quaternion(angles(report)?).map(|part| part as f32);
@@ -129,14 +132,13 @@ const NO_POSITION: f32 = 1e4;
 const VARIANCES: [usize; 6] = [0, 6, 11, 15, 18, 20];
 
 /// Azimuth, pitch and roll for an autopilot to fuse, with their variances. It is sent while the azimuth is valid, and where
-/// the gyros alone carry the level of one that is; never else, since the message has no sign of its validity.
+/// the gyros alone carry the level of one that is; never else.
 ///
 /// The position is zero with a variance of 10⁴ m²: ArduPilot drops a message whose position is not a number, and PX4
 /// before its commit 648e730c takes its yaw for one from an unknown direction.
 #[must_use]
 pub fn vision_position_estimate(report: &Report) -> Option<VISION_POSITION_ESTIMATE_DATA> {
-    let is_fused = matches!(report.state, State::Ready | State::Degraded(Degradation::Coasting));
-    let [yaw, pitch, roll] = angles(report).filter(|_| is_fused)?.map(|angle| angle as f32);
+    let [yaw, pitch, roll] = angles(report)?.map(|angle| angle as f32);
     let (heading, level) = (report.azimuth?.sigma.0 as f32, report.level?.sigma.0 as f32);
     let variances =
         [NO_POSITION, NO_POSITION, NO_POSITION, level * level, level * level, heading * heading];

@@ -5,6 +5,7 @@ use host::instrument::Trial;
 use mavlink::dialects::common::MavCmd;
 use orientation::alignment::Progress;
 use orientation::alignment::refusal::Refusal;
+use simulated::executed;
 use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 
@@ -49,6 +50,13 @@ fn an_alignment_that_is_stopped_ends_without_an_azimuth_and_begins_by_an_order_a
     assert!(states(&lines).iter().any(|state| state[0] == "failed"));
 }
 
+#[test]
+fn an_alignment_that_was_ordered_to_end_is_followed_by_one_that_is_ordered_at_once() {
+    let (ends, lines) = ran(&stage(200.0), &[(30, "stop\r\nstart")]);
+    assert_eq!(ends, [Some(Refusal::Stopped), None]);
+    assert_eq!(sentences(&lines, "PMRDR"), [["stop", "ok"], ["start", "ok"]]);
+}
+
 /// As a ground station ends the calibration of an autopilot: all parameters of the command for one are zero.
 #[test]
 fn an_alignment_is_stopped_by_a_calibration_of_nothing() {
@@ -60,9 +68,11 @@ fn an_alignment_is_stopped_by_a_calibration_of_nothing() {
 
 #[test]
 fn an_alignment_is_begun_anew_while_it_runs() {
-    let (ends, lines) = ran(&stage(200.0), &[(40, "realign")]);
+    let often = [(1, "set pmrds_rate 10"), (40, "realign")];
+    let (ends, lines) = ran(&stage(200.0), &often);
     assert_eq!(ends, [Some(Refusal::Stopped), None]);
-    assert_eq!(sentences(&lines, "PMRDR"), [["realign", "ok"]]);
+    assert_eq!(sentences(&lines, "PMRDR")[1], ["realign", "ok"]);
+    assert!(states(&lines).iter().all(|state| state[0] != "failed"), "none has failed");
 }
 
 #[test]
@@ -89,6 +99,17 @@ fn an_azimuth_from_outside_is_held_before_an_alignment_has_found_one() {
     }
 }
 
+/// One that contradicts the one before is judged, or refused: it does not take its place unseen.
+#[test]
+fn an_azimuth_that_comes_before_the_last_one_was_taken_is_refused() {
+    let lines = [(60, "azimuth 10 2\r\nazimuth 190 2"), (61, "azimuth 190 2")];
+    let (_, lines) = ran(&stage(10.0), &lines);
+    let said: Vec<String> =
+        sentences(&lines, "PMRDR").into_iter().map(|fields| fields.join(",")).collect();
+    let busy = "azimuth,refused,the one before is being taken";
+    assert_eq!(said, ["azimuth,ok", busy, "azimuth,ok"]);
+}
+
 #[test]
 fn settings_that_count_from_the_next_start_on_are_not_taken_for_those_of_this_one() {
     let lines = [(100, "set dwell 5"), (110, "realign"), (120, "set hdt_rate 5")];
@@ -97,4 +118,16 @@ fn settings_that_count_from_the_next_start_on_are_not_taken_for_those_of_this_on
     let answers = sentences(&lines, "PMRDR");
     assert_eq!(answers[1], ["realign", "refused", "settings were changed: save and reboot"]);
     assert_eq!(answers[2], ["set", "hdt_rate", "5"]);
+}
+
+#[test]
+fn the_settings_of_a_run_are_those_of_its_carrier() {
+    let asked = || Typed::lines(&[(1, "get carrier"), (2, "get latitude")]);
+    let asked = [asked(), asked()];
+    let stage = Trial::of(&executed::stage(1)).traffic(&asked[0]).run().expect("it begins");
+    let vehicle = Trial::of(&executed::vehicle(1)).traffic(&asked[1]).run().expect("it begins");
+    for (carrier, lines) in [("stage", stage.lines), ("vehicle", vehicle.lines)] {
+        let answers = sentences(&lines, "PMRDR");
+        assert_eq!(answers, [["get", "carrier", carrier], ["get", "latitude", "47.58"]]);
+    }
 }

@@ -193,7 +193,7 @@ prop_compose! {
     fn any_gyro()(
         volts in 1e-6..1e6_f64, reversed: bool, limit in 1e-3..2.1,
         [q, n, b, k, r] in [0.0..1e9, 0.0..1e9, 0.0..1e9, 0.0..1e9, 0.0..1e9],
-        bias in 0.0..1e9, scale_sigma in 0.0..1e9,
+        bias in 0.0..2.1, scale_sigma in 0.0..1.0,
     ) -> Gyro {
         let noise = GyroNoise {
             quantisation: Radians(q),
@@ -226,7 +226,7 @@ fn any_settings<C: Calibrated>(
     schedule: impl Strategy<Value = C>,
 ) -> impl Strategy<Value = Settings<C>> {
     let latitude = proptest::option::of(-84.9..84.9);
-    let common = (any_output(), latitude, any_gyro(), 0.0..1e9, any::<[bool; 2]>(), schedule);
+    let common = (any_output(), latitude, any_gyro(), 1e-4..3.1, any::<[bool; 2]>(), schedule);
     common.prop_map(|(output, latitude, gyro, sigma, [holds, starts], schedule)| {
         let latitude = latitude.and_then(Latitude::from_degrees);
         let required_sigma = Radians(sigma);
@@ -448,12 +448,22 @@ fn a_quantity_of_place_or_gyro_out_of_range_is_refused_by_name() {
     out_of_range("limit", &stage(), &[0.0, -1.0, 2.2, f64::NAN], |settings, value| {
         settings.gyro.limit.0 = value;
     });
-    out_of_range("bias_sigma", &vehicle(), negative, |settings, value| {
-        settings.gyro.errors.bias_sigma.0 = value;
-    });
-    out_of_range("scale_sigma", &stage(), negative, |settings, value| {
-        settings.gyro.errors.scale_sigma = value;
-    });
+    out_of_range(
+        "bias_sigma",
+        &vehicle(),
+        &[-1.0, 2.2, f64::NAN, f64::INFINITY],
+        |settings, value| {
+            settings.gyro.errors.bias_sigma.0 = value;
+        },
+    );
+    out_of_range(
+        "scale_sigma",
+        &stage(),
+        &[-1.0, 1.1, f64::NAN, f64::INFINITY],
+        |settings, value| {
+            settings.gyro.errors.scale_sigma = value;
+        },
+    );
     out_of_range("angle_random_walk", &spin(), negative, |settings, value| {
         settings.gyro.errors.noise.angle_random_walk.0 = value;
     });
@@ -463,9 +473,14 @@ fn a_quantity_of_place_or_gyro_out_of_range_is_refused_by_name() {
     out_of_range("rate_random_walk", &stage(), negative, |settings, value| {
         settings.gyro.errors.noise.rate_random_walk.0 = value;
     });
-    out_of_range("required_sigma", &turntable(), negative, |settings, value| {
-        settings.required_sigma.0 = value;
-    });
+    out_of_range(
+        "required_sigma",
+        &turntable(),
+        &[-1.0, 0.0, 3.2, f64::NAN, f64::INFINITY],
+        |settings, value| {
+            settings.required_sigma.0 = value;
+        },
+    );
 }
 
 #[test]

@@ -173,6 +173,8 @@ pub struct Instrument {
     pub flash: Option<BTreeMap<String, String>>,
     /// Settings, or commands, that it refuses, with the reason.
     pub refuses: BTreeMap<String, &'static str>,
+    /// Values of two settings that are not possible together.
+    pub excludes: Option<[[&'static str; 2]; 2]>,
     /// The commands that it has got.
     pub got: Vec<String>,
 }
@@ -215,6 +217,13 @@ impl Instrument {
         identity.chain(settings).collect()
     }
 
+    /// Whether a setting cannot have this value because of that of another.
+    fn is_excluded(&self, name: &str, new: &str) -> bool {
+        let has = |[other, value]: [&str; 2]| self.memory.get(other).is_some_and(|it| it == value);
+        let Some([one, other]) = self.excludes else { return false };
+        (one == [name, new] && has(other)) || (other == [name, new] && has(one))
+    }
+
     /// What it answers.
     pub fn answer(&mut self, words: &[&str]) -> Vec<Say> {
         self.got.push(words.join(" "));
@@ -235,6 +244,7 @@ impl Instrument {
                 Some([_, found]) => value(name, found),
                 None => refused("no such setting"),
             },
+            ["set", name, new] if self.is_excluded(name, new) => refused("not together"),
             ["set", name, new] => match (self.refuses.get(*name), self.memory.get_mut(*name)) {
                 (Some(why), _) => refused(why),
                 (_, None) => refused("no such setting"),

@@ -76,6 +76,26 @@ fn what_differs_is_set_then_saved_and_read_back() {
     );
 }
 
+/// Whatever their order: each is possible together with those that the others have then.
+#[test]
+fn settings_that_are_possible_after_others_alone_are_set_after_those() {
+    for excludes in [["latitude", "47.58"], ["gyro_scale", "-0.0125"]] {
+        let excludes = Some([["dwell", "20"], excludes]);
+        let file = FILE.replace("-0.0125", "0.05");
+        let loaded = Loaded::of(&file, Instrument { excludes, ..Instrument::new() }, &[]);
+        assert_eq!(code(&loaded.output), 0, "{}", text(&loaded.output.stderr));
+        let changes = ["set gyro_scale 0.05", "set latitude -12.5", "set dwell 20", "save"];
+        assert_eq!(loaded.changes(), [&["set dwell 20"], &changes[..]].concat());
+    }
+}
+
+#[test]
+fn settings_that_are_impossible_together_are_refused_and_the_others_set_back() {
+    let excludes = Some([["dwell", "20"], ["latitude", "-12.5"]]);
+    let loaded = Loaded::of(FILE, Instrument { excludes, ..Instrument::new() }, &[]);
+    loaded.assert_refused(&["`set latitude -12.5`: not together", "are set again"]);
+}
+
 #[test]
 fn what_was_saved_loads_without_any_change() {
     let instrument = Instrument::new().shared();
@@ -157,6 +177,12 @@ fn where_a_setting_is_refused_those_before_it_are_set_back() {
     assert_eq!(loaded.changes(), ["set dwell 20", "set latitude -12.5", "set dwell 10"]);
     let mut instrument = Instrument::new();
     instrument.refuses.insert("dwell".to_owned(), "out of range");
+    let loaded = Loaded::of(FILE, instrument, &[]);
+    loaded.assert_refused(&["refuses `set dwell 20`: out of range", "are set again"]);
+    let tried = ["set dwell 20", "set latitude -12.5", "set dwell 20", "set latitude 47.58"];
+    assert_eq!(loaded.changes(), tried);
+    let mut instrument = Instrument::new();
+    instrument.refuses.extend(["dwell", "latitude"].map(|name| (name.to_owned(), "read only")));
     let loaded = Loaded::of(FILE, instrument, &[]);
     loaded.assert_refused(&["nothing was changed, and nothing saved"]);
 }

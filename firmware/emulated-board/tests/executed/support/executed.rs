@@ -41,6 +41,8 @@ pub struct Executed {
     pub log: Vec<Entry>,
     /// Lines of the link.
     pub link: Vec<String>,
+    /// All bytes of the link.
+    pub bytes: Vec<u8>,
 }
 
 impl Executed {
@@ -87,17 +89,19 @@ pub fn execute_image(
     world: World,
     mut told: impl FnMut() -> Vec<u8>,
 ) -> Executed {
-    let (mut log, mut link) = (Vec::new(), Vec::new());
+    let (mut log, mut bytes) = (Vec::new(), Vec::new());
     let on_link = |sent: &[u8]| {
-        link.extend_from_slice(sent);
+        bytes.extend_from_slice(sent);
         told()
     };
     let report = execute(image, order, world, |line| log.push(Entry::of(line)), on_link);
     let report = report.unwrap_or_else(|error| panic!("the image of {}: {error}", order.carrier));
-    let link = String::from_utf8(link).expect("the link carries text");
+    // Messages are no text.
+    let text = String::from_utf8_lossy(&bytes);
     // The end may come amid a line.
-    let whole = link.split_inclusive('\n').filter(|line| line.ends_with('\n'));
-    Executed { report, log, link: whole.map(|line| line.trim_end().to_owned()).collect() }
+    let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+    let link = whole.map(|line| line.trim_end().to_owned()).collect();
+    Executed { report, log, link, bytes }
 }
 
 /// The order's image in its usual world, without looking whether it was executed before.

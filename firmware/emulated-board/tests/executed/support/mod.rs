@@ -9,6 +9,7 @@ pub mod executed;
 pub mod figure;
 #[path = "../../support/images.rs"]
 pub mod images;
+pub mod line;
 #[path = "../../../../../host-tests/tests/support/sentences.rs"]
 pub mod sentences;
 pub mod worlds;

@@ -8,7 +8,7 @@ use emulated_board::wiring::board::BaseImu;
 use emulated_board::world::{SERIAL, World, stored};
 use firmware::platform::Platform;
 use firmware::ports::Store as _;
-use firmware::settings::{CarrierSchedule, FASTEST, ITEMS, Output, Settings, save};
+use firmware::settings::{CarrierSchedule, FASTEST, Format, ITEMS, Output, Settings, save};
 use firmware::storage::HEADING;
 use hal_mock::chip::Single;
 use hal_mock::lsm6dsl::Lsm6dsl;
@@ -70,22 +70,22 @@ pub fn worn_store<C: CarrierSchedule>(settings: &Settings<C>, headings: usize) -
     store.expect("a store takes settings and headings")
 }
 
-/// The usual world of a carrier, whose settings have its link send all sentences at each look.
-pub fn at_full_load(carrier: Platform) -> World {
+/// The usual world of a carrier, whose settings have its link send all of a format at each look.
+pub fn at_full_load(carrier: Platform, format: Format) -> World {
     let store = match carrier {
-        Platform::Stage => full(simulated::executed::stage(1).settings()),
-        Platform::Turntable => full(simulated::executed::turntable(1).settings()),
-        Platform::TwoFrame => full(simulated::executed::two_frames(1).settings()),
-        Platform::Vehicle => full(simulated::executed::vehicle(1).settings()),
-        Platform::Spin => full(simulated::executed::spin(1).settings()),
+        Platform::Stage => full(simulated::executed::stage(1).settings(), format),
+        Platform::Turntable => full(simulated::executed::turntable(1).settings(), format),
+        Platform::TwoFrame => full(simulated::executed::two_frames(1).settings(), format),
+        Platform::Vehicle => full(simulated::executed::vehicle(1).settings(), format),
+        Platform::Spin => full(simulated::executed::spin(1).settings(), format),
     };
     usual(carrier).with_store(store)
 }
 
-/// A store with these settings, by which the link sends all sentences at each look.
-fn full<C: CarrierSchedule>(settings: Option<Settings<C>>) -> Vec<u8> {
+/// A store with these settings, by which the link sends all of a format at each look.
+fn full<C: CarrierSchedule>(settings: Option<Settings<C>>, format: Format) -> Vec<u8> {
     let mut settings = settings.expect("the usual settings are some");
-    settings.output = Output { rates: [FASTEST; ITEMS], ..settings.output };
+    settings.output = Output { format, rates: [FASTEST; ITEMS], ..settings.output };
     settings.check().expect("the link carries all that it may send");
     worn_store(&settings, 0)
 }
