@@ -90,8 +90,10 @@ fn an_azimuth_is_set_anew_where_it_is_taken_and_not_where_it_is_confirmed() {
         // Contradicted, so that none is left; then taken anew, from outside.
         (400, Input::Aided(None, Some(azimuth(130.0, 0.1)))),
         (500, Input::Aided(None, Some(azimuth(130.0, 0.1)))),
+        // Confirmed by an alignment, whose it is then.
+        (600, found(6, azimuth(130.05, 0.1))),
     ];
-    let inputs = (1..=600).flat_map(|index| {
+    let inputs = (1..=700).flat_map(|index| {
         let event = events.iter().find(|(at, _)| *at == index).map(|(_, event)| *event);
         event.into_iter().chain([moved(index, 0.0), Input::Settled])
     });
@@ -104,6 +106,7 @@ fn an_azimuth_is_set_anew_where_it_is_taken_and_not_where_it_is_confirmed() {
     assert_eq!([1.8, 2.8, 3.8].map(at), [(true, 1, false); 3]);
     assert_eq!(at(4.8), (false, 1, false));
     assert_eq!(at(5.8), (true, 2, true));
+    assert_eq!(at(6.8), (true, 2, false));
     let since = shown.last().and_then(|attitude| attitude.since_aligned);
     assert!(since.is_some_and(|since| (0.9..1.1).contains(&since.0)), "{since:?}");
 }
