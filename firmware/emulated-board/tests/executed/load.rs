@@ -17,7 +17,7 @@ use super::support::worlds::at_full_load;
 /// Most bytes of a message.
 const LONGEST: usize = 280;
 /// Number of the message that has the state of the sensors.
-const SYS_STATUS: u8 = 1;
+const SYS_STATUS: u32 = 1;
 /// Bytes of commands that may wait for their answers, and the time in which they have them, ms.
 const WAITING: (usize, usize) = (200, 250);
 
@@ -45,10 +45,10 @@ fn sound(report: &Report) {
 }
 
 /// Numbers of the messages that were sent, all of which are whole; a heartbeat is first.
-fn messages(mut bytes: &[u8]) -> Vec<u8> {
+fn messages(mut bytes: &[u8]) -> Vec<u32> {
     let mut numbers = Vec::new();
-    while let [0xFD, length, _, _, _, 1, 200, number, 0, 0, ..] = *bytes {
-        numbers.push(number);
+    while let [0xFD, length, _, _, _, 1, 200, low, middle, high, ..] = *bytes {
+        numbers.push(u32::from_le_bytes([low, middle, high, 0]));
         bytes = bytes.get(usize::from(length) + 12..).unwrap_or_default();
     }
     // The end may come amid a message.
