@@ -126,14 +126,9 @@ impl Orders {
         taken
     }
 
-    /// Drops an order to an alignment that is over: each but that to begin another.
-    fn drop_void(&self) {
-        self.waiting.change(|waiting| *waiting = waiting.filter(|order| *order == Order::Restart));
-    }
-
-    /// Drops an order to begin an alignment.
-    fn drop_restart(&self) {
-        self.waiting.change(|waiting| *waiting = waiting.filter(|order| *order != Order::Restart));
+    /// Drops the order that waits unless it is such a one.
+    fn retain(&self, is_kept: impl Fn(&Order) -> bool) {
+        self.waiting.change(|waiting| *waiting = waiting.filter(|order| is_kept(order)));
     }
 
     /// Whether an order to begin an alignment waits.
@@ -358,7 +353,7 @@ impl<'a> Shared<'a> {
     pub fn stop(&self) {
         self.is_stopped.set(true);
         self.begins_again.set(false);
-        self.orders.drop_restart();
+        self.orders.retain(|order| *order != Order::Restart);
         self.fail(Refusal::Stopped);
     }
 
@@ -377,15 +372,20 @@ impl<'a> Shared<'a> {
     }
 
     /// Whether an alignment is about to begin: one was ordered, and the aligner has not obeyed yet.
-    #[must_use]
-    pub fn is_beginning(&self) -> bool {
+    fn is_beginning(&self) -> bool {
         self.begins_again.get() || self.orders.restarts()
     }
 
-    /// Whether an alignment that runs was ordered to end.
+    /// Whether no alignment runs or is about to begin.
+    #[must_use]
+    pub fn has_none(&self) -> bool {
+        self.is_idle() && !self.is_beginning()
+    }
+
+    /// Whether the alignment that runs was ordered to end, and none is to follow it.
     #[must_use]
     pub fn is_ending(&self) -> bool {
-        !self.is_idle() && self.is_stopped.get()
+        !self.is_idle() && self.is_stopped.get() && !self.is_beginning()
     }
 
     /// Takes an order of the navigator. None to begin an alignment is obeyed after one from outside to end.
@@ -420,7 +420,8 @@ impl<'a> Shared<'a> {
     /// Ends an alignment: hands an azimuth over to the navigator, and wakes the link.
     pub(crate) fn conclude(&self, found: Option<(units::Instant, Azimuth)>) {
         self.alignments.set(Alignments::Idle);
-        self.orders.drop_void();
+        // Other orders were to the alignment that is over.
+        self.orders.retain(|order| *order == Order::Restart);
         if let Some(found) = found {
             self.found.signal(found);
         }

@@ -46,7 +46,7 @@ pub(super) fn report(shared: &Shared<'_>) -> Report {
 fn without_azimuth(shared: &Shared<'_>) -> State {
     match shared.status.get() {
         Status::Waiting => State::Waiting,
-        _ if shared.is_idle() && !shared.is_beginning() => State::Failed,
+        _ if shared.has_none() => State::Failed,
         _ => State::Aligning,
     }
 }

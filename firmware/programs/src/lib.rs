@@ -128,11 +128,12 @@ impl<S: Send, C: CarrierSchedule + 'static> Instrument<S, C> {
         executors.link.spawn(once(converse(port, board, shared)));
         executors.thread.spawn(once(keep_store(store, board, shared)));
         let start = start?;
-        if !start.is_at_power_on || start.lacks_latitude(None) {
+        let lacks_latitude = start.lacks_latitude(None);
+        if lacks_latitude {
+            shared.report(Event::NotBegun(NotBegun::NoLatitude));
+        }
+        if lacks_latitude || !start.is_at_power_on {
             shared.wait_to_begin();
-            if start.lacks_latitude(None) {
-                shared.report(Event::NotBegun(NotBegun::NoLatitude));
-            }
             shared.begin.wait().await;
             shared.status.set(Status::Starting);
         }

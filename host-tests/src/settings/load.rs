@@ -119,9 +119,10 @@ fn change_all(
             let [name, before, wanted] = entry;
             match change(instrument, [name, before, wanted], made)? {
                 Ok(kept) => {
-                    if !value::are_same(&kept, wanted) {
-                        loaded.rounded.push(format!("{name} = {wanted} is kept as {kept}"));
-                    }
+                    let is_rounded = !value::are_same(&kept, wanted);
+                    let rounded =
+                        is_rounded.then(|| format!("{name} = {wanted} is kept as {kept}"));
+                    loaded.rounded.extend(rounded);
                     *wanted = kept;
                     is_changed = reason.is_some();
                 }

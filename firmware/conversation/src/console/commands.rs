@@ -74,8 +74,7 @@ impl Console {
             return Ok(());
         }
         self.check_again(settings, shared)?;
-        let runs = !shared.is_idle() && !shared.is_ending();
-        if runs || shared.is_beginning() {
+        if !(shared.has_none() || shared.is_ending()) {
             return Err(Refused::Runs);
         }
         shared.begin_again();
@@ -185,7 +184,7 @@ impl Console {
 /// # Errors
 /// [`Refused::NothingRuns`].
 pub(super) fn stop(shared: &Shared<'_>) -> Result<(), Refused> {
-    if shared.is_waiting() || (shared.is_idle() && !shared.is_beginning()) {
+    if shared.is_waiting() || shared.has_none() {
         return Err(Refused::NothingRuns);
     }
     shared.stop();

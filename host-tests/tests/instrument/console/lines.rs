@@ -9,7 +9,7 @@ use firmware::shared::Shared;
 use orientation::device::{Device, Trouble};
 use orientation::units::{Radians, Seconds};
 
-use super::{Memory, REBOOTS, SERIAL, conversed, record, settings};
+use super::{Memory, REBOOTS, SERIAL, answers_in, conversed, record, settings};
 use crate::support::link::sentences;
 
 /// The answers to lines, of which each is sent a second after the one before.
@@ -24,8 +24,7 @@ fn answers(
     let typed: Vec<(u64, &[u8])> = typed.iter().map(|(at, line)| (*at, line.as_bytes())).collect();
     let until = 1000 * (lines.len() as u64 + 5);
     let shown = conversed((shared, stated), &typed, until, memory);
-    let shown = String::from_utf8(shown).expect("text");
-    sentences(&shown, "PMRDR").into_iter().map(|fields| fields.join(",")).collect()
+    answers_in(&String::from_utf8(shown).expect("text"))
 }
 
 /// The same of an instrument with an empty memory.
@@ -216,8 +215,7 @@ fn it_is_started_anew_after_its_answer() {
 /// What is said to bytes that come at times, ms.
 fn said(shared: &Shared<'_>, typed: &[(u64, &[u8])]) -> Vec<String> {
     let shown = conversed((shared, settings()), typed, 10_000, &RefCell::default());
-    let shown = String::from_utf8(shown).expect("text");
-    sentences(&shown, "PMRDR").into_iter().map(|fields| fields.join(",")).collect()
+    answers_in(&String::from_utf8(shown).expect("text"))
 }
 
 #[test]

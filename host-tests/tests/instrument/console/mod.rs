@@ -23,6 +23,8 @@ use host::instrument::Traffic;
 use host::virtual_time;
 use orientation::earth::Latitude;
 
+use crate::support::link::sentences;
+
 /// Serial number of the controller here.
 const SERIAL: Serial = Serial([7; 12]);
 
@@ -153,6 +155,11 @@ impl Traffic for Typed {
     fn next(&self) -> Option<(Instant, Vec<u8>)> {
         self.0.borrow_mut().pop_front()
     }
+}
+
+/// The answers among lines of the link, each with the commas between its fields.
+fn answers_in(lines: &str) -> Vec<String> {
+    sentences(lines, "PMRDR").into_iter().map(|fields| fields.join(",")).collect()
 }
 
 /// A record of the log.

@@ -9,8 +9,8 @@ use simulated::executed;
 use simulated::hold::Hold;
 use simulated::scenario::Scenario;
 
-use super::Typed;
 use super::frames::{command, frame};
+use super::{Typed, answers_in};
 use crate::support::link::{sentences, states};
 
 /// A stage that holds its azimuth for so long, s.
@@ -43,10 +43,9 @@ fn ran_with(scenario: &Scenario, typed: &Typed) -> (Vec<Option<Refusal>>, String
 #[test]
 fn an_alignment_that_is_stopped_ends_without_an_azimuth_and_begins_by_an_order_alone() {
     let (ends, lines) = ran(&stage(400.0), &[(30, "stop"), (33, "stop"), (36, "start")]);
-    let answers = sentences(&lines, "PMRDR");
+    let answers = answers_in(&lines);
     assert_eq!(ends, [Some(Refusal::Stopped), None], "{answers:?}");
-    let said: Vec<String> = answers.into_iter().map(|fields| fields.join(",")).collect();
-    assert_eq!(said, ["stop,ok", "stop,refused,no alignment runs", "start,ok"]);
+    assert_eq!(answers, ["stop,ok", "stop,refused,no alignment runs", "start,ok"]);
     assert!(states(&lines).iter().any(|state| state[0] == "failed"));
 }
 
@@ -104,10 +103,8 @@ fn an_azimuth_from_outside_is_held_before_an_alignment_has_found_one() {
 fn an_azimuth_that_comes_before_the_last_one_was_taken_is_refused() {
     let lines = [(60, "azimuth 10 2\r\nazimuth 190 2"), (61, "azimuth 190 2")];
     let (_, lines) = ran(&stage(10.0), &lines);
-    let said: Vec<String> =
-        sentences(&lines, "PMRDR").into_iter().map(|fields| fields.join(",")).collect();
     let busy = "azimuth,refused,the one before is being taken";
-    assert_eq!(said, ["azimuth,ok", busy, "azimuth,ok"]);
+    assert_eq!(answers_in(&lines), ["azimuth,ok", busy, "azimuth,ok"]);
 }
 
 #[test]
